@@ -1,0 +1,5 @@
+//! What two processes of halfstep both need: scenes, particles and neighbours, the pair pass, the wire, output.
+
+pub mod failure;
+pub mod protocol;
+pub mod scene;

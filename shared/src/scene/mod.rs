@@ -1,0 +1,474 @@
+//! What a user writes: the scene, as resolved from a TOML file, a preset and `--set` overrides.
+//!
+//! Every length is in metres, every time in seconds, every other quantity in SI units. Two-dimensional masses and
+//! forces are per metre of depth. A [`Scene`] that exists is valid: [`load`] refuses anything else with all of the
+//! file's errors at once. Vectors have three components; a two-dimensional scene leaves the third at zero.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// A scene with every default filled in and every value checked.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Scene {
+    /// The scene's name: the stem of its file.
+    pub name: String,
+    /// The file it was read from.
+    pub path: PathBuf,
+    /// The preset it started from.
+    pub preset: Option<Preset>,
+    /// Number of space dimensions.
+    pub dimension: usize,
+    /// Particle spacing dx, m.
+    pub resolution: f64,
+    /// Smoothing length over spacing, h / dx, of the fluid and the interface.
+    pub smoothing_ratio: f64,
+    /// Simulated time, s.
+    pub end_time: f64,
+    /// How the time step is chosen.
+    pub time_step: TimeStep,
+    /// Gravity, m/s².
+    pub gravity: [f64; 3],
+    /// The liquid, where the scene has one.
+    pub fluid: Option<Fluid>,
+    /// The solid, where the scene has one.
+    pub solid: Option<Solid>,
+    /// How fluid and solid act on each other.
+    pub interface: Interface,
+    /// What is written, and when.
+    pub output: Output,
+    /// Where the particles are at first.
+    pub shapes: Vec<Shape>,
+    /// What is measured.
+    pub probes: Vec<Probe>,
+    /// Curves of the literature drawn beside the probes.
+    pub references: Vec<Reference>,
+    /// Effects that the user forces on or off; those absent are `auto`.
+    pub effects: BTreeMap<EffectName, Switch>,
+    /// Numerical parameters that are no physics.
+    pub numerics: Numerics,
+}
+
+/// A named set of parameter values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Preset {
+    /// The values, geometry convention and interface of Kayaki's scheme.
+    Kayaki,
+}
+
+/// The choice of the time step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TimeStep {
+    /// From the stability limits of both phases at every step.
+    Auto,
+    /// Fixed, s.
+    Fixed(f64),
+}
+
+/// A weakly compressible liquid.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Fluid {
+    /// Reference density, kg/m³.
+    pub density: f64,
+    /// Dynamic viscosity, Pa s.
+    pub viscosity: f64,
+    /// Artificial speed of sound, m/s (resolved: ten times the expected speed where the scene says `auto`).
+    pub sound_speed: f64,
+    /// Monaghan's artificial viscosity.
+    pub artificial_viscosity: ArtificialViscosity,
+    /// Diffusion of density.
+    pub density_diffusion: DensityDiffusion,
+    /// Coefficient delta of the density diffusion.
+    pub density_diffusion_coefficient: f64,
+    /// Pressure added to the equation of state, Pa.
+    pub background_pressure: f64,
+}
+
+/// Coefficients A (linear) and B (quadratic) of the artificial viscosity.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ArtificialViscosity {
+    /// A: proportional to the sound speed.
+    pub linear: f64,
+    /// B: proportional to the square of the approach speed.
+    pub quadratic: f64,
+}
+
+/// The variants of density diffusion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DensityDiffusion {
+    /// None.
+    None,
+    /// Molteni and Colagrossi 2009.
+    Simple,
+    /// Fourtakas et al. 2019: the hydrostatic part is left out.
+    Hydrostatic,
+    /// Antuono et al. 2010, Marrone et al. 2011: with the renormalised gradient.
+    DeltaSph,
+}
+
+/// An elastic solid.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Solid {
+    /// Which model computes it.
+    pub model: SolidModelName,
+    /// Reference density, kg/m³.
+    pub density: f64,
+    /// Young's modulus, Pa.
+    pub youngs_modulus: f64,
+    /// Poisson's ratio.
+    pub poissons_ratio: f64,
+    /// The solid's own smoothing length over spacing.
+    pub smoothing_ratio: f64,
+    /// Artificial viscosity inside the solid.
+    pub artificial_viscosity: ArtificialViscosity,
+    /// Gray's artificial stress.
+    pub artificial_stress: ArtificialStress,
+    /// Solid sub-steps per fluid step.
+    pub sub_steps: SubSteps,
+}
+
+impl Solid {
+    /// Bulk modulus K = E / (3 (1 - 2 nu)), Pa.
+    pub fn bulk_modulus(&self) -> f64 {
+        self.youngs_modulus / (3.0 * (1.0 - 2.0 * self.poissons_ratio))
+    }
+    /// Shear modulus G = E / (2 (1 + nu)), Pa.
+    pub fn shear_modulus(&self) -> f64 {
+        self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio))
+    }
+    /// Speed of the bulk wave c_s = sqrt(K / rho), m/s (Gray 2001): the sound speed of the artificial viscosity.
+    pub fn sound_speed(&self) -> f64 {
+        (self.bulk_modulus() / self.density).sqrt()
+    }
+    /// Speed of the pressure wave c_P = sqrt((K + 4 G / 3) / rho), m/s: the one that limits the time step.
+    pub fn pressure_wave_speed(&self) -> f64 {
+        ((self.bulk_modulus() + 4.0 / 3.0 * self.shear_modulus()) / self.density).sqrt()
+    }
+}
+
+/// The solid models that come with the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SolidModelName {
+    /// Hooke's law in rate form with the Jaumann rate (Gray, Monaghan and Swift 2001).
+    Hypoelastic,
+}
+
+/// Parameters of the artificial stress (Gray 2001).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ArtificialStress {
+    /// Coefficient epsilon; 0 leaves it out.
+    pub strength: f64,
+    /// Exponent n of the kernel ratio.
+    pub exponent: f64,
+}
+
+/// The number of solid sub-steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SubSteps {
+    /// From the solid's own stability limit.
+    Auto,
+    /// Given: 1 or an even number.
+    Fixed(u32),
+}
+
+/// The coupling of fluid and solid.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Interface {
+    /// Which treatment.
+    pub treatment: Treatment,
+    /// Kayaki's C: strength of the cross-phase artificial viscosity f_i.
+    pub cross_viscosity: f64,
+}
+
+/// The treatments of the interface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Treatment {
+    /// The solid is a moving wall to the fluid; it receives the reaction.
+    MovingWall,
+    /// Kayaki's: continuity and stress sums do not ask for a neighbour's phase.
+    PhaseBlind,
+}
+
+/// When files are written.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Output {
+    /// Time between frames, s.
+    pub frame_interval: f64,
+    /// Time between rows of `probes.csv`, s.
+    pub probe_interval: f64,
+    /// Time between checkpoints, s; 0 writes none.
+    pub checkpoint_interval: f64,
+}
+
+/// The phase that a shape's particles belong to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Phase {
+    /// Liquid.
+    Fluid,
+    /// Deformable solid.
+    Solid,
+    /// Rigid wall.
+    Wall,
+}
+
+/// Particles on a lattice inside a geometry.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Shape {
+    /// Its name; `--set shape.NAME.KEY=VALUE` finds it by this.
+    pub name: String,
+    /// Its phase.
+    pub phase: Phase,
+    /// Where it is.
+    pub geometry: Geometry,
+    /// Initial velocity, m/s (a wall: the constant velocity of its surface).
+    pub velocity: [f64; 3],
+    /// Initial velocity field of a vibrating cantilever, added to `velocity`.
+    pub cantilever_mode: Option<CantileverMode>,
+    /// Solid only: particles inside this box keep zero velocity.
+    pub clamp: Vec<Block>,
+    /// Wall only: the solid may touch this wall.
+    pub contact: bool,
+    /// Wall only: free slip (true) or no slip (false) toward the fluid.
+    pub free_slip: bool,
+    /// Fluid only: start with hydrostatic pressure below the shape's highest point.
+    pub hydrostatic: bool,
+}
+
+/// An axis-parallel box.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Block {
+    /// Lowest corner, m.
+    pub min: [f64; 3],
+    /// Highest corner, m.
+    pub max: [f64; 3],
+}
+
+/// The geometries a shape can have.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Geometry {
+    /// An axis-parallel box.
+    Box(Block),
+    /// A disc (2D) or ball (3D).
+    Disc {
+        /// Centre, m.
+        center: [f64; 3],
+        /// Radius, m.
+        radius: f64,
+    },
+    /// A ring (2D) or shell (3D).
+    Ring {
+        /// Centre, m.
+        center: [f64; 3],
+        /// Inner radius, m.
+        inner: f64,
+        /// Outer radius, m.
+        outer: f64,
+    },
+    /// The walls around an axis-parallel cavity, as thick as the kernel asks for.
+    Tank {
+        /// The cavity.
+        cavity: Block,
+        /// Sides left out.
+        open: Vec<Side>,
+    },
+}
+
+/// A side of a box.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Side {
+    /// Lowest x.
+    Left,
+    /// Highest x.
+    Right,
+    /// Lowest y.
+    Bottom,
+    /// Highest y.
+    Top,
+    /// Lowest z.
+    Back,
+    /// Highest z.
+    Front,
+}
+
+/// First bending mode of a cantilever (Landau and Lifshitz; Gray 2001): v_y = fraction c_0 F(x) / F(L), c_0 the bulk
+/// sound speed, x measured from `root` along the x axis.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CantileverMode {
+    /// Tip speed over the bulk sound speed.
+    pub fraction: f64,
+    /// x of the clamped end, m.
+    pub root: f64,
+    /// Free length, m.
+    pub length: f64,
+}
+
+/// Something measured while the run goes on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Probe {
+    /// Its name: the column's prefix in `probes.csv`.
+    pub name: String,
+    /// What it measures.
+    pub kind: ProbeKind,
+}
+
+/// The kinds of probes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ProbeKind {
+    /// Displacement of the solid particles nearest to a point of the initial configuration; components x, y (, z), m.
+    Displacement {
+        /// The point, m.
+        at: [f64; 3],
+    },
+    /// Fluid pressure at a fixed point (kernel average of the fluid around), Pa.
+    Pressure {
+        /// The point, m.
+        at: [f64; 3],
+    },
+    /// Highest fluid particle surface in the column at a place (against gravity), m.
+    WaterLevel {
+        /// x of the column, m.
+        x: f64,
+    },
+    /// Farthest reach of the fluid along +x, m.
+    Front,
+    /// Kinetic energy of a phase, J (2D: J/m).
+    KineticEnergy {
+        /// Fluid or solid.
+        phase: Phase,
+    },
+    /// Centre of mass of a phase; components x, y (, z), m.
+    Centroid {
+        /// Fluid or solid.
+        phase: Phase,
+    },
+}
+
+impl ProbeKind {
+    /// The phase whose process measures it.
+    pub fn phase(&self) -> Phase {
+        match *self {
+            Self::Displacement { .. } => Phase::Solid,
+            Self::Pressure { .. } | Self::WaterLevel { .. } | Self::Front => Phase::Fluid,
+            Self::KineticEnergy { phase } | Self::Centroid { phase } => phase,
+        }
+    }
+    /// Its components and their unit, in the order of its values.
+    pub fn components(&self, dimension: usize) -> (&'static [&'static str], &'static str) {
+        let axes = &["x", "y", "z"][..dimension];
+        match self {
+            Self::Displacement { .. } | Self::Centroid { .. } => (axes, "m"),
+            Self::Pressure { .. } => (&["pressure"], "Pa"),
+            Self::WaterLevel { .. } => (&["level"], "m"),
+            Self::Front => (&["x"], "m"),
+            Self::KineticEnergy { .. } => (&["energy"], "J"),
+        }
+    }
+}
+
+impl Probe {
+    /// Its columns in `probes.csv`: `NAME.COMPONENT [UNIT]`.
+    pub fn columns(&self, dimension: usize) -> Vec<String> {
+        let (components, unit) = self.kind.components(dimension);
+        components.iter().map(|c| format!("{}.{c} [{unit}]", self.name)).collect()
+    }
+}
+
+/// A curve of the literature.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Reference {
+    /// Probe component it belongs to, e.g. `tip.x`.
+    pub probe: String,
+    /// Legend entry: who measured or computed it.
+    pub label: String,
+    /// Points (time s, value in the probe's unit).
+    pub points: Vec<[f64; 2]>,
+}
+
+/// Effects that the program derives from the scene and the user may force.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum EffectName {
+    /// Physical viscosity of the fluid.
+    Viscosity,
+    /// Artificial stress in the solid.
+    ArtificialStress,
+    /// Renormalised velocity gradient in the solid.
+    RenormalisedGradient,
+    /// Rigid walls toward the solid.
+    WallContact,
+    /// Wall pressure is never negative.
+    NonNegativeWallPressure,
+}
+
+/// A forced effect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Switch {
+    /// The program decides.
+    Auto,
+    /// Always.
+    On,
+    /// Never.
+    Off,
+}
+
+/// Where lattice points lie.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Lattice {
+    /// At the centres of cells of side dx: n dx of material carry n particles.
+    Centred,
+    /// At multiples of dx strictly inside a fluid or a solid (n dx of material carry n - 1), and up to and including
+    /// the surface of a wall: Kayaki's counts.
+    Nodal,
+}
+
+/// The smoothing kernels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum KernelName {
+    /// Cubic spline (Monaghan and Lattanzio 1985), support 2h.
+    CubicSpline,
+    /// Wendland C2 (Wendland 1995), support 2h.
+    WendlandC2,
+}
+
+/// Numbers that are no physics.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Numerics {
+    /// Smoothing kernel.
+    pub kernel: KernelName,
+    /// Courant number of the fluid.
+    pub cfl: f64,
+    /// Courant number of the solid: dt c_P / dx.
+    pub solid_cfl: f64,
+    /// Largest number of solid sub-steps before the solid lowers the time step.
+    pub max_sub_steps: u32,
+    /// Largest number of fluid particles in the interface record; `None`: from the scene.
+    pub interface_capacity: Option<u32>,
+    /// Worker threads of each process.
+    pub threads: Threads,
+    /// Lattice convention.
+    pub lattice: Lattice,
+    /// Fluid particles that leave this box are removed; `None`: the box of all shapes, widened by its own size.
+    pub domain: Option<Block>,
+}
+
+/// Worker threads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Threads {
+    /// Of the fluid process.
+    pub fluid: usize,
+    /// Of the solid process.
+    pub solid: usize,
+}
