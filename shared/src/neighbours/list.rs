@@ -1,0 +1,155 @@
+//! Neighbour lists for clusters of four consecutive slots.
+
+use super::Rows;
+use crate::lane::LANES;
+use rayon::prelude::*;
+
+/// Clusters that one task works on.
+pub const CHUNK_CLUSTERS: usize = 128;
+
+/// For each cluster of targets the sources within reach of any of its four, in slot order.
+#[derive(Clone, Debug, Default)]
+pub struct ClusterList {
+    chunks: Vec<Chunk>,
+    clusters: usize,
+}
+
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Chunk {
+    start: Vec<u32>,
+    index: Vec<u32>,
+}
+
+impl Chunk {
+    /// Neighbours of the chunk's cluster number `k`.
+    #[inline(always)]
+    pub(crate) fn of(&self, k: usize) -> &[u32] {
+        &self.index[self.start[k] as usize..self.start[k + 1] as usize]
+    }
+}
+
+impl ClusterList {
+    /// Lists all sources within `reach` of the targets. Both sets are sorted; `rows` is the order of the sources.
+    pub fn build<const D: usize>(
+        &mut self,
+        targets: &[Vec<f64>; D],
+        sources: &[Vec<f64>; D],
+        rows: &Rows<D>,
+        reach: f64,
+    ) {
+        self.clusters = targets[0].len() / LANES;
+        self.chunks.resize_with(self.clusters.div_ceil(CHUNK_CLUSTERS), Chunk::default);
+        let clusters = self.clusters;
+        self.chunks.par_iter_mut().enumerate().for_each(|(c, chunk)| {
+            let first = c * CHUNK_CLUSTERS;
+            let last = (first + CHUNK_CLUSTERS).min(clusters);
+            if chunk.index.capacity() == 0 {
+                // Enough for a dense packing, so that a later rebuild does not allocate.
+                chunk.start.reserve(CHUNK_CLUSTERS + 1);
+                chunk.index.reserve(CHUNK_CLUSTERS * 64);
+            }
+            chunk.start.clear();
+            chunk.index.clear();
+            chunk.start.push(0);
+            for cluster in first..last {
+                push_neighbours(cluster * LANES, targets, sources, rows, reach, &mut chunk.index);
+                chunk.start.push(chunk.index.len() as u32);
+            }
+        });
+    }
+
+    /// Number of clusters.
+    pub fn clusters(&self) -> usize {
+        self.clusters
+    }
+
+    /// No cluster has any neighbour.
+    pub fn is_empty(&self) -> bool {
+        self.chunks.iter().all(|c| c.index.is_empty())
+    }
+
+    /// Listed pairs (four targets each).
+    pub fn entries(&self) -> usize {
+        self.chunks.iter().map(|c| c.index.len()).sum()
+    }
+
+    pub(crate) fn chunks(&self) -> &[Chunk] {
+        &self.chunks
+    }
+
+    /// Neighbours of a cluster.
+    pub fn of(&self, cluster: usize) -> &[u32] {
+        self.chunks[cluster / CHUNK_CLUSTERS].of(cluster % CHUNK_CLUSTERS)
+    }
+
+    /// Allocated bytes.
+    pub fn bytes(&self) -> usize {
+        self.chunks.iter().map(|c| 4 * (c.start.capacity() + c.index.capacity())).sum()
+    }
+}
+
+fn push_neighbours<const D: usize>(
+    slot: usize,
+    targets: &[Vec<f64>; D],
+    sources: &[Vec<f64>; D],
+    rows: &Rows<D>,
+    reach: f64,
+    index: &mut Vec<u32>,
+) {
+    let i: [[f64; LANES]; D] = std::array::from_fn(|d| std::array::from_fn(|k| targets[d][slot + k]));
+    let low = std::array::from_fn(|d| i[d].iter().copied().fold(f64::INFINITY, f64::min));
+    let high = std::array::from_fn(|d| i[d].iter().copied().fold(f64::NEG_INFINITY, f64::max));
+    let reach2 = reach * reach;
+    rows.candidates(&sources[0], low, high, reach, |first, end| {
+        for j in first..end {
+            let mut r2 = [0.0; LANES];
+            for d in 0..D {
+                let xj = sources[d][j];
+                for k in 0..LANES {
+                    let dx = i[d][k] - xj;
+                    r2[k] += dx * dx;
+                }
+            }
+            if r2.iter().any(|&r2| r2 < reach2) {
+                index.push(j as u32);
+            }
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::neighbours::PADDING;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// The list holds every pair within reach, none twice, and no padding.
+        #[test]
+        fn every_pair_within_reach_is_listed(points in prop::collection::vec((0.0..4.0f64, 0.0..4.0f64), 1..120)) {
+            let mut x = [points.iter().map(|p| p.0).collect::<Vec<_>>(), points.iter().map(|p| p.1).collect()];
+            let mut id: Vec<u32> = (0..points.len() as u32).collect();
+            let mut rows = Rows::<2>::default();
+            rows.sort(&x, &id, 1.0, [0.0; 2], [4.0; 2]);
+            for column in &mut x {
+                rows.permute(column);
+            }
+            rows.permute_ids(&mut id);
+            let mut list = ClusterList::default();
+            list.build(&x, &x, &rows, 1.0);
+            for i in 0..id.len() {
+                let listed = list.of(i / LANES);
+                prop_assert!(listed.windows(2).all(|w| w[0] < w[1]));
+                for j in 0..id.len() {
+                    let r2 = (x[0][i] - x[0][j]).powi(2) + (x[1][i] - x[1][j]).powi(2);
+                    let is_listed = listed.contains(&(j as u32));
+                    if id[j] == PADDING {
+                        prop_assert!(!is_listed);
+                    } else if id[i] != PADDING && r2 < 1.0 {
+                        prop_assert!(is_listed, "{i} {j} {r2}");
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,266 @@
+//! Moving particles sorted into rows: slots of one row are consecutive and ascend in x.
+//!
+//! A row is a strip along x (2D) or a square column along x (3D). Each row is padded to whole clusters with copies of
+//! its last particle; a padding slot is never anybody's neighbour, so what becomes of it does not matter.
+
+use super::PADDING;
+use crate::lane::LANES;
+use std::cmp::Ordering;
+
+/// The order of one set of particles.
+#[derive(Clone, Debug, Default)]
+pub struct Rows<const D: usize> {
+    origin: Vec<f64>,
+    height: f64,
+    counts: Vec<usize>,
+    /// First slot of each row; one more entry at the end.
+    start: Vec<u32>,
+    /// Real particles of each row.
+    filled: Vec<u32>,
+    /// New slot -> old slot.
+    permutation: Vec<u32>,
+    keys: Vec<u32>,
+    sorted: Vec<u32>,
+    cursor: Vec<u32>,
+    scratch: Vec<f64>,
+    id_scratch: Vec<u32>,
+}
+
+impl<const D: usize> Rows<D> {
+    /// Sorts the particles of `x` whose `id` is not [`PADDING`] into rows of at least `height` inside the box
+    /// `[low, high]` (particles outside belong to the nearest row). Afterwards [`Rows::permute`] each column.
+    pub fn sort(&mut self, x: &[Vec<f64>; D], id: &[u32], height: f64, low: [f64; D], high: [f64; D]) {
+        let real = id.iter().filter(|&&i| i != PADDING).count();
+        self.lay_out(x, id, real, height, low, high);
+        let rows = self.start.len() - 1;
+
+        self.keys.clear();
+        self.filled.iter_mut().for_each(|f| *f = 0);
+        for slot in 0..id.len() {
+            let key = if id[slot] == PADDING {
+                u32::MAX
+            } else {
+                self.row_of(std::array::from_fn(|d| x[d][slot])) as u32
+            };
+            if key != u32::MAX {
+                self.filled[key as usize] += 1;
+            }
+            self.keys.push(key);
+        }
+        self.sorted.clear();
+        self.sorted.resize(real, 0);
+        self.cursor.clear();
+        let mut total = 0;
+        for row in 0..rows {
+            self.cursor.push(total);
+            total += self.filled[row];
+        }
+        for slot in 0..id.len() {
+            let key = self.keys[slot];
+            if key != u32::MAX {
+                let c = &mut self.cursor[key as usize];
+                self.sorted[*c as usize] = slot as u32;
+                *c += 1;
+            }
+        }
+        // Canonical order within a row: x, then the particle's number.
+        sort_rows(&self.filled, &mut self.sorted, &|a, b| {
+            x[0][a as usize].total_cmp(&x[0][b as usize]).then(id[a as usize].cmp(&id[b as usize]))
+        });
+
+        self.permutation.clear();
+        let mut from = 0;
+        for row in 0..rows {
+            self.start[row] = self.permutation.len() as u32;
+            let n = self.filled[row] as usize;
+            self.permutation.extend_from_slice(&self.sorted[from..from + n]);
+            from += n;
+            if n > 0 {
+                let last = self.sorted[from - 1];
+                let padded = n.next_multiple_of(LANES);
+                self.permutation.extend(std::iter::repeat_n(last, padded - n));
+            }
+        }
+        self.start[rows] = self.permutation.len() as u32;
+    }
+
+    fn lay_out(
+        &mut self,
+        x: &[Vec<f64>; D],
+        id: &[u32],
+        real: usize,
+        height: f64,
+        low: [f64; D],
+        high: [f64; D],
+    ) {
+        self.origin.clear();
+        self.counts.clear();
+        self.height = height;
+        let mut extent = [0.0; D];
+        for d in 1..D {
+            let (mut a, mut b) = (f64::INFINITY, f64::NEG_INFINITY);
+            for slot in 0..id.len() {
+                if id[slot] != PADDING {
+                    a = a.min(x[d][slot]);
+                    b = b.max(x[d][slot]);
+                }
+            }
+            let a = a.clamp(low[d], high[d]);
+            let b = b.clamp(low[d], high[d]);
+            self.origin.push(a);
+            extent[d] = (b - a).max(0.0);
+        }
+        // Wider rows are as right as narrow ones: no more rows than the particles are worth.
+        loop {
+            self.counts.clear();
+            let mut rows = 1.0;
+            for d in 1..D {
+                let n = (extent[d] / self.height).floor() + 1.0;
+                rows *= n;
+                self.counts.push(n as usize);
+            }
+            if rows <= (4 * real + 64) as f64 {
+                break;
+            }
+            self.height *= 2.0;
+        }
+        let rows: usize = self.counts.iter().product();
+        self.start.clear();
+        self.start.resize(rows + 1, 0);
+        self.filled.clear();
+        self.filled.resize(rows, 0);
+    }
+
+    #[inline]
+    fn coordinate(&self, d: usize, value: f64) -> usize {
+        let k = ((value - self.origin[d - 1]) / self.height).floor();
+        // NaN becomes row 0; bounds are checked elsewhere.
+        (k.max(0.0) as usize).min(self.counts[d - 1] - 1)
+    }
+
+    fn row_of(&self, x: [f64; D]) -> usize {
+        let mut row = 0;
+        for d in (1..D).rev() {
+            row = row * self.counts[d - 1] + self.coordinate(d, x[d]);
+        }
+        row
+    }
+
+    /// Slots after the sort, padding included: a whole number of clusters.
+    pub fn slots(&self) -> usize {
+        self.permutation.len()
+    }
+
+    /// Brings a column into the new order.
+    pub fn permute(&mut self, column: &mut Vec<f64>) {
+        self.scratch.clear();
+        self.scratch.extend(self.permutation.iter().map(|&old| column[old as usize]));
+        std::mem::swap(column, &mut self.scratch);
+    }
+
+    /// Brings the particle numbers into the new order; padding slots get [`PADDING`].
+    pub fn permute_ids(&mut self, id: &mut Vec<u32>) {
+        self.id_scratch.clear();
+        self.id_scratch.extend(self.permutation.iter().map(|&old| id[old as usize]));
+        for row in 0..self.filled.len() {
+            let (a, b) = (self.start[row] as usize, self.start[row + 1] as usize);
+            self.id_scratch[a + self.filled[row] as usize..b].fill(PADDING);
+        }
+        std::mem::swap(id, &mut self.id_scratch);
+    }
+
+    /// Calls `visit(first, end)` for each run of real slots that can lie within `reach` of the box `[low, high]`; `x0` is
+    /// the sorted x column, unchanged since the sort.
+    #[inline]
+    pub fn candidates(
+        &self,
+        x0: &[f64],
+        low: [f64; D],
+        high: [f64; D],
+        reach: f64,
+        mut visit: impl FnMut(usize, usize),
+    ) {
+        if self.filled.is_empty() {
+            return;
+        }
+        let mut from = [0; D];
+        let mut to = [0; D];
+        for d in 1..D {
+            from[d] = self.coordinate(d, low[d] - reach);
+            to[d] = self.coordinate(d, high[d] + reach);
+        }
+        let mut at = from;
+        loop {
+            let mut row = 0;
+            for d in (1..D).rev() {
+                row = row * self.counts[d - 1] + at[d];
+            }
+            let first = self.start[row] as usize;
+            let part = &x0[first..first + self.filled[row] as usize];
+            let a = part.partition_point(|&v| v < low[0] - reach);
+            let b = a + part[a..].partition_point(|&v| v <= high[0] + reach);
+            if a < b {
+                visit(first + a, first + b);
+            }
+            let mut d = 1;
+            while d < D {
+                if at[d] < to[d] {
+                    at[d] += 1;
+                    break;
+                }
+                at[d] = from[d];
+                d += 1;
+            }
+            if d >= D {
+                return;
+            }
+        }
+    }
+}
+
+/// Sorts each row by itself, rows in parallel, without allocating.
+fn sort_rows(filled: &[u32], slots: &mut [u32], order: &(impl Fn(u32, u32) -> Ordering + Sync)) {
+    if filled.len() <= 1 || slots.len() <= 4096 {
+        let mut rest = slots;
+        for &n in filled {
+            let (row, tail) = rest.split_at_mut(n as usize);
+            row.sort_unstable_by(|&a, &b| order(a, b));
+            rest = tail;
+        }
+        return;
+    }
+    let (left, right) = filled.split_at(filled.len() / 2);
+    let (a, b) = slots.split_at_mut(left.iter().sum::<u32>() as usize);
+    rayon::join(|| sort_rows(left, a, order), || sort_rows(right, b, order));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_ascend_in_x_and_are_padded() {
+        // Two rows of height 1: y < 1 holds three particles, y >= 1 five.
+        let x = [vec![3.0, 1.0, 2.0, 9.0, 8.0, 7.0, 6.0, 5.0], vec![0.0, 0.1, 0.2, 1.1, 1.2, 1.3, 1.4, 1.5]];
+        let mut id: Vec<u32> = (10..18).collect();
+        let mut rows = Rows::<2>::default();
+        rows.sort(&x, &id, 1.0, [-1e3; 2], [1e3; 2]);
+        assert_eq!(rows.slots(), 4 + 8);
+        let mut x0 = x[0].clone();
+        rows.permute(&mut x0);
+        assert_eq!(x0, [1.0, 2.0, 3.0, 3.0, 5.0, 6.0, 7.0, 8.0, 9.0, 9.0, 9.0, 9.0]);
+        rows.permute_ids(&mut id);
+        assert_eq!(id, [11, 12, 10, PADDING, 17, 16, 15, 14, 13, PADDING, PADDING, PADDING]);
+    }
+
+    #[test]
+    fn particles_beyond_the_box_are_still_found() {
+        let x = [vec![0.0, 0.5], vec![1e9, 1e9]];
+        let id = vec![0, 1];
+        let mut rows = Rows::<2>::default();
+        rows.sort(&x, &id, 1.0, [-1.0; 2], [1.0; 2]);
+        let mut found = Vec::new();
+        rows.candidates(&x[0], [0.0, 1e9], [0.0, 1e9], 1.0, |a, b| found.push((a, b)));
+        assert_eq!(found, [(0, 2)]);
+    }
+}
