@@ -1,0 +1,3 @@
+//! Output.
+pub mod frame;
+pub use frame::{Frame, FramePoint};
