@@ -12,3 +12,9 @@ pub mod protocol;
 pub mod role;
 pub mod scene;
 pub mod state_equation;
+pub mod tensor;
+
+/// A vector of the scene's dimension as the three components of the wire and of files.
+pub fn wide<const D: usize>(v: [f64; D]) -> [f64; 3] {
+    std::array::from_fn(|d| if d < D { v[d] } else { 0.0 })
+}

@@ -9,7 +9,7 @@ mod phase_blind;
 mod side;
 
 pub use phase_blind::SolidRates;
-pub use side::Side;
+pub use side::{Side, wire_component};
 
 use crate::lane::{Isa, LANES, Lane};
 use crate::neighbours::{ClusterList, PADDING};

@@ -1,0 +1,83 @@
+//! Diffusion of density: + delta h c0 sum_j m_j / rho_j psi_ij . grad W on the density's rate, fluid pairs only.
+//!
+//! With grad W = F x_ij, psi_ij . grad W is F times
+//! - simple (Molteni and Colagrossi 2009): 2 (rho_i - rho_j);
+//! - hydrostatic (Fourtakas et al. 2019, linearised): 2 (rho_i - rho_j - rho0 g . x_ij / c0²);
+//! - delta-SPH (Antuono et al. 2010; Marrone et al. 2011, Kayaki's eqs. 18 to 21):
+//!   2 (rho_i - rho_j) - (<grad rho>_i + <grad rho>_j) . x_ij, with the renormalised gradient of
+//!   [`crate::density_gradient`]. (Printed with a difference of the gradients in Kayaki's eq. (19); only the sum cancels a
+//!   linear field.)
+
+use crate::rates::{FluidPair, PairEffect, PairRates};
+use halfstep_shared::lane::{Arch, Lane};
+use halfstep_shared::pair::dot;
+
+/// delta h c0, m²/s.
+#[derive(Clone, Copy, Debug)]
+pub struct Strength(pub f64);
+
+/// Molteni and Colagrossi.
+#[derive(Clone, Copy, Debug)]
+pub struct Simple(pub Strength);
+
+/// Fourtakas.
+#[derive(Clone, Copy, Debug)]
+pub struct Hydrostatic<const D: usize> {
+    /// delta h c0.
+    pub strength: Strength,
+    /// rho0 g / c0²: the density gradient at rest, kg/m⁴.
+    pub gradient: [f64; D],
+}
+
+/// Antuono, Marrone.
+#[derive(Clone, Copy, Debug)]
+pub struct DeltaSph<'a, const D: usize> {
+    /// delta h c0.
+    pub strength: Strength,
+    /// Renormalised density gradient of each slot, kg/m⁴.
+    pub gradient: &'a [Vec<f64>; D],
+}
+
+#[inline(always)]
+fn diffuse<const D: usize, A: Arch>(strength: Strength, psi: Lane, rates: &mut PairRates<D>) {
+    rates.density = A::mul_add(Lane::splat(strength.0), psi, rates.density);
+}
+
+#[inline(always)]
+fn twice_difference<const D: usize>(pair: &FluidPair<D>) -> Lane {
+    Lane::splat(2.0) * (pair.density_i - pair.density_j)
+}
+
+impl<const D: usize> PairEffect<D> for Simple {
+    type Own = ();
+    #[inline(always)]
+    fn own(&self, _: usize) {}
+    #[inline(always)]
+    fn add<A: Arch>(&self, _: &(), _: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
+        diffuse::<D, A>(self.0, twice_difference(pair), rates);
+    }
+}
+
+impl<const D: usize> PairEffect<D> for Hydrostatic<D> {
+    type Own = ();
+    #[inline(always)]
+    fn own(&self, _: usize) {}
+    #[inline(always)]
+    fn add<A: Arch>(&self, _: &(), _: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
+        let rest = dot::<D, A>(self.gradient.map(|g| Lane::splat(2.0 * g)), pair.dx);
+        diffuse::<D, A>(self.strength, twice_difference(pair) - rest, rates);
+    }
+}
+
+impl<const D: usize> PairEffect<D> for DeltaSph<'_, D> {
+    type Own = [Lane; D];
+    #[inline(always)]
+    fn own(&self, slot: usize) -> [Lane; D] {
+        std::array::from_fn(|d| Lane::load(&self.gradient[d], slot))
+    }
+    #[inline(always)]
+    fn add<A: Arch>(&self, own: &[Lane; D], j: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
+        let sum: [Lane; D] = std::array::from_fn(|d| own[d] + Lane::splat(self.gradient[d][j]));
+        diffuse::<D, A>(self.strength, twice_difference(pair) - dot::<D, A>(sum, pair.dx), rates);
+    }
+}

@@ -1,0 +1,174 @@
+//! The fluid's side of the interface: which particles it publishes, and what the solid does to them.
+
+use crate::columns::Columns;
+use halfstep_shared::interface::{Interface, Parameters};
+use halfstep_shared::neighbours::{PADDING, Rows};
+use halfstep_shared::protocol::StateRecord;
+use halfstep_shared::role::CoverageError;
+
+/// State of the coupling.
+pub struct Coupling<const D: usize> {
+    interface: Interface<D>,
+    /// Slots of the published particles, by ascending particle number.
+    slots: Vec<u32>,
+    /// Solid positions when the set was chosen.
+    chosen_at: Vec<[f64; D]>,
+    epoch: u64,
+    reach: f64,
+    skin: f64,
+    rows: Rows<D>,
+    sorted: [Vec<f64>; D],
+    order: Vec<u32>,
+    gap: f64,
+}
+
+impl<const D: usize> Coupling<D> {
+    /// With the parameters of a scene that has both phases.
+    pub fn new(parameters: Parameters<D>) -> Self {
+        let h = parameters.smoothing_length;
+        Self {
+            interface: Interface::new(parameters),
+            slots: Vec::new(),
+            chosen_at: Vec::new(),
+            epoch: 0,
+            reach: 2.0 * h,
+            skin: 0.6 * h,
+            rows: Rows::default(),
+            sorted: std::array::from_fn(|_| Vec::new()),
+            order: Vec::new(),
+            gap: f64::INFINITY,
+        }
+    }
+
+    /// The present set's number.
+    pub fn epoch(&self) -> u64 {
+        self.epoch
+    }
+
+    /// Smallest distance between the phases, m.
+    pub fn gap(&self) -> f64 {
+        self.gap
+    }
+
+    fn solid_displacement(&self, peer: &[StateRecord]) -> f64 {
+        if peer.len() != self.chosen_at.len() {
+            return f64::INFINITY;
+        }
+        let mut largest = 0.0_f64;
+        for (r, x0) in peer.iter().zip(&self.chosen_at) {
+            let r2: f64 = (0..D).map(|d| (r.position[d] - x0[d]).powi(2)).sum();
+            largest = largest.max(r2);
+        }
+        largest.sqrt()
+    }
+
+    /// The set must be chosen anew although the fluid was not sorted.
+    pub fn is_stale(&self, peer: &[StateRecord]) -> bool {
+        self.solid_displacement(peer) > 0.3 * self.skin
+    }
+
+    /// Chooses the particles within reach of the solid as last received, with a margin for what moves meanwhile.
+    pub fn choose(&mut self, fluid: &Columns<D>, peer: &[StateRecord]) {
+        self.epoch += 1;
+        self.chosen_at.clear();
+        self.chosen_at.extend(peer.iter().map(|r| std::array::from_fn(|d| r.position[d])));
+        self.order.clear();
+        self.order.extend(0..peer.len() as u32);
+        let (mut low, mut high) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
+        for d in 0..D {
+            self.sorted[d].clear();
+            self.sorted[d].extend(self.chosen_at.iter().map(|x| x[d]));
+            for &x in &self.sorted[d] {
+                low[d] = low[d].min(x);
+                high[d] = high[d].max(x);
+            }
+        }
+        self.slots.clear();
+        if peer.is_empty() {
+            return;
+        }
+        let reach = self.reach + self.skin;
+        self.rows.sort(&self.sorted, &self.order, reach, low, high);
+        for column in &mut self.sorted {
+            self.rows.permute(column);
+        }
+        for slot in 0..fluid.slots() {
+            if fluid.id[slot] == PADDING {
+                continue;
+            }
+            let x: [f64; D] = std::array::from_fn(|d| fluid.now.position[d][slot]);
+            if (0..D).any(|d| x[d] < low[d] - reach || x[d] > high[d] + reach) {
+                continue;
+            }
+            let mut near = false;
+            self.rows.candidates(&self.sorted[0], x, x, reach, |first, end| {
+                near |= (first..end).any(|s| {
+                    let r2: f64 = (0..D).map(|d| (x[d] - self.sorted[d][s]).powi(2)).sum();
+                    r2 < reach * reach
+                });
+            });
+            if near {
+                self.slots.push(slot as u32);
+            }
+        }
+        self.slots.sort_unstable_by_key(|&s| fluid.id[s as usize]);
+    }
+
+    /// The record of the present state.
+    pub fn record(&self, fluid: &Columns<D>, out: &mut Vec<StateRecord>) {
+        out.clear();
+        for &slot in &self.slots {
+            let s = slot as usize;
+            let mut r = StateRecord {
+                id: fluid.id[s],
+                density: fluid.now.density[s],
+                pressure: fluid.pressure[s],
+                mass: fluid.now.mass,
+                ..StateRecord::default()
+            };
+            for d in 0..D {
+                r.position[d] = fluid.now.position[d][s];
+                r.velocity[d] = fluid.now.velocity[d][s];
+            }
+            out.push(r);
+        }
+    }
+
+    /// Adds what the solid does to the fluid's rates.
+    ///
+    /// # Errors
+    /// The set may lack a particle within reach of the solid.
+    pub fn add_rates(
+        &mut self,
+        fluid: &mut Columns<D>,
+        own: &[StateRecord],
+        peer: &[StateRecord],
+        fluid_displacement: f64,
+    ) -> Result<(), CoverageError> {
+        let solid = self.solid_displacement(peer);
+        if fluid_displacement + solid > self.skin {
+            return Err(CoverageError { fluid: fluid_displacement, solid, allowed: self.skin });
+        }
+        self.interface.update(own, peer, self.epoch);
+        let slots = &self.slots;
+        self.interface.act_on_fluid(|record, acceleration, density_rate| {
+            let slot = slots[record] as usize;
+            for d in 0..D {
+                fluid.acceleration[d][slot] += acceleration[d];
+            }
+            fluid.density_rate[slot] += density_rate;
+        });
+        self.gap = self.interface.smallest_distance();
+        Ok(())
+    }
+
+    /// Slots of the published particles.
+    pub fn slots(&self) -> &[u32] {
+        &self.slots
+    }
+
+    /// Pairs listed between the phases, four targets each.
+    pub fn pairs(&self) -> usize {
+        4 * (self.interface.fluid_list.entries() + self.interface.solid_list.entries())
+    }
+}

@@ -1,0 +1,143 @@
+//! Probes, integral quantities, output and hash of the fluid.
+
+use crate::fluid::Fluid;
+use halfstep_shared::neighbours::PADDING;
+use halfstep_shared::output::{Frame, FramePoint};
+use halfstep_shared::protocol::MAX_PROBE_VALUES;
+use halfstep_shared::role::audit;
+use halfstep_shared::scene::{Phase, ProbeKind};
+use halfstep_shared::wide;
+use xxhash_rust::xxh3::Xxh3;
+
+impl<const D: usize> Fluid<D> {
+    fn real_slots(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.columns.slots()).filter(|&s| self.columns.id[s] != PADDING)
+    }
+
+    fn position(&self, slot: usize) -> [f64; D] {
+        std::array::from_fn(|d| self.columns.now.position[d][slot])
+    }
+
+    fn speed_squared(&self, slot: usize) -> f64 {
+        (0..D).map(|d| self.columns.now.velocity[d][slot].powi(2)).sum()
+    }
+
+    fn kinetic_energy(&self) -> f64 {
+        0.5 * self.columns.now.mass * self.real_slots().map(|s| self.speed_squared(s)).sum::<f64>()
+    }
+
+    /// Kernel average of the fluid's pressure at a point; 0 where there is no fluid within 2h.
+    fn pressure_at(&self, at: [f64; D]) -> f64 {
+        let h = self.smoothing_length;
+        let (mut sum, mut weight) = (0.0, 0.0);
+        self.rows.candidates(&self.columns.reference[0], at, at, 2.0 * h + self.skin, |first, end| {
+            for s in first..end {
+                let x = self.position(s);
+                let r2: f64 = (0..D).map(|d| (x[d] - at[d]).powi(2)).sum();
+                if r2 < 4.0 * h * h {
+                    let w = halfstep_shared::kernel::value_at::<D>(self.kernel, h, r2.sqrt());
+                    // Extrapolated along gravity, as toward a wall: exact at rest.
+                    let head: f64 = (0..D).map(|d| self.gravity[d] * (at[d] - x[d])).sum();
+                    sum += w * (self.columns.pressure[s] + self.columns.now.density[s] * head);
+                    weight += w;
+                }
+            }
+        });
+        if weight > 0.0 { sum / weight } else { 0.0 }
+    }
+
+    /// Values of the fluid's probes.
+    pub(crate) fn measure(&self, out: &mut [f64; MAX_PROBE_VALUES]) -> usize {
+        let mut n = 0;
+        let mut put = |value: f64| {
+            out[n] = value;
+            n += 1;
+        };
+        let half = 0.5 * self.resolution;
+        for probe in &self.probes {
+            match *probe {
+                ProbeKind::Pressure { at } => put(self.pressure_at(std::array::from_fn(|d| at[d]))),
+                ProbeKind::WaterLevel { x } => put(self
+                    .real_slots()
+                    .filter(|&s| (self.columns.now.position[0][s] - x).abs() <= 2.0 * half)
+                    .map(|s| self.columns.now.position[1][s] + half)
+                    .fold(0.0, f64::max)),
+                ProbeKind::Front => put(self
+                    .real_slots()
+                    .map(|s| self.columns.now.position[0][s] + half)
+                    .fold(f64::NEG_INFINITY, f64::max)),
+                ProbeKind::KineticEnergy { phase: Phase::Fluid } => put(self.kinetic_energy()),
+                ProbeKind::Centroid { phase: Phase::Fluid } => {
+                    let count = self.columns.particles.max(1) as f64;
+                    for d in 0..D {
+                        put(self.real_slots().map(|s| self.columns.now.position[d][s]).sum::<f64>() / count);
+                    }
+                }
+                _ => {}
+            }
+        }
+        n
+    }
+
+    pub(crate) fn audit_values(&self) -> [f64; 8] {
+        let mass = self.columns.now.mass;
+        let mut values = [0.0; 8];
+        for d in 0..D {
+            values[audit::MOMENTUM + d] =
+                mass * self.real_slots().map(|s| self.columns.now.velocity[d][s]).sum::<f64>();
+        }
+        values[audit::KINETIC_ENERGY] = self.kinetic_energy();
+        values[audit::MASS] = mass * self.columns.particles as f64;
+        values[audit::DENSITY_ERROR] = self
+            .real_slots()
+            .map(|s| (self.columns.now.density[s] / self.state.density - 1.0).abs())
+            .fold(0.0, f64::max);
+        values[audit::GAP] = self.coupling.as_ref().map_or(f64::INFINITY, |c| c.gap()) / self.resolution;
+        values[audit::REMOVED] = self.removed as f64;
+        values
+    }
+
+    pub(crate) fn copy_to(&self, time: f64, frame: &mut Frame) {
+        frame.clear();
+        frame.time = time;
+        let c = &self.columns;
+        for s in self.real_slots() {
+            frame.push(FramePoint {
+                position: wide(self.position(s)),
+                velocity: wide(std::array::from_fn::<_, D, _>(|d| c.now.velocity[d][s])),
+                density: c.now.density[s],
+                pressure: c.pressure[s],
+                stress: [0.0; 6],
+                phase: Phase::Fluid,
+                id: c.id[s],
+            });
+        }
+        let Some(walls) = &self.walls else { return };
+        for s in (0..walls.slots()).filter(|&s| walls.id[s] != PADDING) {
+            frame.push(FramePoint {
+                position: wide(std::array::from_fn::<_, D, _>(|d| walls.shown.position[d][s])),
+                velocity: [0.0; 3],
+                density: walls.shown.density[s],
+                pressure: walls.pressure[s],
+                stress: [0.0; 6],
+                phase: Phase::Wall,
+                id: walls.id[s],
+            });
+        }
+    }
+
+    pub(crate) fn hash(&self) -> u64 {
+        let mut slots: Vec<usize> = self.real_slots().collect();
+        slots.sort_unstable_by_key(|&s| self.columns.id[s]);
+        let mut hash = Xxh3::new();
+        for s in slots {
+            hash.update(&self.columns.id[s].to_le_bytes());
+            for d in 0..D {
+                hash.update(&self.columns.now.position[d][s].to_le_bytes());
+                hash.update(&self.columns.now.velocity[d][s].to_le_bytes());
+            }
+            hash.update(&self.columns.now.density[s].to_le_bytes());
+        }
+        hash.digest()
+    }
+}

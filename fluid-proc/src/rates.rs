@@ -1,0 +1,179 @@
+//! The one pass that gives acceleration and density rate: pressure, continuity and whatever effects the scene calls for.
+
+use crate::columns::Shown;
+use crate::momentum::pressure_and_continuity;
+use halfstep_shared::kernel::Kernel;
+use halfstep_shared::lane::{Arch, LANES, Lane};
+use halfstep_shared::pair::{PairLaw, distance, dot};
+
+/// One particle with one of its neighbours, four times.
+#[derive(Clone, Copy, Debug)]
+pub struct FluidPair<const D: usize> {
+    /// x_i - x_j, m.
+    pub dx: [Lane; D],
+    /// |x_ij|², m².
+    pub r2: Lane,
+    /// v_i - v_j, m/s.
+    pub dv: [Lane; D],
+    /// v_ij . x_ij, m²/s.
+    pub approach: Lane,
+    /// rho_i, kg/m³.
+    pub density_i: Lane,
+    /// rho_j, kg/m³.
+    pub density_j: Lane,
+    /// p_i / rho_i².
+    pub pressure_term_i: Lane,
+    /// p_j / rho_j².
+    pub pressure_term_j: Lane,
+}
+
+/// What a pair adds: `bracket` times m_j F x_ij and `vector` times m_j F to the acceleration, `density` times
+/// m_j / rho_j F to the density's rate.
+#[derive(Clone, Copy, Debug)]
+pub struct PairRates<const D: usize> {
+    /// Scalar bracket of the momentum equation.
+    pub bracket: Lane,
+    /// Density's rate.
+    pub density: Lane,
+    /// Vector part of the acceleration; left out where no effect has one.
+    pub vector: [Lane; D],
+}
+
+/// An effect in the pair pass. An absent effect is `()`; several are a tuple.
+pub trait PairEffect<const D: usize>: Copy + Send + Sync {
+    /// What it loads of four targets before their neighbours are visited.
+    type Own: Copy;
+    /// It adds to [`PairRates::vector`].
+    const VECTOR: bool = false;
+    /// Loads the targets at `slot..slot + 4`.
+    fn own(&self, slot: usize) -> Self::Own;
+    /// Adds the share of source `j`.
+    fn add<A: Arch>(&self, own: &Self::Own, j: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>);
+}
+
+impl<const D: usize> PairEffect<D> for () {
+    type Own = ();
+    #[inline(always)]
+    fn own(&self, _: usize) {}
+    #[inline(always)]
+    fn add<A: Arch>(&self, _: &(), _: usize, _: &FluidPair<D>, _: &mut PairRates<D>) {}
+}
+
+impl<const D: usize, E: PairEffect<D>, F: PairEffect<D>, G: PairEffect<D>> PairEffect<D> for (E, F, G) {
+    type Own = (E::Own, F::Own, G::Own);
+    const VECTOR: bool = E::VECTOR || F::VECTOR || G::VECTOR;
+    #[inline(always)]
+    fn own(&self, slot: usize) -> Self::Own {
+        (self.0.own(slot), self.1.own(slot), self.2.own(slot))
+    }
+    #[inline(always)]
+    fn add<A: Arch>(&self, own: &Self::Own, j: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
+        self.0.add::<A>(&own.0, j, pair, rates);
+        self.1.add::<A>(&own.1, j, pair, rates);
+        self.2.add::<A>(&own.2, j, pair, rates);
+    }
+}
+
+/// Sums of the pass for four particles.
+#[derive(Clone, Copy, Debug)]
+pub struct RateSum<const D: usize> {
+    /// Acceleration, m/s².
+    pub acceleration: [Lane; D],
+    /// Rate of density, kg/(m³ s).
+    pub density_rate: Lane,
+}
+
+impl<const D: usize> Default for RateSum<D> {
+    fn default() -> Self {
+        Self { acceleration: [Lane::ZERO; D], density_rate: Lane::ZERO }
+    }
+}
+
+/// The law of the pass: targets and sources may be the same set, or fluid and walls.
+pub struct RateLaw<'a, K, E, const D: usize> {
+    /// Kernel.
+    pub kernel: K,
+    /// Effects beside pressure and continuity.
+    pub effects: E,
+    /// Particles whose rates are wanted.
+    pub targets: &'a Shown<D>,
+    /// Their neighbours.
+    pub sources: &'a Shown<D>,
+}
+
+/// What the law loads of four targets.
+#[derive(Clone, Copy)]
+pub struct Target<O, const D: usize> {
+    position: [Lane; D],
+    velocity: [Lane; D],
+    density: Lane,
+    pressure_term: Lane,
+    own: O,
+}
+
+impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for RateLaw<'_, K, E, D> {
+    type Target = Target<E::Own, D>;
+    type Sum = RateSum<D>;
+
+    #[inline(always)]
+    fn target(&self, slot: usize) -> Self::Target {
+        Target {
+            position: std::array::from_fn(|d| Lane::load(&self.targets.position[d], slot)),
+            velocity: std::array::from_fn(|d| Lane::load(&self.targets.velocity[d], slot)),
+            density: Lane::load(&self.targets.density, slot),
+            pressure_term: Lane::load(&self.targets.pressure_term, slot),
+            own: self.effects.own(slot),
+        }
+    }
+
+    #[inline(always)]
+    fn target_position(&self, target: &Self::Target) -> [Lane; D] {
+        target.position
+    }
+
+    #[inline(always)]
+    fn source_position(&self, j: usize) -> [f64; D] {
+        std::array::from_fn(|d| self.sources.position[d][j])
+    }
+
+    #[inline(always)]
+    fn add<A: Arch>(&self, i: &Self::Target, j: usize, dx: [Lane; D], r2: Lane, sum: &mut RateSum<D>) {
+        let s = self.sources;
+        let f = self.kernel.gradient_over_r::<A>(distance(r2, self.kernel.smoothing_length()));
+        let dv = std::array::from_fn(|d| i.velocity[d] - Lane::splat(s.velocity[d][j]));
+        let pair = FluidPair {
+            dx,
+            r2,
+            dv,
+            approach: dot::<D, A>(dv, dx),
+            density_i: i.density,
+            density_j: Lane::splat(s.density[j]),
+            pressure_term_i: i.pressure_term,
+            pressure_term_j: Lane::splat(s.pressure_term[j]),
+        };
+        let mut rates = pressure_and_continuity(&pair);
+        self.effects.add::<A>(&i.own, j, &pair, &mut rates);
+        let mf = Lane::splat(s.mass) * f;
+        let bracket = mf * rates.bracket;
+        for d in 0..D {
+            sum.acceleration[d] = A::mul_add(bracket, dx[d], sum.acceleration[d]);
+            if E::VECTOR {
+                sum.acceleration[d] = A::mul_add(mf, rates.vector[d], sum.acceleration[d]);
+            }
+        }
+        sum.density_rate = A::mul_add(Lane::splat(s.volume[j]) * f, rates.density, sum.density_rate);
+    }
+}
+
+/// Adds the sums of a pass to columns.
+pub fn scatter<const D: usize>(sums: &[RateSum<D>], acceleration: &mut [Vec<f64>; D], density_rate: &mut [f64]) {
+    for (c, sum) in sums.iter().enumerate() {
+        for k in 0..LANES {
+            let slot = c * LANES + k;
+            for d in 0..D {
+                acceleration[d][slot] += sum.acceleration[d].0[k];
+            }
+            density_rate[slot] += sum.density_rate.0[k];
+        }
+    }
+}

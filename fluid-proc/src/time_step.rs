@@ -1,0 +1,53 @@
+//! The fluid's stability limits (Monaghan 1992; Morris 1997):
+//!   cfl h / (c0 + v),  0.25 sqrt(h / |a|),  0.125 h² rho / mu,
+//! v and a the largest speed and acceleration. With phase-blind coupling also 0.8 h rho_ij / (C c_ij max(rho_f, rho_s)):
+//! the cross-phase viscosity acts on the lighter side with the heavier's mass. With the moving wall and a light solid
+//! the first is divided by sqrt(rho_f / rho_s).
+
+use halfstep_shared::scene::{Scene, Treatment};
+
+/// The limits that do not change during a run, and the factors of those that do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    courant: f64,
+    smoothing_length: f64,
+    sound_speed: f64,
+    fixed: f64,
+}
+
+impl Limits {
+    /// From a scene with fluid.
+    pub fn new(scene: &Scene) -> Self {
+        let h = scene.smoothing_ratio * scene.resolution;
+        let mut limits = Self {
+            courant: scene.numerics.cfl,
+            smoothing_length: h,
+            sound_speed: 0.0,
+            fixed: f64::INFINITY,
+        };
+        let Some(fluid) = &scene.fluid else { return limits };
+        limits.sound_speed = fluid.sound_speed;
+        if fluid.viscosity > 0.0 {
+            limits.fixed = 0.125 * h * h * fluid.density / fluid.viscosity;
+        }
+        let Some(solid) = &scene.solid else { return limits };
+        match scene.interface.treatment {
+            Treatment::MovingWall => limits.courant /= (fluid.density / solid.density).sqrt().max(1.0),
+            Treatment::PhaseBlind => {
+                let c = scene.interface.cross_viscosity * 0.5 * (fluid.sound_speed + solid.sound_speed());
+                let mean = 0.5 * (fluid.density + solid.density);
+                if c > 0.0 {
+                    limits.fixed = limits.fixed.min(0.8 * h * mean / (c * fluid.density.max(solid.density)));
+                }
+            }
+        }
+        limits
+    }
+
+    /// Largest time step for these largest speed and acceleration, s.
+    pub fn time_step(&self, speed: f64, acceleration: f64) -> f64 {
+        let courant = self.courant * self.smoothing_length / (self.sound_speed + speed);
+        let force = if acceleration > 0.0 { 0.25 * (self.smoothing_length / acceleration).sqrt() } else { f64::INFINITY };
+        courant.min(force).min(self.fixed)
+    }
+}

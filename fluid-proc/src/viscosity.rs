@@ -1,0 +1,161 @@
+//! Physical viscosity, Kayaki's eqs. (4) and (22): the viscous stress
+//!   tau_ab = mu (dv_a/dx_b + dv_b/dx_a - 2/3 delta_ab div v)
+//! of each particle from a first pass, then (tau_i / rho_i² + tau_j / rho_j²) . grad W in the momentum equation. A wall
+//! particle takes part in the gradient with the velocity it shows and repeats the stress of its fluid neighbour.
+
+use crate::columns::{Shown, Vectors, vectors};
+use crate::rates::{FluidPair, PairEffect, PairRates};
+use halfstep_shared::kernel::Kernel;
+use halfstep_shared::lane::{Arch, LANES, Lane};
+use halfstep_shared::pair::{PairLaw, distance};
+
+/// tau_ab / rho² of each slot; a <= b filled.
+#[derive(Clone, Debug)]
+pub struct StressTerm<const D: usize>(pub [Vectors<D>; D]);
+
+impl<const D: usize> Default for StressTerm<D> {
+    fn default() -> Self {
+        Self(std::array::from_fn(|_| vectors(0)))
+    }
+}
+
+/// dv_a / dx_b of four particles.
+#[derive(Clone, Copy, Debug)]
+pub struct VelocityGradient<const D: usize>(pub [[Lane; D]; D]);
+
+impl<const D: usize> Default for VelocityGradient<D> {
+    fn default() -> Self {
+        Self([[Lane::ZERO; D]; D])
+    }
+}
+
+/// The law of the first pass.
+pub struct GradientLaw<'a, K, const D: usize> {
+    /// Kernel.
+    pub kernel: K,
+    /// Fluid.
+    pub targets: &'a Shown<D>,
+    /// Fluid or walls.
+    pub sources: &'a Shown<D>,
+}
+
+impl<K: Kernel<D>, const D: usize> PairLaw<D> for GradientLaw<'_, K, D> {
+    type Target = ([Lane; D], [Lane; D]);
+    type Sum = VelocityGradient<D>;
+
+    #[inline(always)]
+    fn target(&self, slot: usize) -> Self::Target {
+        (
+            std::array::from_fn(|d| Lane::load(&self.targets.position[d], slot)),
+            std::array::from_fn(|d| Lane::load(&self.targets.velocity[d], slot)),
+        )
+    }
+    #[inline(always)]
+    fn target_position(&self, target: &Self::Target) -> [Lane; D] {
+        target.0
+    }
+    #[inline(always)]
+    fn source_position(&self, j: usize) -> [f64; D] {
+        std::array::from_fn(|d| self.sources.position[d][j])
+    }
+    #[inline(always)]
+    fn add<A: Arch>(
+        &self,
+        i: &Self::Target,
+        j: usize,
+        dx: [Lane; D],
+        r2: Lane,
+        sum: &mut VelocityGradient<D>,
+    ) {
+        let f = self.kernel.gradient_over_r::<A>(distance(r2, self.kernel.smoothing_length()));
+        let vf = Lane::splat(self.sources.volume[j]) * f;
+        for a in 0..D {
+            let row = vf * (Lane::splat(self.sources.velocity[a][j]) - i.1[a]);
+            for b in 0..D {
+                sum.0[a][b] = A::mul_add(row, dx[b], sum.0[a][b]);
+            }
+        }
+    }
+}
+
+impl<const D: usize> StressTerm<D> {
+    /// tau / rho² from the gradients summed over fluid and walls.
+    pub fn set(
+        &mut self,
+        viscosity: f64,
+        fluid: &[VelocityGradient<D>],
+        walls: &[VelocityGradient<D>],
+        density: &[f64],
+    ) {
+        for a in 0..D {
+            for b in a..D {
+                self.0[a][b].resize(density.len(), 0.0);
+            }
+        }
+        for slot in 0..density.len() {
+            let (c, k) = (slot / LANES, slot % LANES);
+            let gradient = |a: usize, b: usize| fluid[c].0[a][b].0[k] + walls.get(c).map_or(0.0, |w| w.0[a][b].0[k]);
+            let divergence: f64 = (0..D).map(|a| gradient(a, a)).sum();
+            let scale = viscosity / (density[slot] * density[slot]);
+            for a in 0..D {
+                for b in a..D {
+                    let isotropic = if a == b { 2.0 / 3.0 * divergence } else { 0.0 };
+                    self.0[a][b][slot] = scale * (gradient(a, b) + gradient(b, a) - isotropic);
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn load(&self, slot: usize) -> [[Lane; D]; D] {
+        std::array::from_fn(|a| std::array::from_fn(|b| Lane::load(&self.0[a.min(b)][a.max(b)], slot)))
+    }
+}
+
+#[inline(always)]
+fn add_stress<const D: usize, A: Arch>(
+    sum: impl Fn(usize, usize) -> Lane,
+    dx: &[Lane; D],
+    rates: &mut PairRates<D>,
+) {
+    for a in 0..D {
+        for b in 0..D {
+            rates.vector[a] = A::mul_add(sum(a, b), dx[b], rates.vector[a]);
+        }
+    }
+}
+
+/// The effect between fluid particles.
+#[derive(Clone, Copy, Debug)]
+pub struct Viscosity<'a, const D: usize>(pub &'a StressTerm<D>);
+
+impl<const D: usize> PairEffect<D> for Viscosity<'_, D> {
+    type Own = [[Lane; D]; D];
+    const VECTOR: bool = true;
+    #[inline(always)]
+    fn own(&self, slot: usize) -> Self::Own {
+        self.0.load(slot)
+    }
+    #[inline(always)]
+    fn add<A: Arch>(&self, own: &Self::Own, j: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
+        let other = |a: usize, b: usize| Lane::splat(self.0.0[a.min(b)][a.max(b)][j]);
+        add_stress::<D, A>(|a, b| own[a][b] + other(a, b), &pair.dx, rates);
+    }
+}
+
+/// The effect between fluid and wall.
+#[derive(Clone, Copy, Debug)]
+pub struct ViscosityAtWall<'a, const D: usize>(pub &'a StressTerm<D>);
+
+impl<const D: usize> PairEffect<D> for ViscosityAtWall<'_, D> {
+    type Own = [[Lane; D]; D];
+    const VECTOR: bool = true;
+    #[inline(always)]
+    fn own(&self, slot: usize) -> Self::Own {
+        self.0.load(slot)
+    }
+    #[inline(always)]
+    fn add<A: Arch>(&self, own: &Self::Own, _: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
+        add_stress::<D, A>(|a, b| own[a][b] + own[a][b], &pair.dx, rates);
+    }
+}

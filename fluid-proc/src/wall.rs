@@ -1,0 +1,201 @@
+//! Rigid walls toward the fluid (Adami, Hu and Adams 2012; Kayaki's eqs. 27 and 28).
+//!
+//! For wall particle w, sums over the fluid particles f around it with weights W_wf:
+//!   v~ = sum v_f W / sum W,   p_w = sum [ p_f + rho_f g . (x_w - x_f) ] W / sum W;
+//! the velocity shown to the fluid is 2 u_w - v~ along the normal and v~ (free slip) or 2 u_w - v~ (no slip) along the
+//! wall, u_w its own velocity; in a corner all components are reversed. The density shown is the equation of
+//! state's at p_w, the mass rho0 V. Without fluid around: p_w = 0, rho0, u_w.
+
+use crate::columns::{Columns, Shown, Vectors, vectors};
+use halfstep_shared::geometry::WallPoint;
+use halfstep_shared::kernel::Kernel;
+use halfstep_shared::lane::{Arch, LANES, Lane};
+use halfstep_shared::neighbours::Rows;
+use halfstep_shared::pair::{PairLaw, distance, dot};
+use halfstep_shared::state_equation::StateEquation;
+
+/// The wall particles, sorted once.
+#[derive(Clone, Debug)]
+pub struct Walls<const D: usize> {
+    /// Wall particle number of a slot, or padding.
+    pub id: Vec<u32>,
+    /// What the fluid sees.
+    pub shown: Shown<D>,
+    /// Pressure shown, Pa.
+    pub pressure: Vec<f64>,
+    /// Own velocity u_w, m/s.
+    own_velocity: Vectors<D>,
+    normal: Vectors<D>,
+    /// 1 where all components are reversed (corner or no slip), else 0.
+    reverse_all: Vec<f64>,
+    /// Order of the slots.
+    pub rows: Rows<D>,
+    non_negative: bool,
+}
+
+impl<const D: usize> Walls<D> {
+    /// Sorts the wall particles into rows of at least `height`.
+    pub fn new(
+        points: &[WallPoint<D>],
+        state: &StateEquation,
+        volume: f64,
+        height: f64,
+        non_negative: bool,
+    ) -> Self {
+        let n = points.len();
+        let mut walls = Self {
+            id: (0..n as u32).collect(),
+            shown: Shown::new(n, state.density * volume),
+            pressure: Vec::new(),
+            own_velocity: vectors(n),
+            normal: vectors(n),
+            reverse_all: vec![0.0; n],
+            rows: Rows::default(),
+            non_negative,
+        };
+        for (i, p) in points.iter().enumerate() {
+            for d in 0..D {
+                walls.shown.position[d][i] = p.position[d];
+                walls.own_velocity[d][i] = p.velocity[d];
+                walls.normal[d][i] = p.normal[d];
+            }
+            walls.reverse_all[i] = if p.corner || !p.free_slip { 1.0 } else { 0.0 };
+        }
+        let (low, high) = bounds(&walls.shown.position);
+        walls.rows.sort(&walls.shown.position, &walls.id, height, low, high);
+        for d in 0..D {
+            walls.rows.permute(&mut walls.shown.position[d]);
+            walls.rows.permute(&mut walls.own_velocity[d]);
+            walls.rows.permute(&mut walls.normal[d]);
+            walls.shown.velocity[d].clone_from(&walls.own_velocity[d]);
+        }
+        walls.rows.permute(&mut walls.reverse_all);
+        walls.rows.permute_ids(&mut walls.id);
+        let slots = walls.rows.slots();
+        walls.shown.density = vec![state.density; slots];
+        walls.shown.volume = vec![volume; slots];
+        walls.shown.pressure_term = vec![0.0; slots];
+        walls.pressure = vec![0.0; slots];
+        walls
+    }
+
+    /// Number of slots.
+    pub fn slots(&self) -> usize {
+        self.id.len()
+    }
+
+    /// What the walls show, from the sums over the fluid.
+    pub fn show(&mut self, sums: &[WallSum<D>], state: &StateEquation) {
+        let mass = self.shown.mass;
+        for (c, sum) in sums.iter().enumerate() {
+            for k in 0..LANES {
+                let slot = c * LANES + k;
+                let weight = sum.weight.0[k];
+                if weight <= 0.0 {
+                    self.show_nothing(slot, state);
+                    continue;
+                }
+                let u: [f64; D] = std::array::from_fn(|d| self.own_velocity[d][slot]);
+                let v: [f64; D] = std::array::from_fn(|d| sum.velocity[d].0[k] / weight);
+                let mut along_normal = 0.0;
+                for d in 0..D {
+                    along_normal += (v[d] - u[d]) * self.normal[d][slot];
+                }
+                for d in 0..D {
+                    self.shown.velocity[d][slot] = if self.reverse_all[slot] > 0.0 {
+                        2.0 * u[d] - v[d]
+                    } else {
+                        v[d] - 2.0 * along_normal * self.normal[d][slot]
+                    };
+                }
+                let mut pressure = sum.pressure.0[k] / weight;
+                if self.non_negative {
+                    pressure = pressure.max(0.0);
+                }
+                let density = state.density_at(pressure);
+                self.pressure[slot] = pressure;
+                self.shown.density[slot] = density;
+                self.shown.volume[slot] = mass / density;
+                self.shown.pressure_term[slot] = pressure / (density * density);
+            }
+        }
+    }
+
+    fn show_nothing(&mut self, slot: usize, state: &StateEquation) {
+        if self.pressure[slot] != 0.0 {
+            self.pressure[slot] = 0.0;
+            self.shown.density[slot] = state.density;
+            self.shown.volume[slot] = self.shown.mass / state.density;
+            self.shown.pressure_term[slot] = 0.0;
+        }
+        for d in 0..D {
+            self.shown.velocity[d][slot] = self.own_velocity[d][slot];
+        }
+    }
+}
+
+/// Bounding box of columns; zero where they are empty.
+pub fn bounds<const D: usize>(x: &Vectors<D>) -> ([f64; D], [f64; D]) {
+    if x[0].is_empty() {
+        return ([0.0; D], [0.0; D]);
+    }
+    (
+        std::array::from_fn(|d| x[d].iter().copied().fold(f64::INFINITY, f64::min)),
+        std::array::from_fn(|d| x[d].iter().copied().fold(f64::NEG_INFINITY, f64::max)),
+    )
+}
+
+/// Sums over the fluid for four wall particles.
+#[derive(Clone, Copy, Debug)]
+pub struct WallSum<const D: usize> {
+    weight: Lane,
+    pressure: Lane,
+    velocity: [Lane; D],
+}
+
+impl<const D: usize> Default for WallSum<D> {
+    fn default() -> Self {
+        Self { weight: Lane::ZERO, pressure: Lane::ZERO, velocity: [Lane::ZERO; D] }
+    }
+}
+
+/// The law of the pass over wall particles.
+pub struct WallLaw<'a, K, const D: usize> {
+    /// Kernel.
+    pub kernel: K,
+    /// Gravity, m/s².
+    pub gravity: [f64; D],
+    /// Targets.
+    pub walls: &'a Walls<D>,
+    /// Sources.
+    pub fluid: &'a Columns<D>,
+}
+
+impl<K: Kernel<D>, const D: usize> PairLaw<D> for WallLaw<'_, K, D> {
+    type Target = [Lane; D];
+    type Sum = WallSum<D>;
+
+    #[inline(always)]
+    fn target(&self, slot: usize) -> [Lane; D] {
+        std::array::from_fn(|d| Lane::load(&self.walls.shown.position[d], slot))
+    }
+    #[inline(always)]
+    fn target_position(&self, target: &[Lane; D]) -> [Lane; D] {
+        *target
+    }
+    #[inline(always)]
+    fn source_position(&self, j: usize) -> [f64; D] {
+        std::array::from_fn(|d| self.fluid.now.position[d][j])
+    }
+    #[inline(always)]
+    fn add<A: Arch>(&self, _: &[Lane; D], j: usize, dx: [Lane; D], r2: Lane, sum: &mut WallSum<D>) {
+        let w = self.kernel.value::<A>(distance(r2, self.kernel.smoothing_length()));
+        let head = dot::<D, A>(self.gravity.map(Lane::splat), dx);
+        let p = A::mul_add(Lane::splat(self.fluid.now.density[j]), head, Lane::splat(self.fluid.pressure[j]));
+        sum.weight += w;
+        sum.pressure = A::mul_add(p, w, sum.pressure);
+        for d in 0..D {
+            sum.velocity[d] = A::mul_add(Lane::splat(self.fluid.now.velocity[d][j]), w, sum.velocity[d]);
+        }
+    }
+}

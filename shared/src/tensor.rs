@@ -1,0 +1,54 @@
+//! Small matrices in two and three dimensions, where nalgebra's generic routines ask for bounds on the dimension.
+
+use nalgebra::SMatrix;
+
+/// Determinant of a 2 x 2 or 3 x 3 matrix.
+pub fn determinant<const D: usize>(m: &SMatrix<f64, D, D>) -> f64 {
+    match D {
+        2 => m[(0, 0)] * m[(1, 1)] - m[(0, 1)] * m[(1, 0)],
+        3 => (0..3).map(|b| m[(0, b)] * cofactor(m, 0, b)).sum(),
+        _ => f64::NAN,
+    }
+}
+
+/// Inverse of a 2 x 2 or 3 x 3 matrix whose determinant is known; `None` where that is zero or not finite.
+pub fn inverse<const D: usize>(m: &SMatrix<f64, D, D>, determinant: f64) -> Option<SMatrix<f64, D, D>> {
+    if determinant == 0.0 || !determinant.is_finite() {
+        return None;
+    }
+    let scale = 1.0 / determinant;
+    Some(match D {
+        2 => SMatrix::from_fn(|a, b| {
+            scale
+                * match (a, b) {
+                    (0, 0) => m[(1, 1)],
+                    (1, 1) => m[(0, 0)],
+                    _ => -m[(a, b)],
+                }
+        }),
+        _ => SMatrix::from_fn(|a, b| scale * cofactor(m, b, a)),
+    })
+}
+
+fn cofactor<const D: usize>(m: &SMatrix<f64, D, D>, a: usize, b: usize) -> f64 {
+    let (r, s) = ((a + 1) % 3, (a + 2) % 3);
+    let (t, u) = ((b + 1) % 3, (b + 2) % 3);
+    m[(r, t)] * m[(s, u)] - m[(r, u)] * m[(s, t)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Matrix2, Matrix3};
+
+    #[test]
+    fn inverses_invert() {
+        let a = Matrix2::new(4.0, 1.0, 2.0, 3.0);
+        assert_eq!(determinant(&a), 10.0);
+        assert!((inverse(&a, 10.0).unwrap() * a - Matrix2::identity()).norm() < 1e-15);
+        let b = Matrix3::new(2.0, 0.0, 1.0, 1.0, 3.0, 2.0, 1.0, 1.0, 4.0);
+        assert_eq!(determinant(&b), 18.0);
+        assert!((inverse(&b, 18.0).unwrap() * b - Matrix3::identity()).norm() < 1e-15);
+        assert!(inverse(&Matrix2::zeros(), 0.0).is_none());
+    }
+}

@@ -1,0 +1,96 @@
+//! Columns of the solid particles.
+
+use halfstep_shared::geometry::SolidPoint;
+use halfstep_shared::neighbours::Rows;
+
+/// D columns.
+pub(super) type Vectors<const D: usize> = [Vec<f64>; D];
+/// Symmetric tensors; a <= b filled.
+pub(super) type Tensors<const D: usize> = [[Vec<f64>; D]; D];
+
+/// `D` columns of `n` zeros.
+pub(super) fn vectors<const D: usize>(n: usize) -> Vectors<D> {
+    std::array::from_fn(|_| vec![0.0; n])
+}
+
+/// Columns of `n` zeros for a symmetric tensor.
+pub(super) fn tensors<const D: usize>(n: usize) -> Tensors<D> {
+    std::array::from_fn(|a| std::array::from_fn(|b| if a <= b { vec![0.0; n] } else { Vec::new() }))
+}
+
+/// What time integration advances.
+#[derive(Clone, Debug)]
+pub(super) struct State<const D: usize> {
+    /// Position, m.
+    pub position: Vectors<D>,
+    /// Velocity, m/s.
+    pub velocity: Vectors<D>,
+    /// Density, kg/m³.
+    pub density: Vec<f64>,
+    /// Deviatoric stress, Pa. In 2D s_zz = -(s_xx + s_yy).
+    pub stress: Tensors<D>,
+}
+
+impl<const D: usize> State<D> {
+    pub(super) fn new(points: &[SolidPoint<D>], density: f64) -> Self {
+        let n = points.len();
+        let mut state =
+            Self { position: vectors(n), velocity: vectors(n), density: vec![density; n], stress: tensors(n) };
+        for (i, p) in points.iter().enumerate() {
+            for d in 0..D {
+                state.position[d][i] = p.position[d];
+                state.velocity[d][i] = if p.clamped { 0.0 } else { p.velocity[d] };
+            }
+        }
+        state
+    }
+
+    pub(super) fn permute(&mut self, rows: &mut Rows<D>) {
+        for d in 0..D {
+            rows.permute(&mut self.position[d]);
+            rows.permute(&mut self.velocity[d]);
+            for b in d..D {
+                rows.permute(&mut self.stress[d][b]);
+            }
+        }
+        rows.permute(&mut self.density);
+    }
+
+    pub(super) fn copy_from(&mut self, other: &Self) {
+        for d in 0..D {
+            self.position[d].clone_from(&other.position[d]);
+            self.velocity[d].clone_from(&other.velocity[d]);
+            for b in d..D {
+                self.stress[d][b].clone_from(&other.stress[d][b]);
+            }
+        }
+        self.density.clone_from(&other.density);
+    }
+}
+
+/// Rates of a [`State`].
+#[derive(Clone, Debug)]
+pub(super) struct Rates<const D: usize> {
+    /// m/s².
+    pub acceleration: Vectors<D>,
+    /// kg/(m³ s).
+    pub density: Vec<f64>,
+    /// Pa/s.
+    pub stress: Tensors<D>,
+}
+
+impl<const D: usize> Rates<D> {
+    pub(super) fn new() -> Self {
+        Self { acceleration: vectors(0), density: Vec::new(), stress: tensors(0) }
+    }
+
+    pub(super) fn resize(&mut self, n: usize) {
+        for d in 0..D {
+            self.acceleration[d].resize(n, 0.0);
+            for b in d..D {
+                self.stress[d][b].resize(n, 0.0);
+            }
+        }
+        self.density.resize(n, 0.0);
+    }
+}

@@ -1,0 +1,12 @@
+//! Kayaki's solid: Hooke's law in rate form with the Jaumann rate (Gray, Monaghan and Swift 2001), density by
+//! continuity, artificial viscosity and artificial stress.
+
+mod artificial_stress;
+mod columns;
+mod gradient;
+mod model;
+mod rates;
+mod stress_rate;
+mod wall;
+
+pub use model::Hypoelastic;

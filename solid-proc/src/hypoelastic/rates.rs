@@ -1,0 +1,193 @@
+//! The solid's neighbour pass: velocity gradient and momentum in one go.
+//!
+//!   dv_a/dx_b = sum_j V_j (v_j - v_i)_a F x_ij,b                                        (and D rho / Dt = -rho tr)
+//!   D v_i / Dt = sum_j m_j [sigma_i/rho_i² + sigma_j/rho_j² - Pi_ij I + (R_i + R_j) f^n] . grad W    (eqs. 22 to 26)
+
+use super::columns::{State, Tensors};
+use halfstep_shared::kernel::Kernel;
+use halfstep_shared::lane::{Arch, Lane};
+use halfstep_shared::pair::{PairLaw, distance, dot};
+
+/// Correction of the momentum bracket against the tensile instability; `()` is none.
+pub(super) trait TensileCorrection<const D: usize>: Copy + Send + Sync {
+    /// What it loads of four targets.
+    type Own: Copy;
+    fn own(&self, slot: usize) -> Self::Own;
+    /// The (a, b) component's addition for a pair at kernel value `w`.
+    fn add<A: Arch>(&self, own: &Self::Own, j: usize, w: impl Fn() -> Lane, bracket: &mut [[Lane; D]; D]);
+}
+
+impl<const D: usize> TensileCorrection<D> for () {
+    type Own = ();
+    #[inline(always)]
+    fn own(&self, _: usize) {}
+    #[inline(always)]
+    fn add<A: Arch>(&self, _: &(), _: usize, _: impl Fn() -> Lane, _: &mut [[Lane; D]; D]) {}
+}
+
+/// The artificial stress with its tensors R.
+#[derive(Clone, Copy)]
+pub(super) struct ArtificialStress<'a, const D: usize> {
+    pub tensors: &'a Tensors<D>,
+    /// 1 / W(d0).
+    pub inverse_w0: f64,
+    pub exponent: u32,
+}
+
+#[inline(always)]
+pub(super) fn load<const D: usize>(t: &Tensors<D>, slot: usize) -> [[Lane; D]; D] {
+    std::array::from_fn(|a| std::array::from_fn(|b| Lane::load(&t[a.min(b)][a.max(b)], slot)))
+}
+
+impl<const D: usize> TensileCorrection<D> for ArtificialStress<'_, D> {
+    type Own = [[Lane; D]; D];
+    #[inline(always)]
+    fn own(&self, slot: usize) -> Self::Own {
+        load(self.tensors, slot)
+    }
+    #[inline(always)]
+    fn add<A: Arch>(&self, own: &Self::Own, j: usize, w: impl Fn() -> Lane, bracket: &mut [[Lane; D]; D]) {
+        let ratio = w() * Lane::splat(self.inverse_w0);
+        let mut power = ratio;
+        for _ in 1..self.exponent {
+            power = power * ratio;
+        }
+        for a in 0..D {
+            for b in 0..D {
+                let rj = Lane::splat(self.tensors[a.min(b)][a.max(b)][j]);
+                bracket[a][b] = A::mul_add(own[a][b] + rj, power, bracket[a][b]);
+            }
+        }
+    }
+}
+
+/// Renormalisation of the velocity gradient: whether the moment matrix is summed up.
+pub(super) trait Moment: Copy + Send + Sync {
+    const SUMMED: bool;
+}
+/// As the paper has it.
+#[derive(Clone, Copy)]
+pub(super) struct Plain;
+/// Corrected with the inverse moment matrix.
+#[derive(Clone, Copy)]
+pub(super) struct Renormalised;
+impl Moment for Plain {
+    const SUMMED: bool = false;
+}
+impl Moment for Renormalised {
+    const SUMMED: bool = true;
+}
+
+/// Sums for four particles.
+#[derive(Clone, Copy)]
+pub(super) struct SolidSum<const D: usize> {
+    pub acceleration: [Lane; D],
+    pub gradient: [[Lane; D]; D],
+    pub moment: [[Lane; D]; D],
+}
+
+impl<const D: usize> Default for SolidSum<D> {
+    fn default() -> Self {
+        Self {
+            acceleration: [Lane::ZERO; D],
+            gradient: [[Lane::ZERO; D]; D],
+            moment: [[Lane::ZERO; D]; D],
+        }
+    }
+}
+
+/// The law.
+pub(super) struct SolidLaw<'a, K, T, M, const D: usize> {
+    pub kernel: K,
+    pub correction: T,
+    pub _gradient: M,
+    pub state: &'a State<D>,
+    /// sigma / rho².
+    pub stress_term: &'a Tensors<D>,
+    /// m / rho.
+    pub volume: &'a [f64],
+    pub mass: f64,
+    /// A c_s.
+    pub linear: f64,
+    /// B.
+    pub quadratic: f64,
+}
+
+#[derive(Clone, Copy)]
+pub(super) struct Target<O, const D: usize> {
+    position: [Lane; D],
+    velocity: [Lane; D],
+    density: Lane,
+    stress_term: [[Lane; D]; D],
+    own: O,
+}
+
+/// Pi_ij, Kayaki's eqs. (23) and (24).
+#[inline(always)]
+pub(super) fn artificial_viscosity<A: Arch>(
+    h: f64,
+    linear: f64,
+    quadratic: f64,
+    approach: Lane,
+    r2: Lane,
+    density_sum: Lane,
+) -> Lane {
+    let theta = approach.min(Lane::ZERO) * Lane::splat(h) / (r2 + Lane::splat(0.01 * h * h));
+    theta * A::mul_add(Lane::splat(quadratic), theta, Lane::splat(-linear)) * Lane::splat(2.0) / density_sum
+}
+
+impl<K: Kernel<D>, T: TensileCorrection<D>, M: Moment, const D: usize> PairLaw<D> for SolidLaw<'_, K, T, M, D> {
+    type Target = Target<T::Own, D>;
+    type Sum = SolidSum<D>;
+
+    #[inline(always)]
+    fn target(&self, slot: usize) -> Self::Target {
+        Target {
+            position: std::array::from_fn(|d| Lane::load(&self.state.position[d], slot)),
+            velocity: std::array::from_fn(|d| Lane::load(&self.state.velocity[d], slot)),
+            density: Lane::load(&self.state.density, slot),
+            stress_term: load(self.stress_term, slot),
+            own: self.correction.own(slot),
+        }
+    }
+    #[inline(always)]
+    fn target_position(&self, target: &Self::Target) -> [Lane; D] {
+        target.position
+    }
+    #[inline(always)]
+    fn source_position(&self, j: usize) -> [f64; D] {
+        std::array::from_fn(|d| self.state.position[d][j])
+    }
+    #[inline(always)]
+    fn add<A: Arch>(&self, i: &Self::Target, j: usize, dx: [Lane; D], r2: Lane, sum: &mut SolidSum<D>) {
+        let h = self.kernel.smoothing_length();
+        let r = distance(r2, h);
+        let f = self.kernel.gradient_over_r::<A>(r);
+        let dv: [Lane; D] = std::array::from_fn(|d| i.velocity[d] - Lane::splat(self.state.velocity[d][j]));
+        let approach = dot::<D, A>(dv, dx);
+        let density_sum = i.density + Lane::splat(self.state.density[j]);
+        let pi = artificial_viscosity::<A>(h, self.linear, self.quadratic, approach, r2, density_sum);
+        let mut bracket: [[Lane; D]; D] = std::array::from_fn(|a| {
+            std::array::from_fn(|b| {
+                let t = i.stress_term[a][b] + Lane::splat(self.stress_term[a.min(b)][a.max(b)][j]);
+                if a == b { t - pi } else { t }
+            })
+        });
+        self.correction.add::<A>(&i.own, j, || self.kernel.value::<A>(r), &mut bracket);
+        let mf = Lane::splat(self.mass) * f;
+        let vf = Lane::splat(self.volume[j]) * f;
+        for a in 0..D {
+            sum.acceleration[a] = A::mul_add(mf, dot::<D, A>(bracket[a], dx), sum.acceleration[a]);
+            let row = -(vf * dv[a]);
+            for b in 0..D {
+                sum.gradient[a][b] = A::mul_add(row, dx[b], sum.gradient[a][b]);
+            }
+            if M::SUMMED {
+                let row = -(vf * dx[a]);
+                for b in a..D {
+                    sum.moment[a][b] = A::mul_add(row, dx[b], sum.moment[a][b]);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,260 @@
+//! The solid as a [`Role`]: interface record, loads, sub-steps, probes.
+
+use crate::hypoelastic::Hypoelastic;
+use crate::model::{Load, SolidModel};
+use halfstep_shared::failure::{Diverged, RoleName};
+use halfstep_shared::interface::{Interface, Parameters};
+use halfstep_shared::lane::Isa;
+use halfstep_shared::output::Frame;
+use halfstep_shared::protocol::{ForceRecord, MAX_PROBE_VALUES, StateRecord};
+use halfstep_shared::role::{CoverageError, Role, audit};
+use halfstep_shared::scene::{Phase, ProbeKind, Scene, SolidModelName, SubSteps, Treatment};
+use xxhash_rust::xxh3::Xxh3;
+
+/// A solid model with what the lock-step asks of it.
+pub struct Solid<const D: usize> {
+    model: Box<dyn SolidModel<D>>,
+    /// Phase-blind coupling: the fluid's share in density and velocity gradient.
+    interface: Option<Interface<D>>,
+    load: Load<D>,
+    probes: Vec<Measurement>,
+    sub_steps: SubSteps,
+    max_sub_steps: u32,
+    taken: u32,
+    density: f64,
+    limit: f64,
+}
+
+enum Measurement {
+    /// Mean displacement of these particles.
+    Displacement(Vec<u32>),
+    KineticEnergy,
+    Centroid,
+}
+
+impl<const D: usize> Solid<D> {
+    /// The solid of a scene that has one, with the model that it names.
+    pub fn new(scene: &Scene, isa: Isa) -> Option<Self> {
+        let solid = scene.solid.as_ref()?;
+        let model: Box<dyn SolidModel<D>> = match solid.model {
+            SolidModelName::Hypoelastic => Box::new(Hypoelastic::<D>::new(scene, isa)?),
+        };
+        Some(Self::with_model(scene, isa, model))
+    }
+
+    /// With any model.
+    pub fn with_model(scene: &Scene, isa: Isa, model: Box<dyn SolidModel<D>>) -> Self {
+        let phase_blind = scene.interface.treatment == Treatment::PhaseBlind;
+        let interface =
+            Parameters::<D>::new(scene, isa).filter(|_| phase_blind).map(Interface::new);
+        let probes = scene
+            .probes
+            .iter()
+            .filter_map(|p| match p.kind {
+                ProbeKind::Displacement { at } => {
+                    Some(Measurement::Displacement(nearest(model.as_ref(), std::array::from_fn(|d| at[d]))))
+                }
+                ProbeKind::KineticEnergy { phase: Phase::Solid } => Some(Measurement::KineticEnergy),
+                ProbeKind::Centroid { phase: Phase::Solid } => Some(Measurement::Centroid),
+                _ => None,
+            })
+            .collect();
+        let sub_steps = if phase_blind || scene.solid.is_none() {
+            SubSteps::Fixed(1)
+        } else {
+            scene.solid.as_ref().map_or(SubSteps::Auto, |s| s.sub_steps)
+        };
+        // Alone, the solid has nothing to sub-step under: its own limit is the time step.
+        let sub_steps = if scene.fluid.is_none() { SubSteps::Fixed(1) } else { sub_steps };
+        Self {
+            load: Load::none(model.particles()),
+            limit: model.sub_step_limit(),
+            model,
+            interface,
+            probes,
+            sub_steps,
+            max_sub_steps: scene.numerics.max_sub_steps,
+            taken: 1,
+            density: scene.solid.as_ref().map_or(1.0, |s| s.density),
+        }
+    }
+
+    /// Sub-steps for a time step: 1 where that is stable, else the smallest even number that is.
+    fn choose_sub_steps(&self, dt: f64) -> u32 {
+        match self.sub_steps {
+            SubSteps::Fixed(k) => k,
+            SubSteps::Auto => {
+                let needed = (dt / self.limit * (1.0 - 1e-12)).ceil();
+                if needed <= 1.0 { 1 } else { (needed as u32).next_multiple_of(2).min(self.max_sub_steps) }
+            }
+        }
+    }
+
+    fn all(&self) -> std::ops::Range<u32> {
+        0..self.model.particles() as u32
+    }
+
+    fn kinetic_energy(&self) -> f64 {
+        self.all()
+            .map(|p| 0.5 * self.model.mass(p) * self.model.velocity(p).iter().map(|v| v * v).sum::<f64>())
+            .sum()
+    }
+}
+
+/// The particles nearest to a point of the reference configuration: all that are equally near.
+fn nearest<const D: usize>(model: &dyn SolidModel<D>, at: [f64; D]) -> Vec<u32> {
+    let distance = |p: u32| {
+        let x = model.reference(p);
+        (0..D).map(|d| (x[d] - at[d]).powi(2)).sum::<f64>().sqrt()
+    };
+    let all = 0..model.particles() as u32;
+    let least = all.clone().map(distance).fold(f64::INFINITY, f64::min);
+    all.filter(|&p| distance(p) <= least * (1.0 + 1e-6) + 1e-12).collect()
+}
+
+impl<const D: usize> Role for Solid<D> {
+    fn name(&self) -> RoleName {
+        RoleName::Solid
+    }
+
+    fn particles(&self) -> u64 {
+        self.model.particles() as u64
+    }
+
+    fn dt_limit(&self) -> f64 {
+        self.limit
+            * match self.sub_steps {
+                SubSteps::Fixed(k) => f64::from(k),
+                SubSteps::Auto => f64::from(self.max_sub_steps),
+            }
+    }
+
+    fn publish(&mut self, _peer: &[StateRecord], out: &mut Vec<StateRecord>) -> u64 {
+        out.clear();
+        out.extend(self.model.interface_set().iter().map(|&p| self.model.record(p)));
+        0
+    }
+
+    fn displacement(&self) -> f64 {
+        0.0
+    }
+
+    fn own_sums(&mut self) {}
+
+    fn cross_sums(
+        &mut self,
+        own: &[StateRecord],
+        peer: &[StateRecord],
+        epoch: u64,
+    ) -> Result<(), CoverageError> {
+        let Some(interface) = &mut self.interface else { return Ok(()) };
+        interface.update(peer, own, epoch);
+        let n = self.model.particles();
+        self.load.density_rate.resize(n, 0.0);
+        self.load.gradient.resize(n, [[0.0; D]; D]);
+        let load = &mut self.load;
+        interface.rates_of_solid(|record, density_rate, gradient| {
+            let p = own[record].id as usize;
+            load.density_rate[p] = density_rate;
+            load.gradient[p] = gradient;
+        });
+        Ok(())
+    }
+
+    fn advance(&mut self, step: u64, stage: u32, dt: f64, forces: &[ForceRecord]) -> Result<(), Diverged> {
+        for force in forces {
+            let mass = self.model.mass(force.id);
+            self.load.force[force.id as usize] =
+                std::array::from_fn(|d| mass * force.cross_viscosity[d] + force.stress_force[d]);
+        }
+        if stage == 0 {
+            self.taken = self.choose_sub_steps(dt);
+        }
+        self.model.advance(stage, dt, self.taken, &self.load).map_err(|o| Diverged {
+            role: RoleName::Solid,
+            particle: o.particle,
+            quantity: o.quantity,
+            value: o.value,
+            step,
+            stage,
+            position: o.position,
+        })?;
+        self.limit = self.model.sub_step_limit();
+        Ok(())
+    }
+
+    fn sub_steps(&self) -> u32 {
+        self.taken
+    }
+
+    fn probes(&self, out: &mut [f64; MAX_PROBE_VALUES]) -> usize {
+        let mut n = 0;
+        let mut put = |value: f64| {
+            out[n] = value;
+            n += 1;
+        };
+        for probe in &self.probes {
+            match probe {
+                Measurement::Displacement(particles) => {
+                    for d in 0..D {
+                        let sum: f64 = particles
+                            .iter()
+                            .map(|&p| self.model.record(p).position[d] - self.model.reference(p)[d])
+                            .sum();
+                        put(sum / particles.len() as f64);
+                    }
+                }
+                Measurement::KineticEnergy => put(self.kinetic_energy()),
+                Measurement::Centroid => {
+                    let mass: f64 = self.all().map(|p| self.model.mass(p)).sum();
+                    for d in 0..D {
+                        let moment: f64 =
+                            self.all().map(|p| self.model.mass(p) * self.model.record(p).position[d]).sum();
+                        put(moment / mass);
+                    }
+                }
+            }
+        }
+        n
+    }
+
+    fn audit(&self) -> [f64; 8] {
+        let mut values = [0.0; 8];
+        for p in self.all() {
+            let (record, mass) = (self.model.record(p), self.model.mass(p));
+            for d in 0..D {
+                values[audit::MOMENTUM + d] += mass * self.model.velocity(p)[d];
+            }
+            values[audit::MASS] += mass;
+            let error = (record.density / self.density - 1.0).abs();
+            values[audit::DENSITY_ERROR] = values[audit::DENSITY_ERROR].max(error);
+        }
+        values[audit::KINETIC_ENERGY] = self.kinetic_energy();
+        values[audit::GAP] = f64::INFINITY;
+        values
+    }
+
+    fn fill_frame(&self, time: f64, frame: &mut Frame) {
+        frame.clear();
+        frame.time = time;
+        self.model.fill_frame(frame);
+    }
+
+    fn state_hash(&self) -> u64 {
+        let mut hash = Xxh3::new();
+        for p in self.all() {
+            let r = self.model.record(p);
+            let v = self.model.velocity(p);
+            hash.update(&p.to_le_bytes());
+            for value in r.position.iter().chain(&v).chain(&r.deviatoric_stress) {
+                hash.update(&value.to_le_bytes());
+            }
+            hash.update(&r.density.to_le_bytes());
+        }
+        hash.digest()
+    }
+
+    fn pair_evaluations(&self) -> u64 {
+        self.model.pair_evaluations()
+    }
+}
