@@ -1,0 +1,104 @@
+//! One instant of one process: the columns that go into a frame file.
+
+use crate::scene::Phase;
+
+/// Number of the fluid in [`Frame::phase`].
+pub const FLUID: u8 = 0;
+/// Number of the solid in [`Frame::phase`].
+pub const SOLID: u8 = 1;
+/// Number of the walls in [`Frame::phase`].
+pub const WALL: u8 = 2;
+
+/// All particles of a process at one instant, in single precision. The columns are equally long.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Frame {
+    /// Simulated time, s.
+    pub time: f64,
+    /// Positions, m.
+    pub points: Vec<[f32; 3]>,
+    /// Velocities, m/s.
+    pub velocity: Vec<[f32; 3]>,
+    /// Densities, kg/m³.
+    pub density: Vec<f32>,
+    /// Pressures, Pa.
+    pub pressure: Vec<f32>,
+    /// Cauchy stresses xx, yy, zz, xy, yz, xz, Pa; zero for fluid and walls.
+    pub stress: Vec<[f32; 6]>,
+    /// [`FLUID`], [`SOLID`] or [`WALL`].
+    pub phase: Vec<u8>,
+    /// Particle numbers: unique in a phase, the same in every frame.
+    pub id: Vec<i32>,
+}
+
+/// One particle, as the numerics hold it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FramePoint {
+    /// Position, m.
+    pub position: [f64; 3],
+    /// Velocity, m/s.
+    pub velocity: [f64; 3],
+    /// Density, kg/m³.
+    pub density: f64,
+    /// Pressure, Pa.
+    pub pressure: f64,
+    /// Cauchy stress xx, yy, zz, xy, yz, xz, Pa; zero for fluid and walls.
+    pub stress: [f64; 6],
+    /// What the particle belongs to.
+    pub phase: Phase,
+    /// Its number.
+    pub id: u32,
+}
+
+impl Frame {
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Whether there are no particles.
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    /// Forgets time and particles and keeps the memory.
+    pub fn clear(&mut self) {
+        self.time = 0.0;
+        self.points.clear();
+        self.velocity.clear();
+        self.density.clear();
+        self.pressure.clear();
+        self.stress.clear();
+        self.phase.clear();
+        self.id.clear();
+    }
+
+    /// Appends a particle, rounded to single precision.
+    pub fn push(&mut self, particle: FramePoint) {
+        self.points.push(particle.position.map(|x| x as f32));
+        self.velocity.push(particle.velocity.map(|v| v as f32));
+        self.density.push(particle.density as f32);
+        self.pressure.push(particle.pressure as f32);
+        self.stress.push(particle.stress.map(|s| s as f32));
+        self.phase.push(match particle.phase {
+            Phase::Fluid => FLUID,
+            Phase::Solid => SOLID,
+            Phase::Wall => WALL,
+        });
+        self.id.push(particle.id as i32);
+    }
+
+    /// Whether all columns are equally long: what a file can hold.
+    pub fn is_consistent(&self) -> bool {
+        let n = self.len();
+        [
+            self.velocity.len(),
+            self.density.len(),
+            self.pressure.len(),
+            self.stress.len(),
+            self.phase.len(),
+            self.id.len(),
+        ]
+        .iter()
+        .all(|&length| length == n)
+    }
+}
