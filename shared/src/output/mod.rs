@@ -12,15 +12,28 @@
 //! leaves nothing half-written under a final name.
 
 pub mod atomic;
+mod canvas;
+pub mod contact;
+#[cfg(test)]
+mod fixture;
 pub mod frame;
+mod panels;
+#[cfg(test)]
+mod pictures;
+pub mod plot;
 pub mod probes;
 pub mod run_dir;
 pub mod run_json;
 pub mod series;
+mod stamp;
+mod units;
+mod view;
 pub mod vtkhdf;
 pub mod writer;
 
+pub use contact::draw_contact;
 pub use frame::{Frame, FramePoint};
+pub use plot::draw_plot;
 pub use probes::{ProbeLog, Table, read_probes};
 pub use run_dir::RunDirectory;
 pub use run_json::RunReport;
