@@ -18,6 +18,7 @@ use halfstep_shared::pair;
 use halfstep_shared::protocol::StateRecord;
 use halfstep_shared::scene::{EffectName, KernelName, Phase, Scene, Solid, Switch};
 use halfstep_shared::{wide, with_kernel};
+use std::marker::PhantomData;
 
 const SKIN: f64 = 0.3;
 
@@ -194,13 +195,13 @@ impl<const D: usize> Hypoelastic<D> {
         }
     }
 
-    fn pass<K: Kernel<D>, T: TensileCorrection<D>, M: Moment>(&mut self, kernel: K, correction: T, gradient: M) {
+    fn pass<K: Kernel<D>, T: TensileCorrection<D>, M: Moment>(&mut self, kernel: K, correction: T, _: M) {
         // The correction borrows from self; the sums do not.
         let mut sums = std::mem::take(&mut self.sums);
         let law = SolidLaw {
             kernel,
             correction,
-            _gradient: gradient,
+            gradient: PhantomData::<M>,
             state: &self.now,
             stress_term: &self.stress_term,
             volume: &self.volume,

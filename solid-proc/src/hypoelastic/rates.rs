@@ -7,6 +7,7 @@ use super::columns::{State, Tensors};
 use halfstep_shared::kernel::Kernel;
 use halfstep_shared::lane::{Arch, Lane};
 use halfstep_shared::pair::{PairLaw, distance, dot};
+use std::marker::PhantomData;
 
 /// Correction of the momentum bracket against the tensile instability; `()` is none.
 pub(super) trait TensileCorrection<const D: usize>: Copy + Send + Sync {
@@ -100,7 +101,8 @@ impl<const D: usize> Default for SolidSum<D> {
 pub(super) struct SolidLaw<'a, K, T, M, const D: usize> {
     pub kernel: K,
     pub correction: T,
-    pub _gradient: M,
+    /// Whether the moment matrix is summed.
+    pub gradient: PhantomData<M>,
     pub state: &'a State<D>,
     /// sigma / rho².
     pub stress_term: &'a Tensors<D>,

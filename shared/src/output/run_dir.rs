@@ -1,0 +1,165 @@
+//! The folder of a run: what may be in it, and what of it may be removed.
+
+use super::{OutputError, series};
+use std::path::{Path, PathBuf};
+
+/// Files that a run leaves in its folder, beside the frames.
+pub const FILES: [&str; 7] =
+    ["run.json", "probes.csv", "plot.png", "contact.png", "checkpoint-a.hdf", "checkpoint-b.hdf", "log.txt"];
+
+/// A folder that is ready for a run: nothing of an earlier one is in it.
+#[derive(Clone, Debug)]
+pub struct RunDirectory {
+    path: PathBuf,
+}
+
+impl RunDirectory {
+    /// Creates the folder, or takes one that exists. Refuses one with files of an earlier run unless `force` is set,
+    /// which removes them. Files that no run leaves are never touched. What an interrupted write left under
+    /// a temporary name is removed.
+    pub fn create(dir: &Path, force: bool) -> Result<Self, OutputError> {
+        let this = Self { path: dir.into() };
+        let frames = this.frames();
+        std::fs::create_dir_all(&frames).map_err(OutputError::io("create", &frames))?;
+        let own = |name: &str| FILES.contains(&name);
+        let mut found = files(dir, |name| own(name))?;
+        found.extend(files(&frames, is_frame_file)?);
+        if let (Some(first), false) = (found.first(), force) {
+            let found = first.strip_prefix(dir).unwrap_or(first).display().to_string();
+            return Err(OutputError::Occupied { dir: dir.into(), found });
+        }
+        found.extend(files(dir, |name| is_temporary(name, own))?);
+        found.extend(files(&frames, |name| is_temporary(name, is_frame_file))?);
+        for file in found {
+            std::fs::remove_file(&file).map_err(OutputError::io("remove", &file))?;
+        }
+        Ok(this)
+    }
+
+    /// The folder.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The folder of the frames.
+    pub fn frames(&self) -> PathBuf {
+        series::frames_folder(&self.path)
+    }
+
+    /// Where a file of the run lies: `run.json`, ...
+    pub fn file(&self, name: &str) -> PathBuf {
+        self.path.join(name)
+    }
+}
+
+/// The regular files in a folder whose name `wanted` accepts, sorted.
+fn files(folder: &Path, wanted: impl Fn(&str) -> bool) -> Result<Vec<PathBuf>, OutputError> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(OutputError::io("read", folder))? {
+        let entry = entry.map_err(OutputError::io("read", folder))?;
+        let kind = entry.file_type().map_err(OutputError::io("read", &entry.path()))?;
+        if kind.is_file() && entry.file_name().to_str().is_some_and(&wanted) {
+            found.push(entry.path());
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+/// Whether a file in the folder of the frames is a frame or an index.
+fn is_frame_file(name: &str) -> bool {
+    ["fluid", "solid"].iter().any(|stem| {
+        name == series::index_name(stem)
+            || name
+                .strip_prefix(stem)
+                .and_then(|rest| rest.strip_prefix('_')?.strip_suffix(".hdf"))
+                .is_some_and(|digits| digits.len() >= 6 && digits.bytes().all(|b| b.is_ascii_digit()))
+    })
+}
+
+/// Whether `name` is the temporary name of a file that `own` accepts.
+fn is_temporary(name: &str, own: impl Fn(&str) -> bool) -> bool {
+    name.strip_prefix('.').and_then(|rest| rest.strip_suffix(".tmp")).is_some_and(own)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    fn touch(dir: &Path, names: &[&str]) {
+        fs::create_dir_all(dir.join("frames")).unwrap();
+        for name in names {
+            fs::write(dir.join(name), name).unwrap();
+        }
+    }
+
+    fn listing(dir: &Path) -> Vec<String> {
+        let mut names: Vec<String> = files(dir, |_| true)
+            .unwrap()
+            .into_iter()
+            .chain(files(&dir.join("frames"), |_| true).unwrap())
+            .map(|path| path.strip_prefix(dir).unwrap().display().to_string())
+            .collect();
+        names.sort();
+        names
+    }
+
+    const FOREIGN: [&str; 7] = [
+        "notes.txt",
+        ".notes.tmp",
+        "old-run.json",
+        "frames/fluid_12.hdf",
+        "frames/fluid_00000a.hdf",
+        "frames/gas_000001.hdf",
+        "frames/.swap.tmp",
+    ];
+
+    #[test]
+    fn any_file_of_an_earlier_run_is_refused_and_kept() {
+        for name in FILES.iter().chain(&["frames/fluid_000000.hdf", "frames/solid.hdf.series"]) {
+            let dir = tempfile::tempdir().unwrap();
+            touch(dir.path(), &[name]);
+            let error = RunDirectory::create(dir.path(), false).unwrap_err();
+            assert!(matches!(&error, OutputError::Occupied { found, .. } if found == name), "{error}");
+            assert_eq!(listing(dir.path()), [*name]);
+        }
+    }
+
+    #[test]
+    fn force_removes_what_a_run_leaves_and_nothing_else() {
+        let dir = tempfile::tempdir().unwrap();
+        touch(dir.path(), &FILES);
+        touch(
+            dir.path(),
+            &["frames/fluid_000000.hdf", "frames/solid_1234567.hdf", "frames/fluid.hdf.series"],
+        );
+        touch(dir.path(), &[".run.json.tmp", "frames/.fluid_000001.hdf.tmp", "frames/.solid.hdf.series.tmp"]);
+        touch(dir.path(), &FOREIGN);
+        fs::create_dir(dir.path().join("frames/solid_000009.hdf")).unwrap();
+        RunDirectory::create(dir.path(), true).unwrap();
+        let mut kept = FOREIGN.map(String::from);
+        kept.sort();
+        assert_eq!(listing(dir.path()), kept);
+        assert!(dir.path().join("frames/solid_000009.hdf").is_dir());
+    }
+
+    #[test]
+    fn temporary_files_alone_are_no_earlier_run_and_go() {
+        let dir = tempfile::tempdir().unwrap();
+        touch(dir.path(), &[".run.json.tmp", "frames/.fluid_000001.hdf.tmp", "notes.txt"]);
+        let run = RunDirectory::create(dir.path(), false).unwrap();
+        assert_eq!(listing(dir.path()), ["notes.txt"]);
+        assert_eq!(run.file("run.json"), dir.path().join("run.json"));
+    }
+
+    #[test]
+    fn a_new_folder_is_created_with_its_parents() {
+        let dir = tempfile::tempdir().unwrap();
+        let run = RunDirectory::create(&dir.path().join("out/gate"), false).unwrap();
+        assert!(run.frames().is_dir());
+        fs::write(dir.path().join("file"), "").unwrap();
+        let error = RunDirectory::create(&dir.path().join("file"), true).unwrap_err();
+        assert!(error.to_string().contains("file"), "{error}");
+    }
+}

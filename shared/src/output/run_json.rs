@@ -1,0 +1,220 @@
+//! `run.json`: what a run was and how it went.
+
+use super::{OutputError, atomic};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// The report of a run. What is not known yet is `null`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct RunReport {
+    /// How the run ended; `None` while it goes on, and for ever when it was killed.
+    pub status: Option<RunStatus>,
+    /// Why it did not finish.
+    pub error: Option<String>,
+    /// The scene as resolved.
+    pub scene: serde_json::Value,
+    /// Version of the program.
+    pub version: String,
+    /// Steps done.
+    pub steps: u64,
+    /// Simulated time reached, s.
+    pub time: f64,
+    /// Duration of the run, s.
+    pub wall_seconds: f64,
+    /// Numbers of particles.
+    pub particles: Particles,
+    /// Particles that move or deform (fluid and solid) times steps, over `wall_seconds`, 1/s.
+    pub particle_steps_per_second: Option<f64>,
+    /// Time steps, s.
+    pub dt: TimeSteps,
+    /// Largest number of solid sub-steps in a step.
+    pub sub_steps: Option<u32>,
+    /// Where each process spent its time.
+    pub roles: Roles,
+    /// From publishing a state to having the forces, µs.
+    pub round_trip_us: Option<Percentiles>,
+    /// What the run checked about itself.
+    pub audit: Audit,
+    /// The effects, with the reason for each.
+    pub effects: Vec<EffectReport>,
+}
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RunStatus {
+    /// It reached its end time.
+    Finished,
+    /// Somebody stopped it before.
+    Stopped,
+    /// A quantity left its bounds.
+    Diverged,
+    /// Something else went wrong.
+    Failed,
+}
+
+/// Numbers of particles at the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Particles {
+    /// Of the fluid.
+    pub fluid: u64,
+    /// Of the solid.
+    pub solid: u64,
+    /// Of the walls.
+    pub wall: u64,
+}
+
+/// Statistics of the time step, s.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TimeSteps {
+    /// Smallest, s.
+    pub min: Option<f64>,
+    /// Mean, s.
+    pub mean: Option<f64>,
+    /// Largest, s.
+    pub max: Option<f64>,
+}
+
+/// The processes that took part.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Roles {
+    /// Fluid process.
+    pub fluid: Option<RoleSeconds>,
+    /// Solid process.
+    pub solid: Option<RoleSeconds>,
+    /// Coupler process.
+    pub coupler: Option<RoleSeconds>,
+}
+
+/// Where a process spent its time, s.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct RoleSeconds {
+    /// Computing, s.
+    pub compute: f64,
+    /// Waiting for others, s.
+    pub wait: f64,
+    /// Sending and receiving, s.
+    pub exchange: f64,
+    /// Handing over what is written, s.
+    pub output: f64,
+}
+
+/// Percentiles of a duration, µs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Percentiles {
+    /// Median, µs.
+    pub p50: f64,
+    /// Exceeded by one in a hundred, µs.
+    pub p99: f64,
+}
+
+/// What the run checked about itself.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Audit {
+    /// Largest relative drift of linear momentum that no outer force explains.
+    pub momentum_drift: Option<f64>,
+    /// Relative drift of energy.
+    pub energy_drift: Option<f64>,
+    /// Largest relative mismatch of the forces that both phases exert on each other.
+    pub action_reaction: Option<f64>,
+    /// Largest relative deviation of the fluid's density.
+    pub density_error: Option<f64>,
+    /// Smallest distance between fluid and solid particles, over the spacing.
+    pub min_gap: Option<f64>,
+    /// Number of consistency checks passed.
+    pub checks: u64,
+    /// Hash over every particle's final state in id order, 16 hexadecimal digits.
+    pub state_hash: Option<String>,
+    /// Instruction set that the hash belongs to.
+    pub isa: Option<String>,
+}
+
+/// One effect of the run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct EffectReport {
+    /// Its name, as in the scene.
+    pub name: String,
+    /// Whether it was computed.
+    pub on: bool,
+    /// The reason.
+    pub why: String,
+    /// Its share of the computing time, 0 to 1.
+    pub share: Option<f64>,
+}
+
+impl RunReport {
+    /// Writes the report to `path`, whole or not at all.
+    pub fn write(&self, path: &Path) -> Result<(), OutputError> {
+        let mut text =
+            serde_json::to_vec_pretty(self).map_err(|e| OutputError::malformed(path, e.to_string()))?;
+        text.push(b'\n');
+        atomic::replace_bytes(path, &text)
+    }
+
+    /// Reads a report.
+    pub fn read(path: &Path) -> Result<Self, OutputError> {
+        let text = std::fs::read(path).map_err(OutputError::io("read", path))?;
+        serde_json::from_slice(&text).map_err(|e| OutputError::malformed(path, e.to_string()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{Value, json};
+
+    #[test]
+    fn a_full_report_has_the_documented_keys_and_reads_back() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("run.json");
+        let report = RunReport {
+            status: Some(RunStatus::Diverged),
+            error: Some("too fast".into()),
+            scene: json!({"name": "gate"}),
+            steps: 7,
+            time: 0.1,
+            dt: TimeSteps { min: Some(1e-5), mean: Some(2e-5), max: Some(1.0 / 3.0) },
+            sub_steps: Some(4),
+            roles: Roles {
+                fluid: Some(RoleSeconds { compute: 1.5, ..Default::default() }),
+                ..Default::default()
+            },
+            round_trip_us: Some(Percentiles { p50: 27.0, p99: 49.0 }),
+            audit: Audit { state_hash: Some(format!("{:016x}", u64::MAX)), checks: 3, ..Default::default() },
+            effects: vec![EffectReport { name: "viscosity".into(), on: true, ..Default::default() }],
+            ..Default::default()
+        };
+        report.write(&path).unwrap();
+        assert_eq!(RunReport::read(&path).unwrap(), report);
+
+        let value: Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+        assert_eq!(value["status"], "diverged");
+        assert_eq!(value["audit"]["state_hash"], "ffffffffffffffff");
+        for pointer in [
+            "/error /scene /version /steps /time /wall_seconds /particles/fluid /particles/solid /particles/wall",
+            "/particle_steps_per_second /dt/min /dt/mean /dt/max /sub_steps /roles/fluid/compute /roles/fluid/wait",
+            "/roles/fluid/exchange /roles/fluid/output /roles/solid /roles/coupler /round_trip_us/p50",
+            "/round_trip_us/p99 /audit/momentum_drift /audit/energy_drift /audit/action_reaction",
+            "/audit/density_error /audit/min_gap /audit/checks /audit/isa",
+            "/effects/0/name /effects/0/on /effects/0/why /effects/0/share",
+        ]
+        .iter()
+        .flat_map(|line| line.split(' '))
+        {
+            assert!(value.pointer(pointer).is_some(), "{pointer} is missing");
+        }
+    }
+
+    #[test]
+    fn a_report_of_an_older_version_reads_with_defaults() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("run.json");
+        std::fs::write(&path, r#"{"status":"finished","steps":3}"#).unwrap();
+        let report = RunReport::read(&path).unwrap();
+        assert_eq!((report.status, report.steps), (Some(RunStatus::Finished), 3));
+        std::fs::write(&path, r#"{"status":"asleep"}"#).unwrap();
+        assert!(RunReport::read(&path).is_err());
+    }
+}
