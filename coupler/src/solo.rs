@@ -1,0 +1,79 @@
+//! A scene with one phase: the same role, clock and writer in one process, no exchange.
+
+use crate::clock::Clock;
+use crate::recorder::{Measured, Recorder};
+use crate::run::RunError;
+use halfstep_shared::output::FrameWriter;
+use halfstep_shared::output::run_json::RoleSeconds;
+use halfstep_shared::protocol::MAX_PROBE_VALUES;
+use halfstep_shared::role::Role;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+/// How a run without partner went.
+#[derive(Clone, Copy, Debug)]
+pub struct SoloOutcome {
+    /// It was told to stop before its end.
+    pub stopped: bool,
+    /// Hash of the final state.
+    pub state_hash: u64,
+    /// Where the time went.
+    pub seconds: RoleSeconds,
+}
+
+/// Runs a role to the clock's end or until `stop`.
+///
+/// # Errors
+/// Divergence or output; the last state before a divergence is written as a frame first.
+pub fn run_solo(
+    role: &mut dyn Role,
+    clock: &mut Clock,
+    writer: &mut FrameWriter,
+    recorder: &mut Recorder,
+    stop: &AtomicBool,
+) -> Result<SoloOutcome, RunError> {
+    let mut frame = 0;
+    let mut probes = [0.0; MAX_PROBE_VALUES];
+    let mut scratch = Vec::new();
+    let mut seconds = RoleSeconds::default();
+    loop {
+        let start = Instant::now();
+        let stopped = stop.load(Ordering::Relaxed);
+        role.publish(&[], &mut scratch);
+        let tick = clock.tick(role.dt_limit(), stopped)?;
+        let n = role.probes(&mut probes);
+        let measured = Measured {
+            probes: &probes[..n],
+            audit: &role.audit(),
+            sub_steps: role.sub_steps(),
+            particles: role.particles(),
+        };
+        let mut notes = [None, None];
+        notes[usize::from(role.name() == halfstep_shared::failure::RoleName::Solid)] = Some(measured);
+        let [fluid, solid] = notes;
+        recorder.note(&tick, fluid, solid)?;
+        let computed = Instant::now();
+        seconds.compute += (computed - start).as_secs_f64();
+        if tick.frame {
+            writer.submit(frame, |f| role.fill_frame(tick.time, f))?;
+            frame += 1;
+        }
+        let written = Instant::now();
+        seconds.output += (written - computed).as_secs_f64();
+        let Some(dt) = tick.dt else {
+            return Ok(SoloOutcome { stopped, state_hash: role.state_hash(), seconds });
+        };
+        for stage in 0..2 {
+            if stage == 1 {
+                role.publish(&[], &mut scratch);
+            }
+            role.own_sums();
+            if let Err(diverged) = role.advance(tick.step, stage, dt, &[]) {
+                writer.submit(frame, |f| role.fill_frame(tick.time, f))?;
+                return Err(diverged.into());
+            }
+        }
+        clock.advance(&tick);
+        seconds.compute += written.elapsed().as_secs_f64();
+    }
+}

@@ -1,0 +1,287 @@
+//! The half-step loop of a process (or thread) that owns particles.
+
+use crate::failure::{Diverged, RoleName};
+use crate::latency::Latency;
+use crate::link::{Expect, LinkConfig, LinkError, PhaseLink, Processes, Transport};
+use crate::output::{FrameWriter, OutputError};
+use crate::protocol::{MAX_PROBE_VALUES, StateHeader, StateRecord, order, status};
+use crate::role::{CoverageError, Role};
+use crate::scene::Scene;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+/// Why a role ended before it was told to.
+#[derive(Debug, thiserror::Error)]
+pub enum RoleError {
+    /// The exchange failed.
+    #[error(transparent)]
+    Link(#[from] LinkError),
+    /// Own particles left their bounds.
+    #[error(transparent)]
+    Diverged(#[from] Diverged),
+    /// The interface set lacks a particle.
+    #[error(transparent)]
+    Coverage(#[from] CoverageError),
+    /// A frame cannot be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// The other phase said that it ends.
+    #[error("the {peer} ended the run at step {step}, stage {stage}")]
+    PeerEnded {
+        /// Who.
+        peer: RoleName,
+        /// Step n.
+        step: u64,
+        /// Stage.
+        stage: u32,
+    },
+    /// The process was not started as a role.
+    #[error("{0}")]
+    Start(String),
+}
+
+/// Runs a role until the coupler says stop.
+///
+/// # Errors
+/// Whatever ended it; the other roles were told where that was still possible.
+pub fn serve<S: Transport>(
+    role: &mut dyn Role,
+    config: &LinkConfig,
+    mut writer: Option<FrameWriter>,
+    abort: Arc<AtomicBool>,
+) -> Result<(), RoleError> {
+    let link = PhaseLink::<S>::open(config, role.name(), Some(abort))?;
+    let mut server = Server {
+        link,
+        own: Vec::new(),
+        peer: Vec::new(),
+        peer_epoch: 0,
+        header: StateHeader::default(),
+        compute: Duration::ZERO,
+        output: Duration::ZERO,
+        latency: Latency::default(),
+    };
+    let result = server.run(role, &mut writer);
+    let written = match writer {
+        Some(writer) => writer.finish(),
+        None => Ok(0),
+    };
+    match result {
+        Ok(last) => {
+            // The last message says what is on disk, so it goes out after the writer has ended.
+            let frames_safe = written?;
+            let header = server.farewell(role, &last, frames_safe);
+            server.link.send_state(&header, &[])?;
+            Ok(())
+        }
+        Err(error) => {
+            server.report_failure(&error);
+            Err(error)
+        }
+    }
+}
+
+struct Server<S: Transport> {
+    link: PhaseLink<S>,
+    own: Vec<StateRecord>,
+    peer: Vec<StateRecord>,
+    peer_epoch: u64,
+    header: StateHeader,
+    compute: Duration,
+    output: Duration,
+    latency: Latency,
+}
+
+impl<S: Transport> Server<S> {
+    /// All half-steps; returns the header of the state at which the run stopped.
+    fn run(&mut self, role: &mut dyn Role, writer: &mut Option<FrameWriter>) -> Result<StateHeader, RoleError> {
+        let (mut step, mut time, mut dt) = (0, 0.0, 0.0);
+        // The fluid needs the solid's first state to choose what it publishes.
+        let mut have_peer = false;
+        if role.name() == RoleName::Fluid {
+            self.receive_peer(&Expect::new(0, 0).time(0.0))?;
+            have_peer = true;
+        }
+        loop {
+            for stage in 0..2 {
+                let mut expect = Expect::new(step, stage).time(time);
+                if stage == 1 {
+                    expect = expect.dt(dt);
+                }
+                let start = Instant::now();
+                let epoch = role.publish(&self.peer, &mut self.own);
+                self.describe(role, writer.as_ref(), step, stage, epoch, time, dt);
+                self.compute += start.elapsed();
+                let sent = Instant::now();
+                self.link.send_state(&self.header, &self.own)?;
+                let start = Instant::now();
+                role.own_sums();
+                self.compute += start.elapsed();
+                if !std::mem::take(&mut have_peer) {
+                    self.receive_peer(&expect)?;
+                }
+                let fluid_epoch = if role.name() == RoleName::Fluid { epoch } else { self.peer_epoch };
+                let start = Instant::now();
+                role.cross_sums(&self.own, &self.peer, fluid_epoch)?;
+                self.compute += start.elapsed();
+
+                // At stage 0 the answer brings the time step.
+                let forces = self.link.receive_forces(&expect)?;
+                self.latency.add(sent.elapsed());
+                let answer = *forces.header();
+                dt = answer.dt;
+                if answer.order & order::WRITE_FRAME != 0
+                    && let Some(writer) = writer
+                {
+                    let start = Instant::now();
+                    writer.submit(answer.frame as u32, |frame| role.fill_frame(time, frame))?;
+                    self.output += start.elapsed();
+                }
+                if answer.order & order::STOP != 0 {
+                    return Ok(self.header);
+                }
+                let start = Instant::now();
+                role.advance(step, stage, dt, forces.records())?;
+                self.compute += start.elapsed();
+                if stage == 1 {
+                    time = answer.next_time;
+                }
+            }
+            step += 1;
+        }
+    }
+
+    fn receive_peer(&mut self, expect: &Expect) -> Result<(), RoleError> {
+        let sample = self.link.receive_peer(expect)?;
+        let header = sample.header();
+        if header.status != status::OK {
+            let (step, stage) = (header.step, header.stage);
+            return Err(RoleError::PeerEnded { peer: self.link.role().peer(), step, stage });
+        }
+        self.peer_epoch = header.epoch;
+        self.peer.clear();
+        self.peer.extend_from_slice(sample.records());
+        Ok(())
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    fn describe(
+        &mut self,
+        role: &dyn Role,
+        writer: Option<&FrameWriter>,
+        step: u64,
+        stage: u32,
+        epoch: u64,
+        time: f64,
+        dt: f64,
+    ) {
+        let mut header = StateHeader {
+            status: status::OK,
+            step,
+            stage,
+            epoch,
+            time,
+            displacement: role.displacement(),
+            sub_steps: role.sub_steps(),
+            frames_safe: writer.map_or(0, FrameWriter::safe),
+            particles: role.particles(),
+            ..StateHeader::default()
+        };
+        if stage == 0 {
+            header.dt_limit = role.dt_limit();
+            let mut probes = [0.0; MAX_PROBE_VALUES];
+            header.probe_count = role.probes(&mut probes) as u64;
+            header.probes = probes;
+            header.audit = role.audit();
+        } else {
+            header.dt = dt;
+        }
+        self.header = header;
+    }
+
+    fn farewell(&self, role: &dyn Role, last: &StateHeader, frames_safe: u32) -> StateHeader {
+        let times = self.link.times();
+        let mut header = StateHeader {
+            status: status::FINISHED,
+            stage: 2,
+            frames_safe,
+            state_hash: role.state_hash(),
+            seconds: [self.compute, times.wait, times.exchange, self.output].map(|d| d.as_secs_f64()),
+            probe_count: 2,
+            ..*last
+        };
+        header.probes = [0.0; MAX_PROBE_VALUES];
+        header.probes[0] = self.latency.percentile(0.5);
+        header.probes[1] = self.latency.percentile(0.99);
+        header
+    }
+
+    fn report_failure(&mut self, error: &RoleError) {
+        let mut header = StateHeader { status: status::FAILED, ..self.header };
+        // It takes the place of the next state.
+        (header.step, header.stage) =
+            if header.stage == 0 { (header.step, 1) } else { (header.step + 1, 0) };
+        match error {
+            RoleError::Diverged(d) => {
+                header.status = status::DIVERGED;
+                header.failure_quantity = d.quantity as u32;
+                header.failure_particle = d.particle;
+                header.failure_value = d.value;
+                header.failure_position = d.position;
+            }
+            // The exchange itself is broken, or the other side knows already.
+            RoleError::Link(_) | RoleError::PeerEnded { .. } | RoleError::Start(_) => return,
+            RoleError::Coverage(_) | RoleError::Output(_) => {}
+        }
+        if let Err(error) = self.link.send_state(&header, &[]) {
+            tracing::warn!("the failure could not be reported: {error}");
+        }
+    }
+}
+
+/// Environment variable with the path of the resolved scene.
+pub const SCENE_VARIABLE: &str = "HALFSTEP_SCENE";
+/// Environment variable with the folder for frames; without it none are written.
+pub const FRAMES_VARIABLE: &str = "HALFSTEP_FRAMES";
+/// Environment variable with the number of worker threads.
+pub const THREADS_VARIABLE: &str = "HALFSTEP_THREADS";
+
+/// Serves a role in this process, as its environment says: what a role's `main` calls.
+///
+/// # Errors
+/// The environment is not that of a role, or the role failed.
+pub fn serve_process(
+    stem: &str,
+    abort: Arc<AtomicBool>,
+    build: impl FnOnce(&Scene) -> Option<Box<dyn Role>> + Send,
+) -> Result<(), RoleError> {
+    let start = |reason: String| RoleError::Start(reason);
+    let config = LinkConfig::from_env()?;
+    let variable = |key: &str| std::env::var_os(key);
+    let scene = variable(SCENE_VARIABLE).ok_or_else(|| start(format!("{SCENE_VARIABLE} is not set")))?;
+    let text = std::fs::read_to_string(&scene)
+        .map_err(|e| start(format!("cannot read {}: {e}", PathBuf::from(&scene).display())))?;
+    let scene: Scene = serde_json::from_str(&text).map_err(|e| start(format!("not a resolved scene: {e}")))?;
+    let threads = variable(THREADS_VARIABLE).and_then(|v| v.to_str()?.parse().ok()).unwrap_or(1);
+    let writer = variable(FRAMES_VARIABLE)
+        .map(|dir| FrameWriter::start(&PathBuf::from(dir), stem))
+        .transpose()?;
+    on_threads(threads, move || {
+        let mut role = build(&scene).ok_or_else(|| RoleError::Start(format!("the scene has no {stem}")))?;
+        serve::<Processes>(role.as_mut(), &config, writer, abort)
+    })?
+}
+
+/// Runs `work` with a pool of that many threads for the neighbour passes.
+///
+/// # Errors
+/// The threads cannot be started.
+pub fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> Result<T, RoleError> {
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .map(|pool| pool.install(work))
+        .map_err(|e| RoleError::Start(format!("cannot start {threads} threads: {e}")))
+}
