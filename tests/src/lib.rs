@@ -1,1 +1,3 @@
-//! placeholder
+//! Suites that every implementation of a seam must pass, and what they need.
+
+pub mod conformance;

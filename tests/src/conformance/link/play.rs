@@ -1,0 +1,202 @@
+//! A run whose every value is known beforehand, so that each role can check all it receives.
+
+use halfstep_shared::failure::RoleName;
+use halfstep_shared::link::{CouplerLink, Expect, LinkConfig, LinkError, LinkTimes, PhaseLink, Transport};
+use halfstep_shared::protocol::{ForceHeader, ForceRecord, StateHeader, StateRecord, order, status};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+/// Steps between two renewals of the fluid's set.
+const EPOCH: u64 = 50;
+
+/// Number of particles that a phase publishes at a step.
+pub fn count(role: RoleName, step: u64) -> usize {
+    match role {
+        RoleName::Fluid => 20 + (epoch(role, step) as usize * 7) % 30,
+        _ => 12,
+    }
+}
+
+/// Epoch of a phase's set at a step.
+pub fn epoch(role: RoleName, step: u64) -> u64 {
+    if role == RoleName::Fluid { step / EPOCH } else { 0 }
+}
+
+/// A number that belongs to this place alone.
+fn value(role: RoleName, step: u64, stage: u32, slot: usize, component: usize) -> f64 {
+    let key = ((step * 2 + u64::from(stage)) * 100 + slot as u64) * 16 + component as u64;
+    (key as f64 + if role == RoleName::Fluid { 0.25 } else { 0.5 }) / 3.0
+}
+
+/// The record in a slot.
+pub fn state(role: RoleName, step: u64, stage: u32, slot: usize) -> StateRecord {
+    let v = |component| value(role, step, stage, slot, component);
+    StateRecord {
+        id: (slot * 3) as u32 + epoch(role, step) as u32,
+        flags: (slot % 2) as u32,
+        position: [v(0), v(1), v(2)],
+        velocity: [v(3), v(4), v(5)],
+        density: v(6),
+        pressure: v(7),
+        mass: v(8),
+        deviatoric_stress: [v(9), v(10), v(11), v(12), v(13), v(14)],
+    }
+}
+
+/// What the coupler answers to a record.
+pub fn force(of: &StateRecord, other: &StateRecord) -> ForceRecord {
+    ForceRecord { id: of.id, flags: 0, cross_viscosity: of.velocity, stress_force: other.position }
+}
+
+/// Time and time step of a step. The sum is not exact, so that a role that adds up its own time is found out.
+pub fn clock(step: u64) -> (f64, f64) {
+    let mut time = 0.0;
+    for n in 0..step {
+        time += step_size(n);
+    }
+    (time, step_size(step))
+}
+
+fn step_size(step: u64) -> f64 {
+    1e-5 * (1.0 + (step % 7) as f64 / 9.0)
+}
+
+/// The header of a state.
+pub fn state_header(role: RoleName, step: u64, stage: u32) -> StateHeader {
+    let (time, dt) = clock(step);
+    StateHeader {
+        step,
+        stage,
+        epoch: epoch(role, step),
+        time,
+        dt: if stage == 0 { 0.0 } else { dt },
+        dt_limit: 1.0,
+        ..StateHeader::default()
+    }
+}
+
+/// The header of the answer to a state.
+pub fn force_header(role: RoleName, step: u64, stage: u32) -> ForceHeader {
+    let (time, dt) = clock(step);
+    ForceHeader {
+        order: order::GO,
+        step,
+        stage,
+        epoch: epoch(role, step),
+        time,
+        dt,
+        next_time: time + dt,
+        ..ForceHeader::default()
+    }
+}
+
+/// Plays a phase until it is told to stop. Panics where a value is wrong.
+pub fn phase<S: Transport>(
+    config: &LinkConfig,
+    role: RoleName,
+    abort: Option<Arc<AtomicBool>>,
+) -> Result<LinkTimes, LinkError> {
+    let mut link = PhaseLink::<S>::open(config, role, abort)?;
+    let mut time = 0.0;
+    for step in 0.. {
+        let mut dt = 0.0;
+        for stage in 0..2 {
+            let records: Vec<StateRecord> =
+                (0..count(role, step)).map(|slot| state(role, step, stage, slot)).collect();
+            let header = StateHeader { time, dt, ..state_header(role, step, stage) };
+            if step % 2 == 0 {
+                link.send_state(&header, &records)?;
+            } else {
+                link.send_state_from(&header, records.len(), |slot| records[slot])?;
+            }
+            let peer = link.receive_peer(&Expect::new(step, stage).time(time).dt(dt))?;
+            check_states(role.peer(), step, stage, peer.records());
+            let expect = Expect::new(step, stage).time(time);
+            let forces = link.receive_forces(&if stage == 0 { expect } else { expect.dt(dt) })?;
+            if forces.header().order & order::STOP != 0 {
+                let last = StateHeader { stage: 2, status: status::FINISHED, ..header };
+                link.send_state(&last, &[])?;
+                return Ok(link.times());
+            }
+            for (slot, record) in forces.records().iter().enumerate() {
+                let other = &peer.records()[slot % peer.records().len()];
+                assert_eq!(*record, force(&records[slot], other), "{role} {step} {stage} {slot}");
+            }
+            assert_eq!(forces.records().len(), records.len());
+            dt = forces.header().dt;
+            if stage == 1 {
+                time = forces.header().next_time;
+            }
+        }
+    }
+    unreachable!("the coupler stops every run")
+}
+
+/// Plays the coupler for this many steps. Panics where a value is wrong.
+pub fn coupler<S: Transport>(
+    config: &LinkConfig,
+    steps: u64,
+    abort: Option<Arc<AtomicBool>>,
+) -> Result<LinkTimes, LinkError> {
+    let mut link = CouplerLink::<S>::open(config, abort)?;
+    let roles = [RoleName::Fluid, RoleName::Solid];
+    let mut time = 0.0;
+    for step in 0..=steps {
+        let dt = step_size(step);
+        let next_time = time + dt;
+        for stage in 0..2 {
+            let expect = Expect::new(step, stage).time(time).dt(if stage == 0 { 0.0 } else { dt });
+            let fluid = link.receive_state(RoleName::Fluid, &expect)?;
+            let solid = link.receive_state(RoleName::Solid, &expect)?;
+            check_states(RoleName::Fluid, step, stage, fluid.records());
+            check_states(RoleName::Solid, step, stage, solid.records());
+            for role in roles {
+                let (own, other) = match role {
+                    RoleName::Fluid => (fluid.records(), solid.records()),
+                    _ => (solid.records(), fluid.records()),
+                };
+                let mut header = ForceHeader { time, dt, next_time, ..force_header(role, step, stage) };
+                if step == steps {
+                    header.order = order::STOP;
+                    link.send_forces(role, &header, &[])?;
+                    continue;
+                }
+                let forces: Vec<ForceRecord> = own
+                    .iter()
+                    .enumerate()
+                    .map(|(slot, record)| force(record, &other[slot % other.len()]))
+                    .collect();
+                link.send_forces(role, &header, &forces)?;
+            }
+            if step == steps {
+                for role in roles {
+                    let last = link.receive_state(role, &Expect::new(step, 2))?;
+                    assert_eq!((last.header().status, last.records().len()), (status::FINISHED, 0));
+                }
+                return Ok(link.times());
+            }
+        }
+        time = next_time;
+    }
+    unreachable!("the last step returns")
+}
+
+fn check_states(role: RoleName, step: u64, stage: u32, records: &[StateRecord]) {
+    assert_eq!(records.len(), count(role, step), "{role} {step} {stage}");
+    for (slot, record) in records.iter().enumerate() {
+        assert_eq!(*record, state(role, step, stage, slot), "{role} {step} {stage} {slot}");
+    }
+}
+
+/// Plays any role.
+pub fn role<S: Transport>(
+    config: &LinkConfig,
+    role: RoleName,
+    steps: u64,
+    abort: Option<Arc<AtomicBool>>,
+) -> Result<LinkTimes, LinkError> {
+    match role {
+        RoleName::Coupler => coupler::<S>(config, steps, abort),
+        phase_name => phase::<S>(config, phase_name, abort),
+    }
+}

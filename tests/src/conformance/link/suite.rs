@@ -1,0 +1,289 @@
+//! The regular course of a run, and its ends.
+
+use super::play;
+use super::raw::{RawPhase, RawRole, identified};
+use super::{Run, eventually};
+use halfstep_shared::failure::RoleName::{self, Coupler, Fluid, Solid};
+use halfstep_shared::link::{Claim, CouplerLink, Expect, LinkConfig, LinkError, PhaseLink, Transport};
+use halfstep_shared::protocol::{StateHeader, StateRecord, status};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{scope, sleep};
+use std::time::{Duration, Instant};
+
+const ROLES: [RoleName; 3] = [Fluid, Solid, Coupler];
+
+/// Roles may start in any order.
+pub fn any_start_order<S: Transport>() {
+    for order in [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
+        let run = Run::new(100, 100);
+        let run = &*run;
+        scope(|threads| {
+            for (place, index) in order.into_iter().enumerate() {
+                threads.spawn(move || {
+                    sleep(Duration::from_millis(40 * place as u64));
+                    play::role::<S>(run, ROLES[index], 3, None).unwrap();
+                });
+            }
+        });
+    }
+}
+
+/// Every value of a long run arrives, in lock-step, and the counters add up to the time that passed.
+pub fn long_run<S: Transport>(half_steps: u64) {
+    let run = Run::new(100, 100);
+    let run = &*run;
+    let start = Instant::now();
+    let times: Vec<_> = scope(|threads| {
+        let roles = ROLES
+            .map(|role| threads.spawn(move || play::role::<S>(run, role, half_steps / 2, None).unwrap()));
+        roles.into_iter().map(|thread| thread.join().unwrap()).collect()
+    });
+    let wall = start.elapsed();
+    for (role, times) in ROLES.iter().zip(times) {
+        assert!(!times.exchange.is_zero() && !times.wait.is_zero(), "{role}: {times:?}");
+        assert!(times.exchange + times.wait <= wall, "{role}: {times:?} in {wall:?}");
+    }
+}
+
+/// Runs at the same time do not see each other.
+pub fn several_runs<S: Transport>() {
+    let runs = [(); 3].map(|()| Run::new(100, 100));
+    scope(|threads| {
+        for run in &runs {
+            for role in ROLES {
+                threads.spawn(move || play::role::<S>(run, role, 100, None).unwrap());
+            }
+        }
+    });
+}
+
+/// A second process in a role is refused, and the run of the first goes on.
+pub fn role_taken<S: Transport>() {
+    let run = Run::new(100, 100);
+    let run = &*run;
+    scope(|threads| {
+        let fluid = threads.spawn(move || play::phase::<S>(run, Fluid, None));
+        sleep(Duration::from_millis(100));
+        let second = PhaseLink::<S>::open(run, Fluid, None).map(drop);
+        assert_eq!(second, Err(LinkError::RoleTaken { role: Fluid }));
+        threads.spawn(move || play::phase::<S>(run, Solid, None).unwrap());
+        play::coupler::<S>(run, 20, None).unwrap();
+        fluid.join().unwrap().unwrap();
+    });
+}
+
+/// Who does not come is named.
+pub fn handshake_timeout<S: Transport>() {
+    let run = Run::new(100, 100);
+    let config = LinkConfig { handshake_seconds: 0.3, ..run.0.clone() };
+    let error = PhaseLink::<S>::open(&config, Solid, None).map(drop);
+    assert_eq!(
+        error,
+        Err(LinkError::HandshakeTimeout { role: Solid, missing: vec![Fluid, Coupler], seconds: 0.3 })
+    );
+    let flag = Arc::new(AtomicBool::new(false));
+    let error = scope(|threads| {
+        threads.spawn(|| {
+            let solid = PhaseLink::<S>::open(&run, Solid, Some(Arc::clone(&flag))).map(drop);
+            assert_eq!(solid, Err(LinkError::Aborted));
+        });
+        sleep(Duration::from_millis(50));
+        let error = CouplerLink::<S>::open(&config, None).map(drop);
+        flag.store(true, Ordering::Relaxed);
+        error
+    });
+    assert_eq!(error, Err(LinkError::HandshakeTimeout { role: Coupler, missing: vec![Fluid], seconds: 0.3 }));
+}
+
+/// Opens a link of each role in its own thread and hands it to a closure.
+pub fn with_links<S: Transport>(
+    config: &LinkConfig,
+    abort: Option<Arc<AtomicBool>>,
+    fluid: impl FnOnce(PhaseLink<S>) + Send,
+    solid: impl FnOnce(PhaseLink<S>) + Send,
+    coupler: impl FnOnce(CouplerLink<S>),
+) {
+    scope(|threads| {
+        let flag = abort.clone();
+        threads.spawn(move || fluid(PhaseLink::open(config, Fluid, flag).unwrap()));
+        let flag = abort.clone();
+        threads.spawn(move || solid(PhaseLink::open(config, Solid, flag).unwrap()));
+        coupler(CouplerLink::open(config, abort).unwrap());
+    });
+}
+
+/// A peer that leaves without a word is reported to both others, soon.
+pub fn peer_leaves<S: Transport>() {
+    let run = Run::new(100, 100);
+    let expect = Expect::new(0, 0);
+    let soon = |start: Instant| assert!(start.elapsed() < Duration::from_secs(1), "{:?}", start.elapsed());
+    with_links::<S>(
+        &run,
+        None,
+        |mut fluid| {
+            let start = Instant::now();
+            let error = fluid.receive_peer(&expect).map(drop);
+            assert_eq!(error, Err(LinkError::PeerDied { peer: Solid }));
+            soon(start);
+            // To say so to those who are left is still possible.
+            let header = StateHeader { status: status::FAILED, ..StateHeader::default() };
+            fluid.send_state(&header, &[]).unwrap();
+        },
+        drop,
+        |mut coupler| {
+            let start = Instant::now();
+            let error = coupler.receive_state(Solid, &expect).map(drop);
+            assert_eq!(error, Err(LinkError::PeerDied { peer: Solid }));
+            soon(start);
+            let last = coupler.receive_state(Fluid, &expect).unwrap();
+            assert_eq!(last.header().status, status::FAILED);
+        },
+    );
+}
+
+/// What a peer sent before it ended is read, whatever it holds, before its end is reported.
+pub fn last_words<S: Transport>() {
+    let run = Run::new(100, 100);
+    let read = |header: &StateHeader| {
+        assert_eq!((header.status, header.failure_particle), (status::DIVERGED, 17));
+        assert!(header.failure_value.is_nan());
+    };
+    with_links::<S>(
+        &run,
+        None,
+        |mut fluid| {
+            sleep(Duration::from_millis(150));
+            read(fluid.receive_peer(&Expect::new(4, 1)).unwrap().header());
+            let error = fluid.receive_peer(&Expect::new(4, 1)).map(drop);
+            assert_eq!(error, Err(LinkError::PeerDied { peer: Solid }));
+        },
+        |mut solid| {
+            let header = StateHeader {
+                status: status::DIVERGED,
+                failure_particle: 17,
+                failure_value: f64::NAN,
+                time: f64::NAN,
+                ..StateHeader::default()
+            };
+            solid.send_state(&header, &[]).unwrap();
+        },
+        |mut coupler| {
+            sleep(Duration::from_millis(150));
+            read(coupler.receive_state(Solid, &Expect::new(4, 1)).unwrap().header());
+        },
+    );
+}
+
+/// A peer that is there and says nothing is waited for only so long; so is one that does not read.
+pub fn silence<S: Transport>() {
+    let run = Run::new(100, 100);
+    let config = LinkConfig { patience_seconds: 0.4, ..run.0.clone() };
+    let done = &AtomicBool::new(false);
+    let linger = || eventually(20.0, "the others' end", || done.load(Ordering::Relaxed));
+    with_links::<S>(
+        &config,
+        None,
+        |mut fluid| {
+            let error = fluid.receive_peer(&Expect::new(0, 0)).map(drop);
+            assert_eq!(error, Err(LinkError::Timeout { peer: Solid, seconds: 0.4 }));
+            let results: Vec<_> =
+                (0..3).map(|step| fluid.send_state(&play::state_header(Fluid, step, 0), &[])).collect();
+            assert_eq!(results[..2], [Ok(()), Ok(())]);
+            assert!(matches!(results[2], Err(LinkError::Timeout { seconds: 0.4, .. })), "{results:?}");
+            done.store(true, Ordering::Relaxed);
+        },
+        |_solid| linger(),
+        |_coupler| linger(),
+    );
+}
+
+/// The abort flag ends every wait: for a message and for the start.
+pub fn abort<S: Transport>() {
+    let run = Run::new(100, 100);
+    let flag = Arc::new(AtomicBool::new(false));
+    let is_aborted = |result: Result<(), LinkError>| {
+        assert_eq!(result, Err(LinkError::Aborted));
+    };
+    let set = AtomicBool::new(false);
+    let ended =
+        |start: Instant| assert!(start.elapsed() < Duration::from_millis(600), "{:?}", start.elapsed());
+    with_links::<S>(
+        &run,
+        Some(Arc::clone(&flag)),
+        |mut fluid| {
+            let start = Instant::now();
+            is_aborted(fluid.receive_peer(&Expect::new(0, 0)).map(drop));
+            ended(start);
+            eventually(5.0, "the flag", || set.load(Ordering::Relaxed));
+        },
+        |mut solid| {
+            is_aborted(solid.receive_forces(&Expect::new(0, 0)).map(drop));
+            eventually(5.0, "the flag", || set.load(Ordering::Relaxed));
+        },
+        |mut coupler| {
+            scope(|threads| {
+                threads.spawn(|| {
+                    sleep(Duration::from_millis(150));
+                    flag.store(true, Ordering::Relaxed);
+                });
+                is_aborted(coupler.receive_state(Fluid, &Expect::new(0, 0)).map(drop));
+            });
+            set.store(true, Ordering::Relaxed);
+        },
+    );
+    is_aborted(PhaseLink::<S>::open(&run, Fluid, Some(flag)).map(drop));
+}
+
+/// More particles than there is room for: refused where they are sent, and where they come from a stranger.
+pub fn capacity<S: Transport>() {
+    let run = Run::new(10, 10);
+    let records: Vec<StateRecord> = (0..11).map(|slot| play::state(Fluid, 0, 0, slot)).collect();
+    let too_many =
+        |peer| LinkError::Capacity { peer, needed: 11, capacity: 10, key: LinkError::CAPACITY_KEY };
+    scope(|threads| {
+        threads.spawn(|| {
+            let fluid = RawPhase::<S>::enter(&run, "fluid", 11);
+            fluid.send(identified(&run, play::state_header(Fluid, 0, 0), 11), &records);
+            eventually(20.0, "the solid's end", || {
+                fluid.peer.receive().unwrap().is_some_and(|last| last.user_header().status == status::FAILED)
+            });
+        });
+        threads.spawn(|| {
+            let mut solid = PhaseLink::<S>::open(&run, Solid, None).unwrap();
+            let header = play::state_header(Solid, 0, 0);
+            assert_eq!(solid.send_state(&header, &records), Err(too_many(Solid)));
+            let error = solid.receive_peer(&Expect::new(0, 0)).map(drop);
+            assert_eq!(error, Err(too_many(Fluid)));
+            solid.send_state(&StateHeader { status: status::FAILED, ..header }, &[]).unwrap();
+        });
+        let mut coupler = CouplerLink::<S>::open(&run, None).unwrap();
+        let error = coupler.receive_state(Fluid, &Expect::new(0, 0)).map(drop);
+        assert_eq!(error, Err(too_many(Fluid)));
+        let last = coupler.receive_state(Solid, &Expect::new(0, 0)).unwrap();
+        assert_eq!(last.header().status, status::FAILED);
+    });
+}
+
+/// A stranger with other records or another schema is refused at the start.
+pub fn strangers<S: Transport>() {
+    let run = Run::new(10, 10);
+    let _claim = Claim::new(&run).unwrap();
+    let is_refused = |channel: &str, what: &str| {
+        let error = PhaseLink::<S>::open(&run, Solid, None).map(drop).unwrap_err();
+        match &error {
+            LinkError::Incompatible { service, reason } => {
+                assert_eq!(service, channel);
+                assert!(reason.contains(what), "{reason}");
+            }
+            other => panic!("{other}"),
+        }
+    };
+    {
+        let _stranger = RawRole::<S>::enter_with_schema(&run, "fluid", 1);
+        is_refused("halfstep/fluid/wake", "IncompatibleAttributes");
+    }
+    let stranger = RawRole::<S>::enter(&run, "fluid");
+    let _service = stranger.channel::<u64, StateHeader>("fluid/state", 2);
+    is_refused("halfstep/fluid/state", "IncompatibleTypes");
+}

@@ -1,0 +1,3 @@
+//! Suites written once and instantiated for every implementation of a seam.
+
+pub mod link;
