@@ -1,1 +1,10 @@
-//! placeholder
+//! The front door: runs scenes, couples fluid and solid in lock-step, writes what a run leaves.
+
+pub mod clock;
+pub mod couple;
+pub mod cross_viscosity;
+pub mod roles;
+pub mod recorder;
+pub mod run;
+pub mod solo;
+pub mod supervise;

@@ -1,2 +1,155 @@
-//! placeholder
-fn main() {}
+//! The `halfstep` command.
+
+use clap::{Parser, Subcommand};
+use halfstep::run::{RunOptions, SolidSource};
+use halfstep::supervise::abort_flag;
+use halfstep::{roles, run};
+use halfstep_shared::failure::RoleName;
+use halfstep_shared::lockstep;
+use halfstep_shared::output::run_json::RunStatus;
+use halfstep_shared::scene;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Fluid-structure co-simulation by smoothed particle hydrodynamics: a fluid process, a solid process and a coupler in
+/// lock-step over shared memory.
+#[derive(Parser)]
+#[command(version)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Simulates a scene
+    Run(RunArguments),
+    /// A role's process; started by `run`
+    #[command(hide = true)]
+    Role {
+        /// fluid or solid
+        name: String,
+    },
+}
+
+#[derive(clap::Args)]
+struct SceneArguments {
+    /// Scene file (TOML)
+    scene: PathBuf,
+    /// Overrides a key of the scene: dotted, `shape.NAME.KEY` for a shape
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Simulated time, s (end_time of the scene)
+    #[arg(long, value_name = "SECONDS")]
+    until: Option<String>,
+}
+
+#[derive(clap::Args)]
+struct RunArguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// Folder of the run (default: out/SCENE)
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Worker threads of the fluid process
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..=1024))]
+    threads: Option<u64>,
+    /// Runs the roles as threads of one process
+    #[arg(long, conflicts_with = "solid")]
+    in_process: bool,
+    /// Shows no progress
+    #[arg(long)]
+    quiet: bool,
+    /// Removes an earlier run in the folder
+    #[arg(long)]
+    force: bool,
+    /// A solid of your own: a command that speaks the protocol; without a command, one is awaited
+    #[arg(long, value_name = "COMMAND", num_args = 0..=1, default_missing_value = "")]
+    solid: Option<String>,
+    /// How long to wait for a solid started by hand, s
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0)]
+    solid_wait: f64,
+}
+
+fn main() -> ExitCode {
+    match Arguments::parse().command {
+        Command::Run(arguments) => run_scene(arguments),
+        Command::Role { name } => serve_role(&name),
+    }
+}
+
+fn load(arguments: &SceneArguments) -> Result<scene::Scene, ExitCode> {
+    let mut overrides = arguments.set.clone();
+    overrides.extend(arguments.until.iter().map(|t| format!("end_time={t}")));
+    scene::load(&arguments.scene, &overrides).map_err(|errors| {
+        eprintln!("{:?}", miette::Report::new(errors));
+        ExitCode::from(1)
+    })
+}
+
+fn run_scene(arguments: RunArguments) -> ExitCode {
+    let scene = match load(&arguments.scene) {
+        Ok(scene) => scene,
+        Err(code) => return code,
+    };
+    let out = arguments.out.unwrap_or_else(|| PathBuf::from("out").join(&scene.name));
+    let options = RunOptions {
+        out: out.clone(),
+        threads: arguments.threads.map(|n| n as usize),
+        in_process: arguments.in_process,
+        quiet: arguments.quiet,
+        force: arguments.force,
+        solid: match arguments.solid {
+            None => SolidSource::BuiltIn,
+            Some(line) if line.is_empty() => SolidSource::ByHand,
+            Some(line) => SolidSource::Command(line),
+        },
+        solid_wait: arguments.solid_wait,
+    };
+    match run::run(&scene, &options) {
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(1)
+        }
+        Ok((report, error)) => {
+            if let Some(error) = error {
+                eprintln!("error: {error}");
+            }
+            println!(
+                "{}: {} steps to t = {} s in {:.1} s; see {}",
+                scene.name,
+                report.steps,
+                report.time,
+                report.wall_seconds,
+                out.join("plot.png").display()
+            );
+            match report.status {
+                Some(RunStatus::Finished) => ExitCode::SUCCESS,
+                Some(RunStatus::Stopped) => ExitCode::from(130),
+                _ => ExitCode::from(2),
+            }
+        }
+    }
+}
+
+fn serve_role(name: &str) -> ExitCode {
+    tracing_subscriber::fmt().with_writer(std::io::stderr).with_ansi(false).init();
+    let role = match name {
+        "fluid" => RoleName::Fluid,
+        "solid" => RoleName::Solid,
+        _ => {
+            eprintln!("error: a role is fluid or solid, not `{name}`");
+            return ExitCode::from(1);
+        }
+    };
+    let result = abort_flag()
+        .map_err(|e| lockstep::RoleError::Start(format!("cannot watch for signals: {e}")))
+        .and_then(|abort| lockstep::serve_process(roles::stem(role), abort, |scene| roles::build(role, scene)));
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            tracing::error!("{role}: {error}");
+            ExitCode::from(2)
+        }
+    }
+}

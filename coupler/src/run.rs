@@ -1,0 +1,407 @@
+//! One run from a scene to a folder.
+
+use crate::clock::Clock;
+use crate::couple::{CoupledOutcome, Coupler};
+use crate::recorder::Recorder;
+use crate::roles;
+use crate::solo::run_solo;
+use crate::supervise::{Children, SuperviseError, stop_flag};
+use halfstep_shared::failure::{Diverged, RoleName};
+use halfstep_shared::geometry;
+use halfstep_shared::lane::Isa;
+use halfstep_shared::link::{self, CouplerLink, LinkConfig, LinkError, Processes, Threads};
+use halfstep_shared::lockstep::{self, FRAMES_VARIABLE, RoleError, SCENE_VARIABLE, THREADS_VARIABLE};
+use halfstep_shared::output::run_json::{Particles, RoleSeconds, RunStatus};
+use halfstep_shared::output::{self, FrameWriter, OutputError, RunDirectory, RunReport};
+use halfstep_shared::protocol::StateHeader;
+use halfstep_shared::scene::Scene;
+use std::path::PathBuf;
+use std::process::{Command, ExitStatus};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+/// Why a run failed.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// A quantity left its bounds.
+    #[error(transparent)]
+    Diverged(#[from] Diverged),
+    /// A role gave up.
+    #[error("the {role} failed at step {step}; log.txt says why")]
+    RoleFailed {
+        /// Which.
+        role: RoleName,
+        /// Step n.
+        step: u64,
+    },
+    /// A role's process ended.
+    #[error("the {role} process ended ({status}) while the run was going on: {link}")]
+    RoleEnded {
+        /// Which.
+        role: RoleName,
+        /// How.
+        status: ExitStatus,
+        /// What the coupler saw.
+        link: LinkError,
+    },
+    /// The solid changed the size of its interface set.
+    #[error("the solid published {now} interface particles at step {step} and {first} before; the number is fixed")]
+    SolidCount {
+        /// At first.
+        first: usize,
+        /// Now.
+        now: usize,
+        /// Step n.
+        step: u64,
+    },
+    /// The exchange failed.
+    #[error(transparent)]
+    Link(#[from] LinkError),
+    /// A file could not be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// A process could not be started.
+    #[error(transparent)]
+    Supervise(#[from] SuperviseError),
+    /// A role in this process failed.
+    #[error(transparent)]
+    Role(#[from] RoleError),
+    /// The operating system refused.
+    #[error("{0}")]
+    System(String),
+}
+
+/// Where the solid process comes from.
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+pub enum SolidSource {
+    /// The scene's model.
+    #[default]
+    BuiltIn,
+    /// A command line for the shell.
+    Command(String),
+    /// Somebody starts it by hand.
+    ByHand,
+}
+
+/// How to run.
+#[derive(Clone, Debug, Default)]
+pub struct RunOptions {
+    /// Folder of the run.
+    pub out: PathBuf,
+    /// Worker threads of the fluid; `None`: the scene's.
+    pub threads: Option<usize>,
+    /// Roles as threads of this process.
+    pub in_process: bool,
+    /// No progress.
+    pub quiet: bool,
+    /// An earlier run in the folder is removed.
+    pub force: bool,
+    /// The solid.
+    pub solid: SolidSource,
+    /// How long to wait for a solid started by hand, s.
+    pub solid_wait: f64,
+}
+
+/// Runs a scene. The report is written whatever happens; an error stands in it, too.
+///
+/// # Errors
+/// Nothing could be started or written. A run that failed is a report with its error.
+pub fn run(scene: &Scene, options: &RunOptions) -> Result<(RunReport, Option<RunError>), RunError> {
+    let directory = RunDirectory::create(&options.out, options.force)?;
+    let stop = stop_flag().map_err(|e| RunError::System(format!("cannot watch for signals: {e}")))?;
+    let layout = geometry::layout::<2>(scene);
+    let mut report = RunReport {
+        scene: serde_json::to_value(scene).map_err(|e| RunError::System(e.to_string()))?,
+        version: env!("CARGO_PKG_VERSION").into(),
+        particles: Particles {
+            fluid: layout.fluid.len() as u64,
+            solid: layout.solid.len() as u64,
+            wall: layout.wall.len() as u64,
+        },
+        ..RunReport::default()
+    };
+    report.audit.isa = Some(Isa::detect().bits_name().into());
+    report.write(&directory.file("run.json"))?;
+    let mut recorder = Recorder::new(scene, &directory.file("probes.csv"), options.quiet)?;
+    let mut clock = Clock::new(scene);
+    let foreign = options.solid != SolidSource::BuiltIn;
+    let result = if scene.fluid.is_some() && (scene.solid.is_some() || foreign) {
+        let capacity = capacities(scene, &report.particles, foreign);
+        let session = Session { scene, options, directory: &directory, stop: &stop, capacity };
+        session.coupled(&mut clock, &mut recorder, &mut report)
+    } else {
+        solo(scene, options, &directory, &stop, &mut clock, &mut recorder, &mut report)
+    };
+    recorder.finish(&mut report);
+    let error = match result {
+        Ok(stopped) => {
+            report.status = Some(if stopped { RunStatus::Stopped } else { RunStatus::Finished });
+            None
+        }
+        Err(error) => {
+            tracing::error!("{error}");
+            report.status =
+                Some(if matches!(error, RunError::Diverged(_)) { RunStatus::Diverged } else { RunStatus::Failed });
+            report.error = Some(error.to_string());
+            Some(error)
+        }
+    };
+    report.write(&directory.file("run.json"))?;
+    for picture in [output::draw_plot(scene, directory.path()).map(Some), output::draw_contact(scene, directory.path())]
+    {
+        if let Err(e) = picture {
+            tracing::warn!("a picture could not be drawn: {e}");
+        }
+    }
+    Ok((report, error))
+}
+
+/// Interface capacities of fluid and solid.
+fn capacities(scene: &Scene, particles: &Particles, foreign: bool) -> (u32, u32) {
+    let solid = if foreign { particles.solid.max(4096) } else { particles.solid };
+    // A ribbon of about four layers on each side of the solid's surface, and room for compression.
+    let ribbon = (24 * solid).max(4096).min(particles.fluid);
+    let fluid = scene.numerics.interface_capacity.map_or(ribbon, u64::from);
+    (fluid.max(1) as u32, solid.max(1) as u32)
+}
+
+fn solo(
+    scene: &Scene,
+    options: &RunOptions,
+    directory: &RunDirectory,
+    stop: &AtomicBool,
+    clock: &mut Clock,
+    recorder: &mut Recorder,
+    report: &mut RunReport,
+) -> Result<bool, RunError> {
+    let name = if scene.fluid.is_some() { RoleName::Fluid } else { RoleName::Solid };
+    let stem = roles::stem(name);
+    let own = scene.numerics.threads;
+    let threads = options.threads.unwrap_or(if name == RoleName::Fluid { own.fluid } else { own.solid });
+    let mut writer = FrameWriter::start(&directory.frames(), stem)?;
+    let result = lockstep::on_threads(threads, || -> Result<_, RunError> {
+        let mut role = roles::build(name, scene)
+            .ok_or_else(|| RunError::System("the scene has neither fluid nor solid".into()))?;
+        run_solo(role.as_mut(), clock, &mut writer, recorder, stop)
+    })?;
+    writer.finish()?;
+    let outcome = result?;
+    report.audit.state_hash = Some(format!("{:016x}", outcome.state_hash));
+    let seconds = Some(outcome.seconds);
+    if name == RoleName::Fluid { report.roles.fluid = seconds } else { report.roles.solid = seconds }
+    Ok(outcome.stopped)
+}
+
+struct Session<'a> {
+    scene: &'a Scene,
+    options: &'a RunOptions,
+    directory: &'a RunDirectory,
+    stop: &'a Arc<AtomicBool>,
+    capacity: (u32, u32),
+}
+
+impl Session<'_> {
+    fn threads(&self, role: RoleName) -> usize {
+        let own = self.scene.numerics.threads;
+        match role {
+            RoleName::Fluid => self.options.threads.unwrap_or(own.fluid),
+            _ => own.solid,
+        }
+    }
+
+    fn coupled(
+        &self,
+        clock: &mut Clock,
+        recorder: &mut Recorder,
+        report: &mut RunReport,
+    ) -> Result<bool, RunError> {
+        link::cleanup_stale();
+        let mut config = LinkConfig::new(self.capacity.0, self.capacity.1);
+        if self.options.solid == SolidSource::ByHand {
+            config.handshake_seconds = self.options.solid_wait;
+        }
+        let outcome = if self.options.in_process && self.options.solid == SolidSource::BuiltIn {
+            self.as_threads(&config, clock, recorder)
+        } else {
+            self.as_processes(&config, clock, recorder)
+        };
+        link::cleanup(&config);
+        let outcome = outcome?;
+        let hash = outcome.fluid.state_hash ^ outcome.solid.state_hash.rotate_left(1);
+        report.audit.state_hash = Some(format!("{hash:016x}"));
+        report.audit.action_reaction = Some(outcome.action_reaction);
+        report.audit.checks = outcome.checks;
+        report.roles.fluid = Some(seconds(&outcome.fluid));
+        report.roles.solid = Some(seconds(&outcome.solid));
+        report.roles.coupler = Some(outcome.seconds);
+        report.round_trip_us =
+            Some(output::run_json::Percentiles { p50: outcome.fluid.probes[0], p99: outcome.fluid.probes[1] });
+        Ok(outcome.stopped)
+    }
+
+    fn as_processes(
+        &self,
+        config: &LinkConfig,
+        clock: &mut Clock,
+        recorder: &mut Recorder,
+    ) -> Result<CoupledOutcome, RunError> {
+        let system = |what: &str, e: std::io::Error| RunError::System(format!("{what}: {e}"));
+        let scene_file = self.directory.file("scene.json");
+        let text = serde_json::to_string_pretty(self.scene).map_err(|e| RunError::System(e.to_string()))?;
+        std::fs::write(&scene_file, text).map_err(|e| system("cannot write scene.json", e))?;
+        let scene_file = scene_file.canonicalize().map_err(|e| system("scene.json", e))?;
+        let frames = self.directory.frames().canonicalize().map_err(|e| system("frames", e))?;
+        let program = std::env::current_exe().map_err(|e| system("cannot find the own program", e))?;
+        let mut children = Children::new(&self.directory.file("log.txt"));
+        let mut built_in = vec![RoleName::Fluid];
+        match &self.options.solid {
+            SolidSource::BuiltIn => built_in.push(RoleName::Solid),
+            SolidSource::Command(line) => {
+                children.spawn_shell(RoleName::Solid, line, config, &scene_file)?;
+            }
+            SolidSource::ByHand => {
+                eprintln!("waiting {} s for a solid; start it with", self.options.solid_wait);
+                for (key, value) in config.to_env() {
+                    eprintln!("  export {key}={value}");
+                }
+                eprintln!("  export {SCENE_VARIABLE}={}", scene_file.display());
+            }
+        }
+        for role in built_in {
+            let mut command = Command::new(&program);
+            command
+                .arg("role")
+                .arg(roles::stem(role))
+                .envs(config.to_env())
+                .env(SCENE_VARIABLE, &scene_file)
+                .env(FRAMES_VARIABLE, &frames)
+                .env(THREADS_VARIABLE, self.threads(role).to_string());
+            children.spawn(role, command)?;
+        }
+        let abort = Arc::new(AtomicBool::new(false));
+        let done = AtomicBool::new(false);
+        let watched = std::thread::scope(|scope| {
+            // Before the handshake nobody else notices a child that could not even start.
+            let watcher = scope.spawn(|| watch(&mut children, &abort, &done, self.stop));
+            let result = CouplerLink::<Processes>::open(config, Some(Arc::clone(&abort)))
+                .map_err(RunError::from)
+                .inspect(|_| done.store(true, Ordering::Relaxed))
+                .and_then(|link| self.lockstep(link, clock, recorder));
+            done.store(true, Ordering::Relaxed);
+            let early = watcher.join().unwrap_or(None);
+            match (result, early) {
+                (Err(RunError::Link(link)), Some((role, status))) => {
+                    Err(RunError::RoleEnded { role, status, link })
+                }
+                (result, _) => result,
+            }
+        });
+        match watched {
+            Ok(outcome) => {
+                children.wait(Duration::from_secs(5));
+                Ok(outcome)
+            }
+            Err(error) => {
+                children.wait(Duration::from_millis(300));
+                let first = children.first_exit();
+                children.stop(Duration::from_secs(1));
+                Err(match (error, first) {
+                    (RunError::Link(link), Some((role, status))) if !status.success() => {
+                        RunError::RoleEnded { role, status, link }
+                    }
+                    (error, _) => error,
+                })
+            }
+        }
+    }
+
+    fn lockstep<S: link::Transport>(
+        &self,
+        link: CouplerLink<S>,
+        clock: &mut Clock,
+        recorder: &mut Recorder,
+    ) -> Result<CoupledOutcome, RunError> {
+        let mut coupler = Coupler::<S, 2>::new(link, self.scene)
+            .ok_or_else(|| RunError::System("a coupled scene needs [fluid] and [solid]".into()))?;
+        coupler.run(clock, recorder, self.stop)
+    }
+
+    fn as_threads(
+        &self,
+        config: &LinkConfig,
+        clock: &mut Clock,
+        recorder: &mut Recorder,
+    ) -> Result<CoupledOutcome, RunError> {
+        let abort = Arc::new(AtomicBool::new(false));
+        std::thread::scope(|scope| {
+            let threads: Vec<_> = [RoleName::Fluid, RoleName::Solid]
+                .into_iter()
+                .map(|name| {
+                    let abort = Arc::clone(&abort);
+                    scope.spawn(move || self.role_thread(name, config, abort))
+                })
+                .collect();
+            let result = CouplerLink::<Threads>::open(config, Some(Arc::clone(&abort)))
+                .map_err(RunError::from)
+                .and_then(|link| self.lockstep(link, clock, recorder));
+            if result.is_err() {
+                abort.store(true, Ordering::Relaxed);
+            }
+            let mut first = None;
+            for thread in threads {
+                let ended = thread.join().unwrap_or_else(|_| Err(RoleError::Start("a role panicked".into())));
+                if let Err(error) = ended
+                    && first.is_none()
+                    && !matches!(error, RoleError::Link(_) | RoleError::PeerEnded { .. })
+                {
+                    first = Some(error);
+                }
+            }
+            match (result, first) {
+                (Err(error @ RunError::Diverged(_)), _) => Err(error),
+                (Err(_), Some(cause)) => Err(cause.into()),
+                (result, _) => result,
+            }
+        })
+    }
+
+    fn role_thread(&self, name: RoleName, config: &LinkConfig, abort: Arc<AtomicBool>) -> Result<(), RoleError> {
+        let frames = self.directory.frames();
+        let raised = Arc::clone(&abort);
+        let result = FrameWriter::start(&frames, roles::stem(name)).map_err(RoleError::from).and_then(|writer| {
+            lockstep::on_threads(self.threads(name), move || {
+                let mut role = roles::build(name, self.scene)
+                    .ok_or_else(|| RoleError::Start(format!("the scene has no {name}")))?;
+                lockstep::serve::<Threads>(role.as_mut(), config, Some(writer), abort)
+            })?
+        });
+        if matches!(result, Err(RoleError::Start(_))) {
+            raised.store(true, Ordering::Relaxed);
+        }
+        result
+    }
+}
+
+/// Watches for a child that ends, or for Ctrl-C, during the handshake.
+fn watch(
+    children: &mut Children,
+    abort: &AtomicBool,
+    done: &AtomicBool,
+    stop: &AtomicBool,
+) -> Option<(RoleName, ExitStatus)> {
+    while !done.load(Ordering::Relaxed) {
+        let exit = children.first_exit();
+        if exit.is_some() || stop.load(Ordering::Relaxed) {
+            abort.store(true, Ordering::Relaxed);
+            return exit;
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    None
+}
+
+fn seconds(header: &StateHeader) -> RoleSeconds {
+    let [compute, wait, exchange, output] = header.seconds;
+    RoleSeconds { compute, wait, exchange, output }
+}
