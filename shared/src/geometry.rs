@@ -181,6 +181,21 @@ pub fn bounding_box(shape: &Shape, scene: &Scene) -> Block {
     }
 }
 
+/// Whether each clamp of a solid shape holds one of its particles.
+pub(crate) fn clamp_catches(scene: &Scene, shape: &Shape) -> Vec<bool> {
+    match scene.dimension {
+        2 => catches::<2>(scene, shape),
+        _ => catches::<3>(scene, shape),
+    }
+}
+
+fn catches<const D: usize>(scene: &Scene, shape: &Shape) -> Vec<bool> {
+    let points = points::of_shape::<D>(&shape.geometry, Spacing::of(scene, shape));
+    let tolerance = TOLERANCE * scene.resolution;
+    let any = |block| points.iter().any(|p| holds(block, &p.position, tolerance));
+    shape.clamp.iter().map(any).collect()
+}
+
 fn solid_point<const D: usize>(
     scene: &Scene,
     shape: &Shape,

@@ -1,0 +1,269 @@
+//! What must hold between keys. A check that would only repeat an error of one of its keys says nothing.
+
+use super::document::Node;
+use super::error::{Report, listed, nearest};
+use super::*;
+use crate::geometry;
+use crate::protocol::MAX_PROBE_VALUES;
+
+/// Frames, rows and steps that no run can be meant to have.
+const MAX_FRAMES: f64 = 1e5;
+const MAX_ROWS: f64 = 1e7;
+const MAX_STEPS: f64 = 1e9;
+
+pub(super) struct Check<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) root: &'a Node,
+    pub(super) report: &'a Report,
+}
+
+impl Check<'_> {
+    pub(super) fn all(&self) {
+        self.phases();
+        self.shape_names();
+        self.sizes();
+        self.interface();
+        self.times();
+        self.probes();
+        self.references();
+    }
+
+    /// Notes a wrong value where it is written; a default's error is noted at the table around it.
+    fn wrong(&self, key: &str, reason: impl Into<String>) {
+        let written = self.root.child_at(key).is_some();
+        let origin = self.root.origin_of(key);
+        if written {
+            self.report.value(key, origin, reason);
+        } else {
+            self.report.place(key, origin, reason);
+        }
+    }
+
+    fn place(&self, key: &str, reason: impl Into<String>) {
+        self.report.place(key, self.root.origin_of(key), reason);
+    }
+
+    /// The key of the shape of that index: by index, since names may be taken twice.
+    fn shape_key(&self, index: usize) -> String {
+        let shape = &self.scene.shapes[index];
+        let first = self.scene.shapes.iter().position(|s| s.name == shape.name);
+        if first == Some(index) && !shape.name.is_empty() {
+            format!("shape.{}", shape.name)
+        } else {
+            format!("shape.{index}")
+        }
+    }
+
+    fn phases(&self) {
+        if self.report.has("shape") {
+            return;
+        }
+        let shape_of = |phase| self.scene.shapes.iter().position(|s| s.phase == phase);
+        for (phase, section, present) in [
+            (Phase::Fluid, "fluid", self.scene.fluid.is_some()),
+            (Phase::Solid, "solid", self.scene.solid.is_some()),
+        ] {
+            match (shape_of(phase), present) {
+                _ if self.report.has(section) => (),
+                (None, true) => self.place(section, format!("the scene has no shape of phase \"{section}\"")),
+                (Some(index), false) => self.place(
+                    &format!("{}.phase", self.shape_key(index)),
+                    format!("the scene has no [{section}] section that says what it is made of"),
+                ),
+                _ => (),
+            }
+        }
+        let moving = [Phase::Fluid, Phase::Solid].into_iter().any(|phase| shape_of(phase).is_some());
+        if !moving && self.scene.fluid.is_none() && self.scene.solid.is_none() {
+            self.place("shape", "the scene has no shape of phase \"fluid\" or \"solid\": nothing would move");
+        }
+    }
+
+    fn shape_names(&self) {
+        let names: Vec<&str> = self.scene.shapes.iter().map(|s| s.name.as_str()).collect();
+        self.unique("shape", &names);
+    }
+
+    fn unique(&self, array: &str, names: &[&str]) {
+        for (index, name) in names.iter().enumerate() {
+            if !name.is_empty() && names[..index].contains(name) {
+                // By index: by name the first would be found.
+                let place = self.root.child(array).and_then(|items| match &items.value {
+                    document::Value::Array(items) => items.get(index)?.child("name"),
+                    _ => None,
+                });
+                if let Some(place) = place {
+                    let key = format!("{array}.{index}.name");
+                    self.report.value(&key, place.origin, format!("another {array} has this name"));
+                }
+            }
+        }
+    }
+
+    /// Every shape holds at least one particle.
+    fn sizes(&self) {
+        let dx = self.scene.resolution;
+        if self.report.has_any(&["resolution", "dimension"]) {
+            return;
+        }
+        for (index, shape) in self.scene.shapes.iter().enumerate() {
+            let key = self.shape_key(index);
+            if self.report.has(&key) {
+                continue;
+            }
+            let (kind, thickness) = match &shape.geometry {
+                Geometry::Box(b) => ("box", self.thinnest(b)),
+                Geometry::Tank { cavity, .. } => ("tank", self.thinnest(cavity)),
+                Geometry::Disc { radius, .. } => ("disc", *radius),
+                Geometry::Ring { inner, outer, .. } => ("ring", outer - inner),
+            };
+            let nodal = self.scene.numerics.lattice == Lattice::Nodal && shape.phase != Phase::Wall;
+            let (least, convention) =
+                if nodal { (2.0, ", in the nodal lattice two spacings,") } else { (1.0, "") };
+            if thickness < dx * least * (1.0 - 1e-9) {
+                let thin = "is thinner than one particle";
+                let reason = format!("{thin}{convention}: {thickness} m at a resolution of {dx} m");
+                self.wrong(&format!("{key}.{kind}"), reason);
+            }
+        }
+    }
+
+    fn thinnest(&self, block: &Block) -> f64 {
+        let extents = (0..self.scene.dimension).map(|a| block.max[a] - block.min[a]);
+        extents.fold(f64::INFINITY, f64::min)
+    }
+
+    fn interface(&self) {
+        if self.report.has("interface.treatment") || self.scene.interface.treatment != Treatment::PhaseBlind {
+            return;
+        }
+        if let Some(SubSteps::Fixed(n)) = self.scene.solid.as_ref().map(|s| s.sub_steps)
+            && n != 1
+        {
+            let why = "a particle close to the interface hangs on a spring as stiff as the solid";
+            self.wrong("solid.sub_steps", format!("must be \"auto\" or 1 with phase-blind: {why}"));
+        }
+        if self.scene.smoothing_ratio < 1.1 && !self.report.has("smoothing_ratio") {
+            let why = "with h / dx = 1.0 the sums over both phases blow up at once";
+            self.wrong("smoothing_ratio", format!("must be at least 1.1 with phase-blind: {why}"));
+        }
+    }
+
+    fn times(&self) {
+        if self.report.has("end_time") {
+            return;
+        }
+        let end = self.scene.end_time;
+        let step = match self.scene.time_step {
+            TimeStep::Fixed(dt) => dt,
+            TimeStep::Auto => end,
+        };
+        if step > end && !self.report.has("time_step") {
+            self.wrong("time_step", format!("must be at most end_time, {end} s"));
+        }
+        let output = &self.scene.output;
+        for (key, interval, most, what) in [
+            ("time_step", step, MAX_STEPS, "steps"),
+            ("output.frame_interval", output.frame_interval, MAX_FRAMES, "frames"),
+            ("output.probe_interval", output.probe_interval, MAX_ROWS, "rows in probes.csv"),
+            ("output.checkpoint_interval", output.checkpoint_interval, MAX_FRAMES, "checkpoints"),
+        ] {
+            let number = end / interval;
+            if interval > 0.0 && number > most && !self.report.has(key) {
+                let reason = format!("would make {number:.0} {what} until {end} s; at most {most:.0}");
+                self.wrong(key, reason);
+            }
+        }
+    }
+
+    fn probes(&self) {
+        let names: Vec<&str> = self.scene.probes.iter().map(|p| p.name.as_str()).collect();
+        if !self.report.has("probe") {
+            self.unique("probe", &names);
+        }
+        let mut values = [0_usize; 3];
+        for probe in &self.scene.probes {
+            let key = format!("probe.{}", probe.name);
+            if self.report.has(&key) {
+                continue;
+            }
+            let phase = probe.kind.phase();
+            let (name, present) = match phase {
+                Phase::Solid => ("solid", self.scene.solid.is_some()),
+                _ => ("fluid", self.scene.fluid.is_some()),
+            };
+            if !present && !self.report.has(name) {
+                self.place(&key, format!("measures a {name}, and the scene has none"));
+                continue;
+            }
+            let count = &mut values[phase as usize];
+            let before = *count;
+            *count += probe.kind.components(self.scene.dimension).0.len();
+            if *count > MAX_PROBE_VALUES && before <= MAX_PROBE_VALUES {
+                let reason = format!("is one probe too many: a phase has at most {MAX_PROBE_VALUES} values");
+                self.place(&key, reason);
+            }
+            self.probe_place(probe, &key);
+        }
+    }
+
+    fn probe_place(&self, probe: &Probe, key: &str) {
+        if self.report.has_any(&["resolution", "shape", "dimension"]) {
+            return;
+        }
+        let holds = |b: &Block, margin: f64, at: &[f64; 3]| {
+            (0..self.scene.dimension).all(|a| b.min[a] - margin <= at[a] && at[a] <= b.max[a] + margin)
+        };
+        match &probe.kind {
+            ProbeKind::Displacement { at } => {
+                let near = |s: &&Shape| {
+                    let bounds = geometry::bounding_box(s, self.scene);
+                    s.phase == Phase::Solid && holds(&bounds, 2.0 * self.scene.resolution, at)
+                };
+                if !self.scene.shapes.iter().any(|s| near(&s)) {
+                    self.wrong(&format!("{key}.at"), "is in or beside no solid shape");
+                }
+            }
+            ProbeKind::Pressure { at }
+                if !self.report.has("numerics.domain") && !holds(&geometry::domain(self.scene), 0.0, at) =>
+            {
+                self.wrong(&format!("{key}.at"), "is outside the domain: no fluid gets there");
+            }
+            ProbeKind::WaterLevel { x } if !self.report.has("numerics.domain") => {
+                let domain = geometry::domain(self.scene);
+                if *x < domain.min[0] || *x > domain.max[0] {
+                    self.wrong(&format!("{key}.x"), "is outside the domain: no fluid gets there");
+                }
+            }
+            _ => (),
+        }
+    }
+
+    fn references(&self) {
+        if self.report.has_any(&["reference", "probe"]) {
+            return;
+        }
+        let components: Vec<String> = self
+            .scene
+            .probes
+            .iter()
+            .flat_map(|p| {
+                let (parts, _) = p.kind.components(self.scene.dimension);
+                parts.iter().map(move |part| format!("{}.{part}", p.name))
+            })
+            .collect();
+        let known = || components.iter().map(String::as_str);
+        for (index, reference) in self.scene.references.iter().enumerate() {
+            if components.contains(&reference.probe) {
+                continue;
+            }
+            let key = format!("reference.{index}.probe");
+            let note = self.report.value(&key, self.root.origin_of(&key), "is no component of a probe");
+            match nearest(&reference.probe, known()) {
+                Some(near) => note.help(format!("did you mean `{near}`?")),
+                None if components.is_empty() => note.help("the scene has no probes"),
+                None => note.help(format!("the components are {}", listed(known(), "and"))),
+            }
+        }
+    }
+}

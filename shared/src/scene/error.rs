@@ -1,0 +1,230 @@
+//! What is wrong with a scene: all of it at once, each with its place, key, value and reason.
+
+use super::document::{Origin, Source};
+use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
+use std::cell::RefCell;
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Everything that is wrong with a scene.
+#[derive(Clone, Debug, thiserror::Error)]
+#[error("{} has {} error{}", path.display(), problems.len(), if problems.len() == 1 { "" } else { "s" })]
+pub struct SceneErrors {
+    /// The scene's file.
+    pub path: PathBuf,
+    /// The errors, by their place; never empty.
+    pub problems: Vec<SceneError>,
+}
+
+impl Diagnostic for SceneErrors {
+    fn related<'a>(&'a self) -> Option<Box<dyn Iterator<Item = &'a dyn Diagnostic> + 'a>> {
+        Some(Box::new(self.problems.iter().map(|p| p as &dyn Diagnostic)))
+    }
+}
+
+/// One error of a scene.
+#[derive(Clone, Debug)]
+pub struct SceneError {
+    /// Where the value was given.
+    pub place: Place,
+    /// The dotted key, as `--set` takes it; empty for a syntax error.
+    pub key: String,
+    /// The value as written, where there is one.
+    pub value: Option<String>,
+    /// What is wrong, with the allowed range or names and why.
+    pub reason: String,
+    /// What to do about it, where that can be told.
+    pub help: Option<String>,
+    source: Option<Arc<NamedSource<Arc<str>>>>,
+    origin: Option<Origin>,
+}
+
+/// Where a wrong value was given.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// In a file; line and column count from 1, columns in characters.
+    File {
+        /// The file.
+        path: PathBuf,
+        /// The line.
+        line: usize,
+        /// The column.
+        column: usize,
+    },
+    /// In an override: its text, `--set key=value`.
+    Override(String),
+    /// The file as a whole.
+    Whole(PathBuf),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::File { path, line, column } => write!(f, "{}:{line}:{column}", path.display()),
+            Self::Override(text) => f.write_str(text),
+            Self::Whole(path) => write!(f, "{}", path.display()),
+        }
+    }
+}
+
+impl fmt::Display for SceneError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: ", self.place)?;
+        // An override's text shows key and value already.
+        let shown = matches!(&self.place, Place::Override(text) if text.contains(&self.key));
+        if !self.key.is_empty() && !shown {
+            match &self.value {
+                Some(value) => write!(f, "{} = {value}: ", self.key)?,
+                None => write!(f, "{}: ", self.key)?,
+            }
+        }
+        f.write_str(&self.reason)
+    }
+}
+
+impl std::error::Error for SceneError {}
+
+impl Diagnostic for SceneError {
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        self.help.as_ref().map(|help| Box::new(help) as Box<dyn fmt::Display>)
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        self.source.as_deref().map(|source| source as &dyn SourceCode)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let origin = self.origin?;
+        let label = LabeledSpan::new(None, origin.start, origin.end - origin.start);
+        Some(Box::new(std::iter::once(label)))
+    }
+}
+
+impl SceneErrors {
+    /// The scene's file cannot be read at all.
+    pub(super) fn whole(path: &Path, reason: String) -> Self {
+        let problem = SceneError {
+            place: Place::Whole(path.to_path_buf()),
+            key: String::new(),
+            value: None,
+            reason,
+            help: None,
+            source: None,
+            origin: None,
+        };
+        Self { path: path.to_path_buf(), problems: vec![problem] }
+    }
+}
+
+/// Collects errors while a scene is read.
+pub(super) struct Report {
+    sources: Vec<(Source, Arc<NamedSource<Arc<str>>>)>,
+    problems: RefCell<Vec<SceneError>>,
+}
+
+impl Report {
+    pub(super) fn new(sources: Vec<Source>) -> Self {
+        let named = |s: Source| {
+            let title = if s.is_override { "--set" } else { &s.name };
+            let named = NamedSource::new(title, s.text.clone());
+            (s, Arc::new(named))
+        };
+        Self { sources: sources.into_iter().map(named).collect(), problems: RefCell::default() }
+    }
+
+    /// Notes that the value written at `origin` is wrong.
+    pub(super) fn value(&self, key: &str, origin: Origin, reason: impl Into<String>) -> Note<'_> {
+        let shown = self.snippet(origin);
+        self.note(key, origin, shown, reason.into())
+    }
+
+    /// Notes an error at `origin` that is not about the value there.
+    pub(super) fn place(&self, key: &str, origin: Origin, reason: impl Into<String>) -> Note<'_> {
+        self.note(key, origin, None, reason.into())
+    }
+
+    fn note(&self, key: &str, origin: Origin, value: Option<String>, reason: String) -> Note<'_> {
+        let (source, named) = &self.sources[origin.source];
+        let place = if source.is_override {
+            Place::Override(source.name.clone())
+        } else {
+            let before = &source.text.get(..origin.start).unwrap_or_default();
+            Place::File {
+                path: PathBuf::from(&source.name),
+                line: before.matches('\n').count() + 1,
+                column: before.chars().rev().take_while(|c| *c != '\n').count() + 1,
+            }
+        };
+        self.problems.borrow_mut().push(SceneError {
+            place,
+            key: key.to_owned(),
+            value,
+            reason,
+            help: None,
+            source: Some(named.clone()),
+            origin: Some(origin),
+        });
+        Note { report: self }
+    }
+
+    /// The text of a short value.
+    fn snippet(&self, origin: Origin) -> Option<String> {
+        let text = self.sources[origin.source].0.text.get(origin.start..origin.end)?;
+        let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        let short: String = line.chars().take(60).collect();
+        (!short.is_empty()).then(|| if short.len() < line.len() { short + " ..." } else { short })
+    }
+
+    /// Whether a key, a key under it or one around it has an error already: what follows from it says nothing new.
+    pub(super) fn has(&self, key: &str) -> bool {
+        let covers = |outer: &str, inner: &str| {
+            inner.strip_prefix(outer).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+        };
+        self.problems.borrow().iter().any(|p| covers(&p.key, key) || covers(key, &p.key))
+    }
+
+    pub(super) fn has_any(&self, keys: &[&str]) -> bool {
+        keys.iter().any(|key| self.has(key))
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.problems.borrow().is_empty()
+    }
+
+    /// The errors, the file's first and in its order.
+    pub(super) fn into_errors(self, path: &Path) -> SceneErrors {
+        let mut problems = self.problems.into_inner();
+        problems.sort_by_key(|p| p.origin);
+        SceneErrors { path: path.to_path_buf(), problems }
+    }
+}
+
+/// The error just noted.
+pub(super) struct Note<'r> {
+    report: &'r Report,
+}
+
+impl Note<'_> {
+    /// Adds advice.
+    pub(super) fn help(self, help: impl Into<String>) {
+        if let Some(last) = self.report.problems.borrow_mut().last_mut() {
+            last.help = Some(help.into());
+        }
+    }
+}
+
+/// The known name nearest to a wrong one, if any is near.
+pub(super) fn nearest<'n>(wrong: &str, known: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
+    let scored = known.into_iter().map(|name| (strsim::jaro_winkler(wrong, name), name));
+    scored.filter(|(score, _)| *score > 0.75).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, name)| name)
+}
+
+/// `a`, `b` and `c`, or with another last word.
+pub(super) fn listed<'n>(names: impl IntoIterator<Item = &'n str>, last_word: &str) -> String {
+    let names: Vec<String> = names.into_iter().map(|n| format!("`{n}`")).collect();
+    match names.split_last() {
+        Some((last, rest)) if !rest.is_empty() => format!("{} {last_word} {last}", rest.join(", ")),
+        _ => names.concat(),
+    }
+}

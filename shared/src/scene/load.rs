@@ -1,0 +1,76 @@
+//! From a file and its overrides to a scene.
+
+use super::check::Check;
+use super::document::{self, Source};
+use super::error::{Report, SceneErrors};
+use super::{Scene, overrides, read, resources};
+use std::path::Path;
+
+/// Reads a scene's file, applies the overrides (`key=value`, as after `--set`) and checks everything.
+///
+/// # Errors
+/// Everything that is wrong with the scene at once, each with its place.
+pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, SceneErrors> {
+    match std::fs::read_to_string(path) {
+        Ok(text) => parse(&text, path, overrides),
+        Err(error) => Err(SceneErrors::whole(path, format!("cannot be read: {error}"))),
+    }
+}
+
+/// As [`load`], with the file's text at hand; `path` gives the scene its name and the folder of its reference files.
+///
+/// # Errors
+/// Everything that is wrong with the scene at once, each with its place.
+pub fn parse(text: &str, path: &Path, overrides: &[String]) -> Result<Scene, SceneErrors> {
+    let file = Source { name: path.display().to_string(), text: text.into(), is_override: false };
+    let sources = std::iter::once(file).chain(overrides.iter().map(|o| overrides::source(o)));
+    let report = Report::new(sources.collect());
+    let mut root = match document::parse(text, 0) {
+        Ok(root) => root,
+        Err(errors) => {
+            for (origin, message) in errors {
+                report.place("", origin, message);
+            }
+            return Err(report.into_errors(path));
+        }
+    };
+    for (index, text) in overrides.iter().enumerate() {
+        overrides::apply(&mut root, text, index + 1, &report);
+    }
+    let mut draft = read::scene(&root, path, &report);
+    Check { scene: &draft.scene, root: &root, report: &report }.all();
+    if report.is_empty() && draft.sound_speed_auto {
+        let found = resources::sound_speed(&draft.scene, &root, &report);
+        if let (Some(fluid), Some(speed)) = (&mut draft.scene.fluid, found) {
+            fluid.sound_speed = speed;
+        }
+    }
+    if report.is_empty() {
+        resources::check_memory(&draft.scene, &root, &report, resources::memory_available());
+    }
+    if report.is_empty() {
+        resources::check_reach(&draft.scene, &root, &report);
+    }
+    if report.is_empty() {
+        resources::check_clamps(&draft.scene, &root, &report);
+    }
+    if report.is_empty() { Ok(draft.scene) } else { Err(report.into_errors(path)) }
+}
+
+impl Scene {
+    /// The scene as JSON, every number exact.
+    ///
+    /// # Errors
+    /// Where its path is no Unicode; that of a scene from [`load`] is.
+    pub fn to_json(&self) -> Result<String, serde_json::Error> {
+        serde_json::to_string(self)
+    }
+
+    /// A scene from the JSON that [`Scene::to_json`] wrote.
+    ///
+    /// # Errors
+    /// Where the text is no such JSON.
+    pub fn from_json(text: &str) -> Result<Self, serde_json::Error> {
+        serde_json::from_str(text)
+    }
+}

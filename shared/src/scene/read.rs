@@ -1,0 +1,297 @@
+//! A document's keys as a scene: names, kinds and ranges of single values. What concerns several is in `check`.
+
+use super::document::{Node, Value};
+use super::error::{Report, listed, nearest};
+use super::preset::Defaults;
+use super::section::{Range, Section};
+use super::*;
+use super::{read_probe, read_shape};
+use std::path::Path;
+
+/// What a scene's file holds, before the sound speed `auto` is resolved.
+pub(super) struct Draft {
+    pub(super) scene: Scene,
+    /// The fluid's sound speed is to be found.
+    pub(super) sound_speed_auto: bool,
+}
+
+const SMOOTHING: Range = Range::at_least(1.0)
+    .up_to(2.5)
+    .why("below, neighbours are too few; above, they are too many to resolve anything at this spacing");
+const COEFFICIENT: Range = Range::at_least(0.0).up_to(100.0);
+
+pub(super) fn scene(root: &Node, path: &Path, report: &Report) -> Draft {
+    let top = Section::root(root, report);
+    let preset = top.node("preset").and_then(|n| top.as_choice("preset", n, &[("kayaki", Preset::Kayaki)]));
+    let defaults = Defaults::of(preset);
+    let dimension = dimension(&top);
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let end_time = top.number("end_time", None, Range::positive());
+    let numerics = numerics(top.section("numerics"), dimension, &defaults);
+    let (fluid, sound_speed_auto) = match top.section("fluid") {
+        section if section.is_present() => {
+            let (fluid, auto) = fluid(section, &defaults);
+            (Some(fluid), auto)
+        }
+        _ => (None, false),
+    };
+    let solid = match top.section("solid") {
+        section if section.is_present() => Some(solid(section, &defaults, numerics.max_sub_steps)),
+        _ => None,
+    };
+    let scene = Scene {
+        name: stem,
+        // A path that is no Unicode could not be written to JSON.
+        path: path.to_string_lossy().into_owned().into(),
+        preset,
+        dimension,
+        resolution: top.number("resolution", None, Range::positive()),
+        smoothing_ratio: top.number("smoothing_ratio", Some(defaults.smoothing_ratio), SMOOTHING),
+        end_time,
+        time_step: match top.number_or_auto("time_step", fixed(defaults.time_step), Range::positive()) {
+            Some(dt) => TimeStep::Fixed(dt),
+            None => TimeStep::Auto,
+        },
+        gravity: top.vector("gravity", dimension, Some([0.0, -9.81, 0.0])),
+        fluid,
+        solid,
+        interface: interface(top.section("interface"), &defaults),
+        output: output(top.section("output"), end_time),
+        shapes: top.tables("shape").into_iter().map(|s| read_shape::shape(s, dimension)).collect(),
+        probes: top.tables("probe").into_iter().filter_map(|p| read_probe::probe(p, dimension)).collect(),
+        references: {
+            let folder = path.parent().unwrap_or(Path::new(""));
+            top.tables("reference").into_iter().filter_map(|r| read_probe::reference(r, folder)).collect()
+        },
+        effects: effects(&top),
+        numerics,
+    };
+    top.finish();
+    Draft { scene, sound_speed_auto }
+}
+
+fn fixed(step: TimeStep) -> Option<f64> {
+    match step {
+        TimeStep::Auto => None,
+        TimeStep::Fixed(dt) => Some(dt),
+    }
+}
+
+/// The dimension that vectors are read with: a wrong one is noted here, and not again at every vector.
+fn dimension(top: &Section<'_>) -> usize {
+    match top.node("dimension") {
+        None => 2,
+        Some(node) => match node.value {
+            Value::Integer(2) => 2,
+            Value::Integer(3) => {
+                top.wrong("dimension", node, "must be 2: three dimensions are not available yet");
+                2
+            }
+            _ => {
+                top.wrong("dimension", node, "must be 2, the number of space dimensions");
+                2
+            }
+        },
+    }
+}
+
+fn fluid(section: Section<'_>, defaults: &Defaults) -> (Fluid, bool) {
+    let sound_speed = section.number_or_auto("sound_speed", None, Range::positive());
+    let fluid = Fluid {
+        density: section.number("density", None, Range::positive()),
+        viscosity: section.number("viscosity", Some(0.0), Range::at_least(0.0)),
+        sound_speed: sound_speed.unwrap_or(f64::NAN),
+        artificial_viscosity: viscosity(&section, defaults.fluid_viscosity),
+        density_diffusion: section
+            .choice(
+                "density_diffusion",
+                Some(defaults.density_diffusion),
+                &[
+                    ("delta-sph", DensityDiffusion::DeltaSph),
+                    ("simple", DensityDiffusion::Simple),
+                    ("hydrostatic", DensityDiffusion::Hydrostatic),
+                    ("none", DensityDiffusion::None),
+                ],
+            )
+            .unwrap_or(defaults.density_diffusion),
+        density_diffusion_coefficient: section.number(
+            "density_diffusion_coefficient",
+            Some(defaults.density_diffusion_coefficient),
+            Range::at_least(0.0).up_to(1.0).why("the usual value is 0.1"),
+        ),
+        background_pressure: section.number("background_pressure", Some(0.0), Range::at_least(0.0)),
+    };
+    section.finish();
+    (fluid, sound_speed.is_none())
+}
+
+fn viscosity(section: &Section<'_>, default: ArtificialViscosity) -> ArtificialViscosity {
+    let table = section.section("artificial_viscosity");
+    let viscosity = ArtificialViscosity {
+        linear: table.number("linear", Some(default.linear), COEFFICIENT),
+        quadratic: table.number("quadratic", Some(default.quadratic), COEFFICIENT),
+    };
+    table.finish();
+    viscosity
+}
+
+fn solid(section: Section<'_>, defaults: &Defaults, max_sub_steps: u32) -> Solid {
+    let stress = section.section("artificial_stress");
+    let solid = Solid {
+        model: section
+            .choice(
+                "model",
+                Some(SolidModelName::Hypoelastic),
+                &[("hypoelastic", SolidModelName::Hypoelastic)],
+            )
+            .unwrap_or(SolidModelName::Hypoelastic),
+        density: section.number("density", None, Range::positive()),
+        youngs_modulus: section.number("youngs_modulus", None, Range::positive()),
+        poissons_ratio: section.number(
+            "poissons_ratio",
+            None,
+            Range::at_least(0.0)
+                .below(0.5)
+                .why("at 0.5 a solid is incompressible, its bulk modulus infinite"),
+        ),
+        smoothing_ratio: section.number("smoothing_ratio", Some(defaults.solid_smoothing_ratio), SMOOTHING),
+        artificial_viscosity: viscosity(&section, defaults.solid_viscosity),
+        artificial_stress: ArtificialStress {
+            strength: stress.number("strength", Some(defaults.artificial_stress.strength), COEFFICIENT),
+            exponent: stress.number("exponent", Some(defaults.artificial_stress.exponent), COEFFICIENT),
+        },
+        sub_steps: sub_steps(&section, max_sub_steps),
+    };
+    stress.finish();
+    section.finish();
+    solid
+}
+
+fn sub_steps(section: &Section<'_>, most: u32) -> SubSteps {
+    let Some(node) = section.node("sub_steps") else { return SubSteps::Auto };
+    match &node.value {
+        Value::String(text) if text == "auto" => SubSteps::Auto,
+        Value::Integer(n) => match u32::try_from(*n) {
+            Ok(n) if n > most => {
+                let reason = format!("must be at most numerics.max_sub_steps, which is {most}");
+                section.wrong("sub_steps", node, reason);
+                SubSteps::Auto
+            }
+            Ok(n) if n == 1 || (n >= 2 && n % 2 == 0) => SubSteps::Fixed(n),
+            _ => {
+                let why = "half of them lead to the middle of the step";
+                section.wrong("sub_steps", node, format!("must be \"auto\", 1 or an even number: {why}"));
+                SubSteps::Auto
+            }
+        },
+        _ => {
+            section.wrong("sub_steps", node, "must be \"auto\", 1 or an even number");
+            SubSteps::Auto
+        }
+    }
+}
+
+fn interface(section: Section<'_>, defaults: &Defaults) -> Interface {
+    let interface = Interface {
+        treatment: section
+            .choice(
+                "treatment",
+                Some(defaults.treatment),
+                &[("moving-wall", Treatment::MovingWall), ("phase-blind", Treatment::PhaseBlind)],
+            )
+            .unwrap_or(defaults.treatment),
+        cross_viscosity: section.number("cross_viscosity", Some(defaults.cross_viscosity), COEFFICIENT),
+    };
+    section.finish();
+    interface
+}
+
+fn output(section: Section<'_>, end_time: f64) -> Output {
+    let output = Output {
+        frame_interval: section.number("frame_interval", Some(end_time / 50.0), Range::positive()),
+        probe_interval: section.number("probe_interval", Some(end_time / 2000.0), Range::positive()),
+        checkpoint_interval: section.number("checkpoint_interval", Some(0.0), Range::at_least(0.0)),
+    };
+    section.finish();
+    output
+}
+
+fn effects(top: &Section<'_>) -> BTreeMap<EffectName, Switch> {
+    const NAMES: [(&str, EffectName); 5] = [
+        ("viscosity", EffectName::Viscosity),
+        ("artificial-stress", EffectName::ArtificialStress),
+        ("renormalised-gradient", EffectName::RenormalisedGradient),
+        ("wall-contact", EffectName::WallContact),
+        ("non-negative-wall-pressure", EffectName::NonNegativeWallPressure),
+    ];
+    const SWITCHES: [(&str, Switch); 3] = [("auto", Switch::Auto), ("on", Switch::On), ("off", Switch::Off)];
+    let mut effects = BTreeMap::new();
+    let section = top.section("effects");
+    let Some(table) = top.node("effects").and_then(Node::table) else { return effects };
+    for (key, entry) in table {
+        match NAMES.iter().find(|(name, _)| name == key) {
+            Some((_, effect)) => {
+                if let Some(switch) = section.as_choice(key, &entry.node, &SWITCHES) {
+                    effects.insert(*effect, switch);
+                }
+            }
+            None => {
+                let known = || NAMES.iter().map(|(name, _)| *name);
+                let note = top.report.place(&section.path_of(key), entry.key, "unknown effect");
+                match nearest(key, known()) {
+                    Some(near) => note.help(format!("did you mean `{near}`?")),
+                    None => note.help(format!("the effects are {}", listed(known(), "and"))),
+                }
+            }
+        }
+    }
+    effects
+}
+
+fn numerics(section: Section<'_>, dimension: usize, defaults: &Defaults) -> Numerics {
+    const THREADS: u32 = 1024;
+    let threads = section.section("threads");
+    let numerics = Numerics {
+        kernel: section
+            .choice(
+                "kernel",
+                Some(defaults.kernel),
+                &[("cubic-spline", KernelName::CubicSpline), ("wendland-c2", KernelName::WendlandC2)],
+            )
+            .unwrap_or(defaults.kernel),
+        cfl: section.number(
+            "cfl",
+            Some(0.25),
+            Range::positive()
+                .up_to(1.0)
+                .why("a sound wave must not cross more than a smoothing length a step"),
+        ),
+        solid_cfl: section.number(
+            "solid_cfl",
+            Some(0.6),
+            Range::positive().up_to(1.1).why("dt c_P / dx beyond 1.1 is unstable"),
+        ),
+        max_sub_steps: section.integer("max_sub_steps", 200, 1, 100_000),
+        interface_capacity: section
+            .node("interface_capacity")
+            .and_then(|node| section.as_integer("interface_capacity", node, 1, 100_000_000)),
+        threads: Threads {
+            fluid: threads.integer("fluid", 2, 1, THREADS) as usize,
+            solid: threads.integer("solid", 1, 1, THREADS) as usize,
+        },
+        lattice: section
+            .choice(
+                "lattice",
+                Some(defaults.lattice),
+                &[("centred", Lattice::Centred), ("nodal", Lattice::Nodal)],
+            )
+            .unwrap_or(defaults.lattice),
+        domain: match section.section("domain") {
+            domain if domain.is_present() => Some(domain.whole_block(dimension)),
+            _ => None,
+        },
+    };
+    threads.finish();
+    section.finish();
+    numerics
+}

@@ -1,0 +1,155 @@
+//! `[[shape]]`.
+
+use super::document::Value;
+use super::section::{Range, Section};
+use super::*;
+
+pub(super) const PHASES: [(&str, Phase); 3] =
+    [("fluid", Phase::Fluid), ("solid", Phase::Solid), ("wall", Phase::Wall)];
+
+const SIDES: [(&str, Side); 6] = [
+    ("left", Side::Left),
+    ("right", Side::Right),
+    ("bottom", Side::Bottom),
+    ("top", Side::Top),
+    ("back", Side::Back),
+    ("front", Side::Front),
+];
+
+const GEOMETRIES: [&str; 4] = ["box", "disc", "ring", "tank"];
+
+pub(super) fn shape(section: Section<'_>, dimension: usize) -> Shape {
+    let phase = section.choice("phase", None, &PHASES);
+    let shape = Shape {
+        name: name(&section),
+        phase: phase.unwrap_or(Phase::Wall),
+        geometry: geometry(&section, dimension, phase),
+        velocity: section.vector("velocity", dimension, Some([0.0; 3])),
+        cantilever_mode: cantilever_mode(&section),
+        clamp: clamp(&section, dimension),
+        contact: section.boolean("contact", false),
+        free_slip: section.choice("slip", Some(true), &[("free", true), ("none", false)]).unwrap_or(true),
+        hydrostatic: section
+            .choice("pressure", Some(false), &[("hydrostatic", true), ("zero", false)])
+            .unwrap_or(false),
+    };
+    for (key, owner, article) in [
+        ("cantilever_mode", Phase::Solid, "a solid"),
+        ("clamp", Phase::Solid, "a solid"),
+        ("contact", Phase::Wall, "a wall"),
+        ("slip", Phase::Wall, "a wall"),
+        ("pressure", Phase::Fluid, "a fluid"),
+    ] {
+        if let (Some(node), Some(phase)) = (section.node(key), phase)
+            && phase != owner
+        {
+            section.wrong(key, node, format!("only {article} has `{key}`"));
+        }
+    }
+    section.finish();
+    shape
+}
+
+/// The name of a shape or a probe: a part of dotted keys and of column titles.
+pub(super) fn name(section: &Section<'_>) -> String {
+    let allowed = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+    let Some(node) = section.node("name") else {
+        section.missing("name");
+        return String::new();
+    };
+    let Some(name) = section.string("name") else { return String::new() };
+    if name.is_empty() || !name.chars().all(allowed) || name.chars().all(|c| c.is_ascii_digit()) {
+        section.wrong("name", node, "must be letters, digits, `-` and `_`, and not digits alone");
+    }
+    name.to_owned()
+}
+
+fn geometry(section: &Section<'_>, dimension: usize, phase: Option<Phase>) -> Geometry {
+    let given: Vec<&'static str> = GEOMETRIES.into_iter().filter(|g| section.node(g).is_some()).collect();
+    let kind = match given[..] {
+        [one] => one,
+        [] => {
+            section.whole("has no place: it needs one of `box`, `disc`, `ring` and `tank`");
+            "box"
+        }
+        [first, second, ..] => {
+            let reason = format!("has both `{first}` and `{second}`: a shape has one place");
+            section.whole(reason);
+            first
+        }
+    };
+    let place = section.section(kind);
+    let geometry = match kind {
+        _ if !place.is_present() => Geometry::Box(Block { min: [f64::NAN; 3], max: [f64::NAN; 3] }),
+        "box" => Geometry::Box(place.block(dimension)),
+        "disc" => Geometry::Disc {
+            center: place.vector("center", dimension, None),
+            radius: place.number("radius", None, Range::positive()),
+        },
+        "ring" => {
+            let inner = place.number("inner", None, Range::positive());
+            let outer = place.number("outer", None, Range::positive());
+            if outer <= inner {
+                place.whole(format!("must have an `outer` radius greater than the `inner`, {inner}"));
+            }
+            Geometry::Ring { center: place.vector("center", dimension, None), inner, outer }
+        }
+        _ => {
+            if let (Some(node), Some(Phase::Fluid | Phase::Solid)) = (section.node("tank"), phase) {
+                section.wrong("tank", node, "only a wall can be a tank: it is the walls around a cavity");
+            }
+            Geometry::Tank { cavity: place.block(dimension), open: open(&place, dimension) }
+        }
+    };
+    place.finish();
+    geometry
+}
+
+fn open(tank: &Section<'_>, dimension: usize) -> Vec<Side> {
+    let Some(node) = tank.node("open") else { return Vec::new() };
+    let Value::Array(items) = &node.value else {
+        tank.wrong("open", node, "must be an array of sides, such as [\"top\"]");
+        return Vec::new();
+    };
+    let sides = &SIDES[..2 * dimension];
+    let open: Vec<Side> = items.iter().filter_map(|item| tank.as_choice("open", item, sides)).collect();
+    if sides.iter().all(|(_, side)| open.contains(side)) {
+        tank.wrong("open", node, "leaves no side closed: there is no wall left");
+    }
+    open
+}
+
+fn cantilever_mode(section: &Section<'_>) -> Option<CantileverMode> {
+    let mode = section.section("cantilever_mode");
+    if !mode.is_present() {
+        return None;
+    }
+    let read = CantileverMode {
+        fraction: mode.number(
+            "fraction",
+            None,
+            Range::at_least(-0.5).up_to(0.5).why("the tip's speed is this part of the bulk sound speed"),
+        ),
+        root: mode.number("root", None, Range::ANY),
+        length: mode.number("length", None, Range::positive()),
+    };
+    mode.finish();
+    Some(read)
+}
+
+fn clamp(section: &Section<'_>, dimension: usize) -> Vec<Block> {
+    let Some(node) = section.node("clamp") else { return Vec::new() };
+    if node.table().is_some() {
+        return vec![section.section("clamp").whole_block(dimension)];
+    }
+    section.tables("clamp").into_iter().map(|table| table.whole_block(dimension)).collect()
+}
+
+impl Section<'_> {
+    /// A table that is a box and nothing else.
+    pub(super) fn whole_block(self, dimension: usize) -> Block {
+        let block = self.block(dimension);
+        self.finish();
+        block
+    }
+}

@@ -1,0 +1,139 @@
+//! What a scene asks of the machine, and what follows from its shapes: checked when everything else is right.
+
+use super::document::Node;
+use super::error::Report;
+use super::*;
+use crate::geometry::{self, Counts};
+
+/// Memory that a run needs for a particle, both stages and its neighbours, bytes.
+pub const BYTES_PER_PARTICLE: u64 = 400;
+
+/// Spacings from the origin within which places are told apart to 1e-6 dx.
+const MAX_SPACINGS: f64 = 1e9;
+
+/// Memory that a run with that many particles needs, bytes.
+pub fn memory_needed(counts: &Counts) -> u64 {
+    counts.total().saturating_mul(BYTES_PER_PARTICLE)
+}
+
+/// Memory that the machine has free for new programs, bytes; `None` where it does not say.
+pub fn memory_available() -> Option<u64> {
+    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    kibibytes.checked_mul(1024)
+}
+
+/// Refuses more particles than memory or their numbers hold.
+pub(super) fn check_memory(scene: &Scene, root: &Node, report: &Report, available: Option<u64>) {
+    let counts = geometry::estimate(scene);
+    let needed = memory_needed(&counts);
+    let limit = match available {
+        Some(available) if needed > available => format!("{} of memory are available", bytes(available)),
+        _ if counts.total() > u64::from(u32::MAX) => "particle numbers have 32 bits".to_owned(),
+        _ => return,
+    };
+    let Counts { fluid, solid, wall } = counts;
+    let [fluid, solid, wall] = [fluid, solid, wall].map(rounded);
+    let particles = format!("{fluid} fluid, {solid} solid and {wall} wall particles");
+    let reason = format!("makes {particles}, which need about {}; {limit}", bytes(needed));
+    report.value("resolution", root.origin_of("resolution"), reason);
+}
+
+fn rounded(n: u64) -> String {
+    if n < 10_000_000 { n.to_string() } else { format!("{:.1e}", n as f64) }
+}
+
+/// Refuses shapes so far away that floats no longer tell particles apart.
+pub(super) fn check_reach(scene: &Scene, root: &Node, report: &Report) {
+    for shape in &scene.shapes {
+        let bounds = geometry::bounding_box(shape, scene);
+        let far = bounds.min.iter().chain(&bounds.max).fold(0.0_f64, |far, x| far.max(x.abs()));
+        if far > MAX_SPACINGS * scene.resolution {
+            let key = format!("shape.{}", shape.name);
+            let limit = MAX_SPACINGS * scene.resolution;
+            let reason = format!("reaches {far:e} m from the origin; at this resolution at most {limit:e} m");
+            report.place(&key, root.origin_of(&key), reason);
+        }
+    }
+}
+
+fn bytes(n: u64) -> String {
+    const UNITS: [&str; 7] = ["B", "KiB", "MiB", "GiB", "TiB", "PiB", "EiB"];
+    let (mut size, mut unit) = (n as f64, 0);
+    while size >= 1024.0 && unit + 1 < UNITS.len() {
+        size /= 1024.0;
+        unit += 1;
+    }
+    format!("{size:.1} {}", UNITS[unit])
+}
+
+/// Refuses a clamp that holds no particle: it places the solid's particles, so memory is checked first.
+pub(super) fn check_clamps(scene: &Scene, root: &Node, report: &Report) {
+    for shape in scene.shapes.iter().filter(|s| !s.clamp.is_empty()) {
+        for (index, caught) in geometry::clamp_catches(scene, shape).into_iter().enumerate() {
+            let key = format!("shape.{}.clamp", shape.name);
+            let item = format!("{key}.{index}");
+            // A single table has no index.
+            let key = if root.child_at(&item).is_some() { item } else { key };
+            if !caught {
+                let reason = format!("holds no particle of `{}`", shape.name);
+                report.value(&key, root.origin_of(&key), reason);
+            }
+        }
+    }
+}
+
+/// The sound speed that keeps a fluid weakly compressible: ten times the expected speed, which is the larger of the
+/// speed of a fall through the fluid's height, sqrt(2 g H), and the fastest shape's initial speed.
+pub(super) fn sound_speed(scene: &Scene, root: &Node, report: &Report) -> Option<f64> {
+    let speed = |v: &[f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
+    let g = speed(&scene.gravity);
+    let height = if g > 0.0 { fluid_extent(scene, scene.gravity.map(|c| c / g)) } else { 0.0 };
+    let fastest = scene.shapes.iter().map(|s| speed(&s.velocity)).fold(0.0, f64::max);
+    let expected = (2.0 * g * height).sqrt().max(fastest);
+    if expected > 0.0 && (10.0 * expected).is_finite() {
+        return Some(10.0 * expected);
+    }
+    let why = "without gravity and initial velocity the expected speed is unknown";
+    let key = "fluid.sound_speed";
+    report.place(key, root.origin_of(key), format!("must be given: {why}"));
+    None
+}
+
+/// How far the fluid reaches along a unit vector.
+fn fluid_extent(scene: &Scene, along: [f64; 3]) -> f64 {
+    let project = |v: &[f64; 3]| (0..3).map(|a| v[a] * along[a]).sum::<f64>();
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for shape in scene.shapes.iter().filter(|s| s.phase == Phase::Fluid) {
+        let [least, most] = match &shape.geometry {
+            Geometry::Disc { center, radius: r } | Geometry::Ring { center, outer: r, .. } => {
+                [project(center) - r, project(center) + r]
+            }
+            Geometry::Box(b) | Geometry::Tank { cavity: b, .. } => {
+                let ends = (0..3).map(|a| [b.min[a] * along[a], b.max[a] * along[a]]);
+                ends.fold([0.0, 0.0], |[l, h], [p, q]| [l + p.min(q), h + p.max(q)])
+            }
+        };
+        (low, high) = (low.min(least), high.max(most));
+    }
+    (high - low).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn meminfo_is_read() {
+        let available = memory_available().unwrap();
+        assert!((1 << 20..1 << 50).contains(&available), "{available}");
+    }
+
+    #[test]
+    fn bytes_are_shown_in_their_unit() {
+        assert_eq!(bytes(512), "512.0 B");
+        assert_eq!(bytes(3 << 29), "1.5 GiB");
+        assert_eq!(bytes(u64::MAX), "16.0 EiB");
+    }
+}

@@ -1,0 +1,346 @@
+//! Reading one table: every value is checked as it is taken, every key that nobody asked for is an error.
+//!
+//! A wrong value is noted and replaced by a harmless one, so that the rest of the scene is read and checked as well.
+
+use super::Block;
+use super::document::{Entry, Node, Value};
+use super::error::{Report, listed, nearest};
+use std::cell::RefCell;
+use std::fmt;
+
+/// Keys at the top of a scene: they turn up in a section when they stand below its heading.
+pub(super) const TOP_KEYS: [&str; 7] =
+    ["preset", "dimension", "resolution", "smoothing_ratio", "end_time", "time_step", "gravity"];
+
+/// The numbers that a key allows, and why no others.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Range {
+    low: Option<(f64, Bound)>,
+    high: Option<(f64, Bound)>,
+    why: &'static str,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Bound {
+    Included,
+    Excluded,
+}
+
+impl Range {
+    pub(super) const ANY: Self = Self { low: None, high: None, why: "" };
+
+    pub(super) const fn positive() -> Self {
+        Self { low: Some((0.0, Bound::Excluded)), high: None, why: "" }
+    }
+    pub(super) const fn at_least(low: f64) -> Self {
+        Self { low: Some((low, Bound::Included)), high: None, why: "" }
+    }
+    /// Adds an upper end, itself allowed.
+    pub(super) const fn up_to(self, high: f64) -> Self {
+        Self { high: Some((high, Bound::Included)), ..self }
+    }
+    /// Adds an upper end, itself not allowed.
+    pub(super) const fn below(self, high: f64) -> Self {
+        Self { high: Some((high, Bound::Excluded)), ..self }
+    }
+    /// Adds the reason.
+    pub(super) const fn why(self, why: &'static str) -> Self {
+        Self { why, ..self }
+    }
+
+    fn holds(&self, x: f64) -> bool {
+        let low = self.low.is_none_or(|(low, b)| x > low || (b == Bound::Included && x == low));
+        let high = self.high.is_none_or(|(high, b)| x < high || (b == Bound::Included && x == high));
+        x.is_finite() && low && high
+    }
+}
+
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.low {
+            Some((low, Bound::Included)) => write!(f, "must be at least {low}")?,
+            Some((low, Bound::Excluded)) => write!(f, "must be greater than {low}")?,
+            None => f.write_str("must be a finite number")?,
+        }
+        match self.high {
+            Some((high, Bound::Included)) => write!(f, " and at most {high}")?,
+            Some((high, Bound::Excluded)) => write!(f, " and less than {high}")?,
+            None => (),
+        }
+        if self.why.is_empty() { Ok(()) } else { write!(f, ": {}", self.why) }
+    }
+}
+
+/// A table of the scene, or the want of one.
+pub(super) struct Section<'a> {
+    node: &'a Node,
+    /// Whether the scene has it; else `node` is the table around it.
+    present: bool,
+    pub(super) path: String,
+    pub(super) report: &'a Report,
+    asked: RefCell<Vec<&'static str>>,
+}
+
+impl<'a> Section<'a> {
+    pub(super) fn root(node: &'a Node, report: &'a Report) -> Self {
+        Self { node, present: true, path: String::new(), report, asked: RefCell::default() }
+    }
+
+    pub(super) fn is_present(&self) -> bool {
+        self.present
+    }
+
+    /// The dotted path of a key.
+    pub(super) fn path_of(&self, key: &str) -> String {
+        if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) }
+    }
+
+    pub(super) fn entry(&self, key: &'static str) -> Option<&'a Entry> {
+        self.asked.borrow_mut().push(key);
+        if self.present { self.node.table()?.get(key) } else { None }
+    }
+
+    pub(super) fn node(&self, key: &'static str) -> Option<&'a Node> {
+        self.entry(key).map(|entry| &entry.node)
+    }
+
+    /// Notes that the value of a key is wrong.
+    pub(super) fn wrong(&self, key: &str, node: &Node, reason: impl Into<String>) {
+        self.report.value(&self.path_of(key), node.origin, reason);
+    }
+
+    fn wrong_kind(&self, key: &str, node: &Node, wanted: &str) {
+        self.wrong(key, node, format!("must be {wanted}, not {}", node.value.kind()));
+    }
+
+    /// Notes that a key is missing.
+    pub(super) fn missing(&self, key: &str) {
+        // What is no table has been said to be none.
+        if self.present || !self.report.has(&self.path) {
+            self.report.place(&self.path_of(key), self.node.origin, "is missing and has no default");
+        }
+    }
+
+    /// A number; without a default it must be there.
+    pub(super) fn number(&self, key: &'static str, default: Option<f64>, range: Range) -> f64 {
+        match (self.node(key), default) {
+            (Some(node), _) => self.as_number(key, node, range).or(default).unwrap_or(f64::NAN),
+            (None, Some(default)) => default,
+            (None, None) => {
+                self.missing(key);
+                f64::NAN
+            }
+        }
+    }
+
+    /// A number or `"auto"`, which is `None`.
+    pub(super) fn number_or_auto(
+        &self,
+        key: &'static str,
+        default: Option<f64>,
+        range: Range,
+    ) -> Option<f64> {
+        let Some(node) = self.node(key) else { return default };
+        match &node.value {
+            Value::String(text) if text == "auto" => None,
+            Value::String(_) => {
+                self.wrong(key, node, "must be a number or \"auto\"");
+                None
+            }
+            _ => self.as_number(key, node, range),
+        }
+    }
+
+    pub(super) fn as_number(&self, key: &str, node: &Node, range: Range) -> Option<f64> {
+        let number = match node.value {
+            Value::Float(x) => x,
+            Value::Integer(n) => n as f64,
+            _ => {
+                self.wrong_kind(key, node, "a number");
+                return None;
+            }
+        };
+        if range.holds(number) {
+            return Some(number);
+        }
+        let reason = if number.is_finite() { range.to_string() } else { Range::ANY.to_string() };
+        self.wrong(key, node, reason);
+        None
+    }
+
+    /// A whole number.
+    pub(super) fn integer(&self, key: &'static str, default: u32, low: u32, high: u32) -> u32 {
+        self.node(key).and_then(|node| self.as_integer(key, node, low, high)).unwrap_or(default)
+    }
+
+    pub(super) fn as_integer(&self, key: &str, node: &Node, low: u32, high: u32) -> Option<u32> {
+        match node.value {
+            Value::Integer(n) => match u32::try_from(n) {
+                Ok(n) if (low..=high).contains(&n) => return Some(n),
+                _ => self.wrong(key, node, format!("must be a whole number from {low} to {high}")),
+            },
+            _ => self.wrong_kind(key, node, &format!("a whole number from {low} to {high}")),
+        }
+        None
+    }
+
+    /// A string.
+    pub(super) fn string(&self, key: &'static str) -> Option<&'a str> {
+        let node = self.node(key)?;
+        match &node.value {
+            Value::String(text) => Some(text),
+            _ => {
+                self.wrong_kind(key, node, "a string");
+                None
+            }
+        }
+    }
+
+    pub(super) fn boolean(&self, key: &'static str, default: bool) -> bool {
+        let Some(node) = self.node(key) else { return default };
+        match node.value {
+            Value::Boolean(value) => value,
+            _ => {
+                self.wrong_kind(key, node, "true or false");
+                default
+            }
+        }
+    }
+
+    /// One of a list of names; without a default it must be there.
+    pub(super) fn choice<T: Copy>(
+        &self,
+        key: &'static str,
+        default: Option<T>,
+        names: &[(&'static str, T)],
+    ) -> Option<T> {
+        match (self.node(key), default) {
+            (Some(node), _) => self.as_choice(key, node, names).or(default),
+            (None, None) => {
+                self.missing(key);
+                None
+            }
+            (None, default) => default,
+        }
+    }
+
+    pub(super) fn as_choice<T: Copy>(&self, key: &str, node: &Node, names: &[(&str, T)]) -> Option<T> {
+        let known = || names.iter().map(|(name, _)| *name);
+        let Value::String(text) = &node.value else {
+            self.wrong_kind(key, node, &format!("one of {}", listed(known(), "or")));
+            return None;
+        };
+        if let Some((_, value)) = names.iter().find(|(name, _)| name == text) {
+            return Some(*value);
+        }
+        let reason = format!("must be one of {}", listed(known(), "or"));
+        let note = self.report.value(&self.path_of(key), node.origin, reason);
+        if let Some(near) = nearest(text, known()) {
+            note.help(format!("did you mean `{near}`?"));
+        }
+        None
+    }
+
+    /// A vector with `dimension` components; the others are zero.
+    pub(super) fn vector(&self, key: &'static str, dimension: usize, default: Option<[f64; 3]>) -> [f64; 3] {
+        match (self.node(key), default) {
+            (Some(node), _) => self.as_vector(key, node, dimension).or(default).unwrap_or([f64::NAN; 3]),
+            (None, Some(default)) => default,
+            (None, None) => {
+                self.missing(key);
+                [f64::NAN; 3]
+            }
+        }
+    }
+
+    fn as_vector(&self, key: &str, node: &Node, dimension: usize) -> Option<[f64; 3]> {
+        let Value::Array(items) = &node.value else {
+            self.wrong_kind(key, node, &format!("an array of {dimension} numbers"));
+            return None;
+        };
+        // A wrong dimension is not repeated at every vector.
+        let other = self.report.has("dimension") && (2..=3).contains(&items.len());
+        if items.len() != dimension && !other {
+            let reason = format!("must have {dimension} components, as the scene is {dimension}D");
+            self.wrong(key, node, reason);
+            return None;
+        }
+        let mut vector = [0.0; 3];
+        for (component, item) in vector.iter_mut().zip(items).take(dimension) {
+            *component = self.as_number(key, item, Range::ANY)?;
+        }
+        Some(vector)
+    }
+
+    /// A box `{ min, max }`.
+    pub(super) fn block(&self, dimension: usize) -> Block {
+        let block =
+            Block { min: self.vector("min", dimension, None), max: self.vector("max", dimension, None) };
+        if let Some(axis) = (0..dimension).find(|a| block.max[*a] <= block.min[*a]) {
+            let axis = ["x", "y", "z"][axis];
+            let reason = format!("`max` must be greater than `min` in {axis}");
+            self.report.value(&self.path, self.node.origin, reason);
+        }
+        block
+    }
+
+    /// The table under a key.
+    pub(super) fn section(&self, key: &'static str) -> Section<'a> {
+        match self.node(key) {
+            Some(node) => self.sub(self.path_of(key), node, key),
+            None => Section {
+                node: self.node,
+                present: false,
+                path: self.path_of(key),
+                report: self.report,
+                asked: RefCell::default(),
+            },
+        }
+    }
+
+    fn sub(&self, path: String, node: &'a Node, key: &str) -> Section<'a> {
+        let present = node.table().is_some();
+        if !present {
+            self.wrong_kind(key, node, "a table");
+        }
+        Section { node, present, path, report: self.report, asked: RefCell::default() }
+    }
+
+    /// The tables of an array, each under its name or its index.
+    pub(super) fn tables(&self, key: &'static str) -> Vec<Section<'a>> {
+        let Some(node) = self.node(key) else { return Vec::new() };
+        let Value::Array(items) = &node.value else {
+            self.wrong_kind(key, node, &format!("an array of tables, each headed [[{key}]]"));
+            return Vec::new();
+        };
+        let sections = items.iter().enumerate().map(|(index, item)| {
+            let part = item.name().map_or_else(|| index.to_string(), str::to_owned);
+            self.sub(self.path_of(&format!("{key}.{part}")), item, key)
+        });
+        sections.collect()
+    }
+
+    /// Notes an error about the table as a whole.
+    pub(super) fn whole(&self, reason: impl Into<String>) {
+        self.report.place(&self.path, self.node.origin, reason);
+    }
+
+    /// Notes every key that was not asked for.
+    pub(super) fn finish(self) {
+        let Some(table) = self.node.table().filter(|_| self.present) else { return };
+        let asked = self.asked.borrow();
+        for (key, entry) in table.iter().filter(|(key, _)| !asked.contains(&key.as_str())) {
+            let note = self.report.place(&self.path_of(key), entry.key, "unknown key");
+            let mut known = asked.clone();
+            known.sort_unstable();
+            known.dedup();
+            if !self.path.is_empty() && TOP_KEYS.contains(&key.as_str()) {
+                note.help(format!("`{key}` belongs at the top of the scene, above the first [section]"));
+            } else if let Some(near) = nearest(key, known.iter().copied()) {
+                note.help(format!("did you mean `{near}`?"));
+            } else {
+                note.help(format!("known here: {}", listed(known.iter().copied(), "and")));
+            }
+        }
+    }
+}
