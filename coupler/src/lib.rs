@@ -1,1 +1,3 @@
-//! placeholder
+//! The coupler: the front door of halfstep.
+
+pub mod supervise;
