@@ -3,8 +3,8 @@
 pub mod clock;
 pub mod couple;
 pub mod cross_viscosity;
-pub mod roles;
 pub mod recorder;
+pub mod roles;
 pub mod run;
 pub mod solo;
 pub mod supervise;

@@ -1,0 +1,50 @@
+//! A role of the known run as a process of its own, for tests that kill it: `link-role ROLE STEPS` with the run in the
+//! environment; `link-role launcher DIR` starts a run of all three as its children.
+
+use halfstep::supervise::{Children, abort_flag};
+use halfstep_shared::failure::RoleName;
+use halfstep_shared::link::{Claim, LinkConfig, Processes};
+use halfstep_tests::conformance::link::play;
+use std::path::Path;
+use std::process::{Command, ExitCode};
+use std::time::Duration;
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let role = match arguments[0].as_str() {
+        "fluid" => RoleName::Fluid,
+        "solid" => RoleName::Solid,
+        "coupler" => RoleName::Coupler,
+        _ => return launcher(Path::new(&arguments[1])),
+    };
+    let flag = abort_flag().expect("a signal handler");
+    let config = LinkConfig::from_env().expect("a run");
+    match play::role::<Processes>(&config, role, arguments[1].parse().expect("steps"), Some(flag)) {
+        Ok(_) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{role}: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn launcher(dir: &Path) -> ExitCode {
+    let config = LinkConfig::new(100, 100);
+    let _claim = Claim::new(&config).expect("a claim");
+    let mut children = Children::new(&dir.join("log.txt"));
+    for role in ["fluid", "solid", "coupler"] {
+        let mut command = Command::new(std::env::current_exe().expect("own path"));
+        command.args([role, "1000000000"]).envs(config.to_env());
+        let role = [RoleName::Fluid, RoleName::Solid, RoleName::Coupler]
+            .into_iter()
+            .find(|name| name.to_string() == role)
+            .expect("a role");
+        children.spawn(role, command).expect("a child");
+    }
+    let state = serde_json::json!({ "config": config, "pids": children.pids() });
+    let path = dir.join("run.json");
+    std::fs::write(path.with_extension("tmp"), state.to_string()).expect("a file");
+    std::fs::rename(path.with_extension("tmp"), path).expect("a file");
+    children.wait(Duration::from_secs(60));
+    ExitCode::SUCCESS
+}

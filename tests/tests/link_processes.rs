@@ -1,0 +1,197 @@
+//! Roles as processes: what others notice when one is killed, and what is left when all are gone.
+
+use halfstep::supervise::{Children, stop_flag};
+use halfstep_shared::failure::RoleName::{self, Coupler, Fluid, Solid};
+use halfstep_shared::link::{Claim, LinkConfig, cleanup_stale};
+use halfstep_tests::conformance::link::{Run, eventually};
+use std::os::unix::process::ExitStatusExt;
+use std::path::Path;
+use std::process::Command;
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+const ROLES: [RoleName; 3] = [Fluid, Solid, Coupler];
+const ENDLESS: &str = "1000000000";
+
+fn helper() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_link-role"))
+}
+
+fn start(children: &mut Children, config: &LinkConfig, role: RoleName, steps: &str) {
+    let mut command = helper();
+    command.arg(role.to_string()).arg(steps).envs(config.to_env());
+    children.spawn(role, command).unwrap();
+}
+
+fn kill(pid: u32, signal: i32) {
+    assert_eq!(unsafe { libc::kill(pid as i32, signal) }, 0);
+}
+
+fn is_alive(pid: u32) -> bool {
+    unsafe { libc::kill(pid as i32, 0) == 0 }
+}
+
+fn log_of(dir: &tempfile::TempDir) -> String {
+    std::fs::read_to_string(dir.path().join("log.txt")).unwrap_or_default()
+}
+
+/// Lets a run get going: its objects exist, and then some.
+fn settle(run: &Run) {
+    eventually(20.0, "the run's start", || run.leftovers().len() > 20);
+    std::thread::sleep(Duration::from_millis(200));
+}
+
+#[test]
+fn three_processes_finish() {
+    let dir = tempfile::tempdir().unwrap();
+    let run = Run::new(100, 100);
+    let mut children = Children::new(&dir.path().join("log.txt"));
+    for role in ROLES {
+        start(&mut children, &run, role, "2000");
+    }
+    assert!(children.wait(Duration::from_secs(60)));
+    assert!(children.exits().iter().all(|(_, status)| status.success()), "{}", log_of(&dir));
+}
+
+#[test]
+fn a_killed_role_is_reported_within_a_second() {
+    for victim in ROLES {
+        let dir = tempfile::tempdir().unwrap();
+        let run = Run::new(100, 100);
+        let _claim = Claim::new(&run).unwrap();
+        let mut children = Children::new(&dir.path().join("log.txt"));
+        for role in ROLES {
+            start(&mut children, &run, role, ENDLESS);
+        }
+        settle(&run);
+        assert_eq!(children.first_exit(), None, "{}", log_of(&dir));
+        let pid = children.pids().into_iter().find(|(role, _)| *role == victim).unwrap().1;
+        kill(pid, libc::SIGKILL);
+        let killed = Instant::now();
+        assert!(children.wait(Duration::from_secs(10)), "{victim}");
+        assert!(killed.elapsed() < Duration::from_secs(1), "{victim}: {:?}", killed.elapsed());
+        for (role, status) in children.exits() {
+            if role == victim {
+                assert_eq!(status.signal(), Some(libc::SIGKILL));
+            } else {
+                assert_eq!(status.code(), Some(2), "{role}");
+            }
+        }
+        // One of the two others may learn of it from the third's end.
+        assert!(log_of(&dir).contains(&format!("the {victim} is gone")), "{victim}: {}", log_of(&dir));
+    }
+}
+
+#[test]
+fn stopped_children_clean_up() {
+    let dir = tempfile::tempdir().unwrap();
+    let run = Run::new(100, 100);
+    let mut children = Children::new(&dir.path().join("log.txt"));
+    for role in ROLES {
+        start(&mut children, &run, role, ENDLESS);
+    }
+    settle(&run);
+    // Ctrl-C is the coupler's business.
+    for (_, pid) in children.pids() {
+        kill(pid, libc::SIGINT);
+    }
+    std::thread::sleep(Duration::from_millis(100));
+    assert_eq!(children.first_exit(), None);
+    let start = Instant::now();
+    let exits = children.stop(Duration::from_secs(10));
+    assert!(start.elapsed() < Duration::from_secs(1), "{:?}", start.elapsed());
+    assert_eq!(exits.len(), 3);
+    assert!(exits.iter().all(|(_, status)| status.code() == Some(2)), "{exits:?}");
+    assert!(log_of(&dir).contains("aborted"), "{}", log_of(&dir));
+}
+
+/// Starts a launcher with three children; returns it, the run and the children's process numbers.
+fn launch(dir: &Path) -> (std::process::Child, Run, Vec<u32>) {
+    let launcher = helper().arg("launcher").arg(dir).spawn().unwrap();
+    let path = dir.join("run.json");
+    eventually(20.0, "the launcher's start", || path.exists());
+    let state: serde_json::Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
+    let run = Run(serde_json::from_value(state["config"].clone()).unwrap());
+    let pids: Vec<(RoleName, u32)> = serde_json::from_value(state["pids"].clone()).unwrap();
+    settle(&run);
+    (launcher, run, pids.into_iter().map(|(_, pid)| pid).collect())
+}
+
+#[test]
+fn a_killed_launcher_leaves_nothing() {
+    let dir = tempfile::tempdir().unwrap();
+    let (mut launcher, run, pids) = launch(dir.path());
+    launcher.kill().unwrap();
+    launcher.wait().unwrap();
+    eventually(2.0, "the children's end", || !pids.iter().any(|pid| is_alive(*pid)));
+    assert_eq!(run.leftovers(), Vec::<String>::new());
+}
+
+#[test]
+fn a_later_run_removes_what_a_massacre_left() {
+    let dir = tempfile::tempdir().unwrap();
+    let (mut launcher, run, pids) = launch(dir.path());
+    // The launcher first, stopped, so that its children do not hear of each other's end from it.
+    kill(launcher.id(), libc::SIGSTOP);
+    for pid in &pids {
+        kill(*pid, libc::SIGKILL);
+    }
+    launcher.kill().unwrap();
+    launcher.wait().unwrap();
+    eventually(2.0, "the children's end", || !pids.iter().any(|pid| is_alive(*pid)));
+    assert!(!run.leftovers().is_empty());
+    assert!(cleanup_stale() >= 1);
+    assert_eq!(run.leftovers(), Vec::<String>::new());
+}
+
+#[test]
+fn a_shell_line_learns_of_the_run_and_is_killed_with_its_children() {
+    let dir = tempfile::tempdir().unwrap();
+    let run = Run::new(123, 45);
+    let log = dir.path().join("log.txt");
+    std::fs::write(&log, "before\n").unwrap();
+    let mut children = Children::new(&log);
+    let line = "echo $HALFSTEP_FLUID_CAPACITY $HALFSTEP_SOLID_CAPACITY $HALFSTEP_SCENE; trap '' TERM; \
+                sleep 1000 & echo child $! >&2; wait; wait";
+    children.spawn_shell(Solid, line, &run, Path::new("/some/scene.json")).unwrap();
+    eventually(5.0, "the shell's words", || log_of(&dir).contains("child "));
+    let log = log_of(&dir);
+    assert!(log.starts_with("before\n123 45 /some/scene.json\n"), "{log}");
+    let grandchild: u32 = log.split_whitespace().next_back().unwrap().parse().unwrap();
+    assert!(is_alive(grandchild));
+    let exits = children.stop(Duration::from_millis(300));
+    assert_eq!(exits[0].1.signal(), Some(libc::SIGKILL), "it ignores the request to end");
+    eventually(2.0, "the grandchild's end", || !is_alive(grandchild));
+}
+
+#[test]
+fn what_cannot_be_started_is_named() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut children = Children::new(&dir.path().join("log.txt"));
+    let error = children.spawn(Fluid, Command::new("/no/such/program")).unwrap_err().to_string();
+    assert!(error.contains("fluid") && error.contains("/no/such/program"), "{error}");
+    let error = Children::new(Path::new("/no/such/log.txt")).spawn(Fluid, helper()).unwrap_err().to_string();
+    assert!(error.contains("/no/such/log.txt"), "{error}");
+}
+
+#[test]
+fn failure_comes_before_success() {
+    let dir = tempfile::tempdir().unwrap();
+    let run = Run::new(1, 1);
+    let mut children = Children::new(&dir.path().join("log.txt"));
+    children.spawn_shell(Fluid, "exit 0", &run, Path::new("x")).unwrap();
+    children.spawn_shell(Solid, "exit 3", &run, Path::new("x")).unwrap();
+    assert!(children.wait(Duration::from_secs(5)));
+    let (role, status) = children.first_exit().unwrap();
+    assert_eq!((role, status.code()), (Solid, Some(3)));
+}
+
+#[test]
+fn signals_set_the_stop_flag() {
+    for signal in [libc::SIGINT, libc::SIGTERM] {
+        let flag = stop_flag().unwrap();
+        assert!(!flag.load(Ordering::Relaxed));
+        kill(std::process::id(), signal);
+        eventually(1.0, "the flag", || flag.load(Ordering::Relaxed));
+    }
+}
