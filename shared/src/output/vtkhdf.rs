@@ -13,7 +13,7 @@
 
 use super::{Frame, OutputError, atomic};
 use hdf5::types::FixedAscii;
-use hdf5::{File, Group, H5Type};
+use hdf5::{FileBuilder, Group, H5Type};
 use ndarray::ArrayView;
 use std::path::Path;
 
@@ -28,8 +28,16 @@ pub fn write(path: &Path, frame: &Frame) -> Result<(), OutputError> {
     atomic::replace(path, |temporary| fill(temporary, frame).map_err(OutputError::hdf5("write", path)))
 }
 
+/// Files without the library's locks. A file under its final name never changes, so nobody needs them; and a lock
+/// outlives its file for as long as a process that is just being started has inherited it.
+fn unlocked() -> FileBuilder {
+    let mut builder = FileBuilder::new();
+    builder.with_fapl(|access| access.file_locking(false));
+    builder
+}
+
 fn fill(path: &Path, frame: &Frame) -> hdf5::Result<()> {
-    let file = File::create(path)?;
+    let file = unlocked().create(path)?;
     let root = file.create_group("VTKHDF")?;
     let version = root.new_attr::<i64>().shape(2).create("Version")?;
     version.write_raw(&[1_i64, 0])?;
@@ -74,7 +82,7 @@ fn put_rows<const W: usize>(group: &Group, name: &str, rows: &[[f32; W]]) -> hdf
 /// Reads a frame back.
 pub fn read(path: &Path) -> Result<Frame, OutputError> {
     let hdf5 = OutputError::hdf5;
-    let file = File::open(path).map_err(hdf5("read", path))?;
+    let file = unlocked().open(path).map_err(hdf5("read", path))?;
     let root = file.group("VTKHDF").map_err(hdf5("read", path))?;
     let data = root.group("PointData").map_err(hdf5("read", path))?;
     let fields = root.group("FieldData").map_err(hdf5("read", path))?;

@@ -1,0 +1,32 @@
+# What people run. Every target first installs what is missing (setup.sh) and then calls cargo.
+
+.PHONY: gate test validate bench docs setup
+
+# Where rustup puts cargo, for shells that were open before.
+export PATH := $(PATH):$(HOME)/.cargo/bin
+BIN := $(or $(CARGO_TARGET_DIR),target)/release/halfstep
+
+# Builds, and runs the elastic gate coarse enough to watch.
+gate: setup
+	cargo build --release
+	$(BIN) run scenes/elastic-gate.toml --set resolution=0.0025 --out out/elastic-gate --force
+	@echo "The gate's tip beside the experiment: $(CURDIR)/out/elastic-gate/plot.png"
+
+# The whole test suite.
+test: setup
+	cargo test --release --workspace
+
+# The benchmarks of the literature at full resolution: long.
+validate: setup
+	cargo test --release -p halfstep-tests -- --ignored --nocapture
+
+# How fast it is.
+bench: setup
+	cargo bench -p halfstep-tests
+
+# The documentation of the crates, in target/doc.
+docs: setup
+	RUSTDOCFLAGS="-D warnings" cargo doc --release --no-deps --workspace
+
+setup:
+	@./setup.sh
