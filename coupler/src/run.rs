@@ -10,7 +10,7 @@ use halfstep_shared::failure::{Diverged, RoleName};
 use halfstep_shared::geometry;
 use halfstep_shared::lane::Isa;
 use halfstep_shared::link::{self, CouplerLink, LinkConfig, LinkError, Processes, Threads};
-use halfstep_shared::lockstep::{self, FRAMES_VARIABLE, RoleError, SCENE_VARIABLE, THREADS_VARIABLE};
+use halfstep_shared::lockstep::{self, FOLDER_VARIABLE, RoleError, SCENE_VARIABLE, THREADS_VARIABLE};
 use halfstep_shared::output::run_json::{Particles, RoleSeconds, RunStatus};
 use halfstep_shared::output::{self, FrameWriter, OutputError, RunDirectory, RunReport};
 use halfstep_shared::protocol::StateHeader;
@@ -121,6 +121,7 @@ pub fn run(scene: &Scene, options: &RunOptions) -> Result<(RunReport, Option<Run
         },
         ..RunReport::default()
     };
+    start_log(&directory)?;
     report.audit.isa = Some(Isa::detect().bits_name().into());
     report.write(&directory.file("run.json"))?;
     let mut recorder = Recorder::new(scene, &directory.file("probes.csv"), options.quiet)?;
@@ -157,6 +158,22 @@ pub fn run(scene: &Scene, options: &RunOptions) -> Result<(RunReport, Option<Run
     Ok((report, error))
 }
 
+/// What this process has to say goes to the run's log, beside what its children say.
+fn start_log(directory: &RunDirectory) -> Result<(), RunError> {
+    let path = directory.file("log.txt");
+    let log = std::fs::OpenOptions::new()
+        .create(true)
+        .append(true)
+        .open(&path)
+        .map_err(|e| RunError::System(format!("cannot open {}: {e}", path.display())))?;
+    let subscriber = tracing_subscriber::fmt().with_ansi(false).with_writer(std::sync::Mutex::new(log)).finish();
+    // A process that runs several scenes keeps its first log.
+    if tracing::subscriber::set_global_default(subscriber).is_err() {
+        tracing::debug!("the log is open already");
+    }
+    Ok(())
+}
+
 /// Interface capacities of fluid and solid.
 fn capacities(scene: &Scene, particles: &Particles, foreign: bool) -> (u32, u32) {
     let solid = if foreign { particles.solid.max(4096) } else { particles.solid };
@@ -179,7 +196,7 @@ fn solo(
     let stem = roles::stem(name);
     let own = scene.numerics.threads;
     let threads = options.threads.unwrap_or(if name == RoleName::Fluid { own.fluid } else { own.solid });
-    let mut writer = FrameWriter::start(&directory.frames(), stem)?;
+    let mut writer = FrameWriter::start(directory.path(), stem)?;
     let result = lockstep::on_threads(threads, || -> Result<_, RunError> {
         let mut role = roles::build(name, scene)
             .ok_or_else(|| RunError::System("the scene has neither fluid nor solid".into()))?;
@@ -251,7 +268,7 @@ impl Session<'_> {
         let text = serde_json::to_string_pretty(self.scene).map_err(|e| RunError::System(e.to_string()))?;
         std::fs::write(&scene_file, text).map_err(|e| system("cannot write scene.json", e))?;
         let scene_file = scene_file.canonicalize().map_err(|e| system("scene.json", e))?;
-        let frames = self.directory.frames().canonicalize().map_err(|e| system("frames", e))?;
+        let folder = self.directory.path().canonicalize().map_err(|e| system("the run's folder", e))?;
         let program = std::env::current_exe().map_err(|e| system("cannot find the own program", e))?;
         let mut children = Children::new(&self.directory.file("log.txt"));
         let mut built_in = vec![RoleName::Fluid];
@@ -275,7 +292,7 @@ impl Session<'_> {
                 .arg(roles::stem(role))
                 .envs(config.to_env())
                 .env(SCENE_VARIABLE, &scene_file)
-                .env(FRAMES_VARIABLE, &frames)
+                .env(FOLDER_VARIABLE, &folder)
                 .env(THREADS_VARIABLE, self.threads(role).to_string());
             children.spawn(role, command)?;
         }
@@ -367,9 +384,8 @@ impl Session<'_> {
     }
 
     fn role_thread(&self, name: RoleName, config: &LinkConfig, abort: Arc<AtomicBool>) -> Result<(), RoleError> {
-        let frames = self.directory.frames();
         let raised = Arc::clone(&abort);
-        let result = FrameWriter::start(&frames, roles::stem(name)).map_err(RoleError::from).and_then(|writer| {
+        let result = FrameWriter::start(self.directory.path(), roles::stem(name)).map_err(RoleError::from).and_then(|writer| {
             lockstep::on_threads(self.threads(name), move || {
                 let mut role = roles::build(name, self.scene)
                     .ok_or_else(|| RoleError::Start(format!("the scene has no {name}")))?;

@@ -243,8 +243,8 @@ impl<S: Transport> Server<S> {
 
 /// Environment variable with the path of the resolved scene.
 pub const SCENE_VARIABLE: &str = "HALFSTEP_SCENE";
-/// Environment variable with the folder for frames; without it none are written.
-pub const FRAMES_VARIABLE: &str = "HALFSTEP_FRAMES";
+/// Environment variable with the run's folder; without it no frames are written.
+pub const FOLDER_VARIABLE: &str = "HALFSTEP_OUT";
 /// Environment variable with the number of worker threads.
 pub const THREADS_VARIABLE: &str = "HALFSTEP_THREADS";
 
@@ -265,7 +265,7 @@ pub fn serve_process(
         .map_err(|e| start(format!("cannot read {}: {e}", PathBuf::from(&scene).display())))?;
     let scene: Scene = serde_json::from_str(&text).map_err(|e| start(format!("not a resolved scene: {e}")))?;
     let threads = variable(THREADS_VARIABLE).and_then(|v| v.to_str()?.parse().ok()).unwrap_or(1);
-    let writer = variable(FRAMES_VARIABLE)
+    let writer = variable(FOLDER_VARIABLE)
         .map(|dir| FrameWriter::start(&PathBuf::from(dir), stem))
         .transpose()?;
     on_threads(threads, move || {
