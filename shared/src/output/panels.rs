@@ -36,8 +36,10 @@ impl Panel {
     /// Lowest and highest visible value, with some room.
     pub(crate) fn range(&self, last: f64) -> Range<f64> {
         let (low, high) = extent(self.curves.iter().chain(&self.references), last).unwrap_or((0.0, 0.0));
-        let room = if high > low { 0.06 * (high - low) } else { 0.1 * high.abs() };
-        if room > 0.0 { low - room..high + room } else { -1.0..1.0 }
+        let largest = low.abs().max(high.abs());
+        // What varies by rounding errors only is constant: an axis of a few last digits has no sensible ticks.
+        let room = if high - low > 1e-9 * largest { 0.06 * (high - low) } else { 0.1 * largest };
+        if room > f64::MIN_POSITIVE { low - room..high + room } else { -1.0..1.0 }
     }
 
     /// Largest visible absolute value.
@@ -159,6 +161,8 @@ mod tests {
         let range = |rows: &[[f64; 3]]| panels(&tip(), &table(rows))[0].range(1.0);
         assert_eq!(range(&[]), -1.0..1.0);
         assert_eq!(range(&[[0.0, 0.0, 0.0]]), -1.0..1.0);
+        let rounding = range(&[[0.0, 1e5, 1e5], [0.1, 1e5 + 3e-11, 1e5]]);
+        assert!((rounding.start / 9e4 - 1.0).abs() < 1e-9 && (rounding.end / 1.1e5 - 1.0).abs() < 1e-9);
         let diverged = range(&[[0.0, 0.0, 0.0], [0.1, 1.0, 1.0], [0.2, f64::NAN, f64::INFINITY]]);
         assert!((diverged.start + 0.06).abs() < 1e-12 && (diverged.end - 1.06).abs() < 1e-12, "{diverged:?}");
     }
