@@ -45,6 +45,7 @@ pub struct Fluid<const D: usize> {
     diffusion: DensityDiffusion,
     strength: Strength,
     artificial_viscosity: ArtificialViscosity,
+    wall_guard: ArtificialViscosity,
     viscosity: Option<f64>,
     domain: ([f64; D], [f64; D]),
     fluid_list: ClusterList,
@@ -103,6 +104,7 @@ impl<const D: usize> Fluid<D> {
             diffusion: fluid.density_diffusion,
             strength: Strength(fluid.density_diffusion_coefficient * h * fluid.sound_speed),
             artificial_viscosity: ArtificialViscosity::new(fluid.artificial_viscosity, fluid.sound_speed, h),
+            wall_guard: ArtificialViscosity::at_walls(fluid.artificial_viscosity, fluid.sound_speed, h),
             viscosity: viscous.then_some(fluid.viscosity),
             domain: (
                 std::array::from_fn(|d| domain.min[d]),
@@ -299,12 +301,12 @@ impl<const D: usize> Fluid<D> {
         match self.viscosity {
             None => {
                 self.pass(kernel, (damping, diffusion, ()), &self.fluid_list, None, fluid_sums);
-                self.pass(kernel, (damping, (), ()), &self.wall_list, self.walls.as_ref(), wall_sums);
+                self.pass(kernel, (self.wall_guard, (), ()), &self.wall_list, self.walls.as_ref(), wall_sums);
             }
             Some(_) => {
                 let (inner, outer) = (Viscosity(&self.stress), ViscosityAtWall(&self.stress));
                 self.pass(kernel, (damping, diffusion, inner), &self.fluid_list, None, fluid_sums);
-                self.pass(kernel, (damping, (), outer), &self.wall_list, self.walls.as_ref(), wall_sums);
+                self.pass(kernel, (self.wall_guard, (), outer), &self.wall_list, self.walls.as_ref(), wall_sums);
             }
         }
     }
