@@ -11,6 +11,9 @@ const MAX_FRAMES: f64 = 1e5;
 const MAX_ROWS: f64 = 1e7;
 const MAX_STEPS: f64 = 1e9;
 
+/// The keys that can choose the phase-blind treatment.
+const PHASE_BLIND_BY: [&str; 2] = ["interface.treatment", "preset"];
+
 pub(super) struct Check<'a> {
     pub(super) scene: &'a Scene,
     pub(super) root: &'a Node,
@@ -28,15 +31,8 @@ impl Check<'_> {
         self.references();
     }
 
-    /// Notes a wrong value where it is written; a default's error is noted at the table around it.
     fn wrong(&self, key: &str, reason: impl Into<String>) {
-        let written = self.root.child_at(key).is_some();
-        let origin = self.root.origin_of(key);
-        if written {
-            self.report.value(key, origin, reason);
-        } else {
-            self.report.place(key, origin, reason);
-        }
+        self.report.among(self.root, key, &[], reason);
     }
 
     fn place(&self, key: &str, reason: impl Into<String>) {
@@ -118,12 +114,15 @@ impl Check<'_> {
                 Geometry::Ring { inner, outer, .. } => ("ring", outer - inner),
             };
             let nodal = self.scene.numerics.lattice == Lattice::Nodal && shape.phase != Phase::Wall;
-            let (least, convention) =
-                if nodal { (2.0, ", in the nodal lattice two spacings,") } else { (1.0, "") };
-            if thickness < dx * least * (1.0 - 1e-9) {
-                let thin = "is thinner than one particle";
-                let reason = format!("{thin}{convention}: {thickness} m at a resolution of {dx} m");
-                self.wrong(&format!("{key}.{kind}"), reason);
+            let (least, convention) = if nodal { (2.0 * dx, " in the nodal lattice") } else { (dx, "") };
+            if thickness < least * (1.0 - 1e-9) {
+                let place = format!("{key}.{kind}");
+                let corners = [format!("{place}.min"), format!("{place}.max")];
+                let others = [&corners[0], &corners[1], "resolution", "numerics.lattice", "preset"];
+                // In single precision: without the last digits that a difference leaves.
+                let thickness = thickness as f32;
+                let reason = format!("is {thickness} m thin, and one particle needs {least} m{convention}");
+                self.report.among(self.root, &place, &others, reason);
             }
         }
     }
@@ -141,11 +140,13 @@ impl Check<'_> {
             && n != 1
         {
             let why = "a particle close to the interface hangs on a spring as stiff as the solid";
-            self.wrong("solid.sub_steps", format!("must be \"auto\" or 1 with phase-blind: {why}"));
+            let reason = format!("must be \"auto\" or 1 with phase-blind: {why}");
+            self.report.among(self.root, "solid.sub_steps", &PHASE_BLIND_BY, reason);
         }
         if self.scene.smoothing_ratio < 1.1 && !self.report.has("smoothing_ratio") {
             let why = "with h / dx = 1.0 the sums over both phases blow up at once";
-            self.wrong("smoothing_ratio", format!("must be at least 1.1 with phase-blind: {why}"));
+            let reason = format!("must be at least 1.1 with phase-blind: {why}");
+            self.report.among(self.root, "smoothing_ratio", &PHASE_BLIND_BY, reason);
         }
     }
 
@@ -159,7 +160,8 @@ impl Check<'_> {
             TimeStep::Auto => end,
         };
         if step > end && !self.report.has("time_step") {
-            self.wrong("time_step", format!("must be at most end_time, {end} s"));
+            let reason = format!("must be at most end_time, {end} s");
+            self.report.among(self.root, "time_step", &["end_time", "preset"], reason);
         }
         let output = &self.scene.output;
         for (key, interval, most, what) in [
@@ -171,7 +173,7 @@ impl Check<'_> {
             let number = end / interval;
             if interval > 0.0 && number > most && !self.report.has(key) {
                 let reason = format!("would make {number:.0} {what} until {end} s; at most {most:.0}");
-                self.wrong(key, reason);
+                self.report.among(self.root, key, &["end_time", "preset"], reason);
             }
         }
     }
@@ -188,10 +190,12 @@ impl Check<'_> {
                 continue;
             }
             let phase = probe.kind.phase();
-            let (name, present) = match phase {
+            let (name, section) = match phase {
                 Phase::Solid => ("solid", self.scene.solid.is_some()),
                 _ => ("fluid", self.scene.fluid.is_some()),
             };
+            // A shape without its section has been noted.
+            let present = section || self.scene.shapes.iter().any(|s| s.phase == phase);
             if !present && !self.report.has(name) {
                 self.place(&key, format!("measures a {name}, and the scene has none"));
                 continue;

@@ -1,6 +1,6 @@
 //! What is wrong with a scene: all of it at once, each with its place, key, value and reason.
 
-use super::document::{Origin, Source};
+use super::document::{Node, Origin, Source};
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
 use std::cell::RefCell;
 use std::fmt;
@@ -137,6 +137,28 @@ impl Report {
     pub(super) fn value(&self, key: &str, origin: Origin, reason: impl Into<String>) -> Note<'_> {
         let shown = self.snippet(origin);
         self.note(key, origin, shown, reason.into())
+    }
+
+    /// Notes that the value of a key is wrong because of other keys: at the one of them that an override changed last,
+    /// or else at the key itself. The keys in it, such as a box's corners, may be among the others.
+    pub(super) fn among(&self, root: &Node, key: &str, others: &[&str], reason: impl Into<String>) {
+        let written = |key: &str| root.child_at(key).map(|node| node.origin);
+        let changed = others.iter().filter_map(|other| Some((written(other)?, *other)));
+        let last =
+            changed.filter(|(o, _)| self.sources[o.source].0.is_override).max_by_key(|(o, _)| o.source);
+        let own = root.origin_of(key);
+        let reason = reason.into();
+        match last {
+            Some((origin, other)) if origin.source > own.source => {
+                let inside = other.strip_prefix(key).is_some_and(|rest| rest.starts_with('.'));
+                let (key, shown) = if inside { (other, Some(origin)) } else { (key, written(key)) };
+                let shown = shown.and_then(|o| self.snippet(o));
+                self.note(key, origin, shown, reason);
+            }
+            _ => {
+                self.note(key, own, written(key).and_then(|o| self.snippet(o)), reason);
+            }
+        }
     }
 
     /// Notes an error at `origin` that is not about the value there.

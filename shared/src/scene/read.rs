@@ -18,6 +18,9 @@ pub(super) struct Draft {
 const SMOOTHING: Range = Range::at_least(1.0)
     .up_to(2.5)
     .why("below, neighbours are too few; above, they are too many to resolve anything at this spacing");
+// Ends beyond any material, within which no formula overflows.
+const DENSITY: Range = Range::at_least(1e-6).up_to(1e9);
+const PRESSURE: Range = Range::at_least(0.0).up_to(1e15);
 const COEFFICIENT: Range = Range::at_least(0.0).up_to(100.0);
 
 pub(super) fn scene(root: &Node, path: &Path, report: &Report) -> Draft {
@@ -26,7 +29,7 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report) -> Draft {
     let defaults = Defaults::of(preset);
     let dimension = dimension(&top);
     let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let end_time = top.number("end_time", None, Range::positive());
+    let end_time = top.number("end_time", None, Range::at_least(1e-12).up_to(1e12));
     let numerics = numerics(top.section("numerics"), dimension, &defaults);
     let (fluid, sound_speed_auto) = match top.section("fluid") {
         section if section.is_present() => {
@@ -96,10 +99,10 @@ fn dimension(top: &Section<'_>) -> usize {
 }
 
 fn fluid(section: Section<'_>, defaults: &Defaults) -> (Fluid, bool) {
-    let sound_speed = section.number_or_auto("sound_speed", None, Range::positive());
+    let sound_speed = section.number_or_auto("sound_speed", None, Range::positive().up_to(1e9));
     let fluid = Fluid {
-        density: section.number("density", None, Range::positive()),
-        viscosity: section.number("viscosity", Some(0.0), Range::at_least(0.0)),
+        density: section.number("density", None, DENSITY),
+        viscosity: section.number("viscosity", Some(0.0), Range::at_least(0.0).up_to(1e9)),
         sound_speed: sound_speed.unwrap_or(f64::NAN),
         artificial_viscosity: viscosity(&section, defaults.fluid_viscosity),
         density_diffusion: section
@@ -119,7 +122,7 @@ fn fluid(section: Section<'_>, defaults: &Defaults) -> (Fluid, bool) {
             Some(defaults.density_diffusion_coefficient),
             Range::at_least(0.0).up_to(1.0).why("the usual value is 0.1"),
         ),
-        background_pressure: section.number("background_pressure", Some(0.0), Range::at_least(0.0)),
+        background_pressure: section.number("background_pressure", Some(0.0), PRESSURE),
     };
     section.finish();
     (fluid, sound_speed.is_none())
@@ -145,8 +148,8 @@ fn solid(section: Section<'_>, defaults: &Defaults, max_sub_steps: u32) -> Solid
                 &[("hypoelastic", SolidModelName::Hypoelastic)],
             )
             .unwrap_or(SolidModelName::Hypoelastic),
-        density: section.number("density", None, Range::positive()),
-        youngs_modulus: section.number("youngs_modulus", None, Range::positive()),
+        density: section.number("density", None, DENSITY),
+        youngs_modulus: section.number("youngs_modulus", None, Range::positive().up_to(1e15)),
         poissons_ratio: section.number(
             "poissons_ratio",
             None,

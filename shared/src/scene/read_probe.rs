@@ -64,10 +64,10 @@ pub(super) fn reference(section: Section<'_>, folder: &Path) -> Option<Reference
             None
         }
     };
-    // With `points` these two would do nothing.
-    if section.node("file").is_some() {
-        section.node("columns");
-        section.node("scale");
+    for key in ["columns", "scale"] {
+        if let (Some(node), None) = (section.node(key), section.node("file")) {
+            section.wrong(key, node, "belongs to `file`, and the curve has none");
+        }
     }
     section.finish();
     Some(Reference { probe: probe?, label: label?, points: points? })
@@ -106,7 +106,13 @@ fn from_file(section: &Section<'_>, node: &Node, folder: &Path) -> Option<Vec<[f
     let file = folder.join(section.string("file")?);
     let [time, value] = columns?;
     match read_csv(&file, time, value) {
-        Ok(points) => Some(points.into_iter().map(|[t, v]| [t, v * scale]).collect()),
+        Ok(points) => {
+            let points: Vec<_> = points.into_iter().map(|[t, v]| [t, v * scale]).collect();
+            if let (false, Some(node)) = (points.iter().all(|p| p[1].is_finite()), section.node("scale")) {
+                section.wrong("scale", node, "makes values of the file infinite");
+            }
+            Some(points)
+        }
         Err(reason) => {
             section.wrong("file", node, format!("{}: {reason}", file.display()));
             None

@@ -78,7 +78,10 @@ pub(super) fn check_clamps(scene: &Scene, root: &Node, report: &Report) {
             let key = if root.child_at(&item).is_some() { item } else { key };
             if !caught {
                 let reason = format!("holds no particle of `{}`", shape.name);
-                report.value(&key, root.origin_of(&key), reason);
+                let corners = [format!("{key}.min"), format!("{key}.max")];
+                let shape = ["box", "box.min", "box.max"].map(|part| format!("shape.{}.{part}", shape.name));
+                let others: Vec<&str> = corners.iter().chain(&shape).map(String::as_str).collect();
+                report.among(root, &key, &others, reason);
             }
         }
     }

@@ -12,6 +12,9 @@ use std::fmt;
 pub(super) const TOP_KEYS: [&str; 7] =
     ["preset", "dimension", "resolution", "smoothing_ratio", "end_time", "time_step", "gravity"];
 
+/// Components of vectors, whose squares are formed.
+const COMPONENT: Range = Range::at_least(-1e12).up_to(1e12);
+
 /// The numbers that a key allows, and why no others.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Range {
@@ -58,17 +61,22 @@ impl Range {
 impl fmt::Display for Range {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.low {
-            Some((low, Bound::Included)) => write!(f, "must be at least {low}")?,
-            Some((low, Bound::Excluded)) => write!(f, "must be greater than {low}")?,
+            Some((low, Bound::Included)) => write!(f, "must be at least {}", short(low))?,
+            Some((low, Bound::Excluded)) => write!(f, "must be greater than {}", short(low))?,
             None => f.write_str("must be a finite number")?,
         }
         match self.high {
-            Some((high, Bound::Included)) => write!(f, " and at most {high}")?,
-            Some((high, Bound::Excluded)) => write!(f, " and less than {high}")?,
+            Some((high, Bound::Included)) => write!(f, " and at most {}", short(high))?,
+            Some((high, Bound::Excluded)) => write!(f, " and less than {}", short(high))?,
             None => (),
         }
         if self.why.is_empty() { Ok(()) } else { write!(f, ": {}", self.why) }
     }
+}
+
+/// A number without a row of zeros.
+fn short(x: f64) -> String {
+    if x == 0.0 || (1e-3..1e6).contains(&x.abs()) { x.to_string() } else { format!("{x:e}") }
 }
 
 /// A table of the scene, or the want of one.
@@ -179,6 +187,9 @@ impl<'a> Section<'a> {
                 Ok(n) if (low..=high).contains(&n) => return Some(n),
                 _ => self.wrong(key, node, format!("must be a whole number from {low} to {high}")),
             },
+            Value::Float(_) => {
+                self.wrong(key, node, format!("must be a whole number from {low} to {high}"));
+            }
             _ => self.wrong_kind(key, node, &format!("a whole number from {low} to {high}")),
         }
         None
@@ -226,15 +237,16 @@ impl<'a> Section<'a> {
 
     pub(super) fn as_choice<T: Copy>(&self, key: &str, node: &Node, names: &[(&str, T)]) -> Option<T> {
         let known = || names.iter().map(|(name, _)| *name);
+        let one_of = if names.len() > 1 { "one of " } else { "" };
+        let wanted = format!("{one_of}{}", listed(known(), "or"));
         let Value::String(text) = &node.value else {
-            self.wrong_kind(key, node, &format!("one of {}", listed(known(), "or")));
+            self.wrong_kind(key, node, &wanted);
             return None;
         };
         if let Some((_, value)) = names.iter().find(|(name, _)| name == text) {
             return Some(*value);
         }
-        let reason = format!("must be one of {}", listed(known(), "or"));
-        let note = self.report.value(&self.path_of(key), node.origin, reason);
+        let note = self.report.value(&self.path_of(key), node.origin, format!("must be {wanted}"));
         if let Some(near) = nearest(text, known()) {
             note.help(format!("did you mean `{near}`?"));
         }
@@ -267,7 +279,7 @@ impl<'a> Section<'a> {
         }
         let mut vector = [0.0; 3];
         for (component, item) in vector.iter_mut().zip(items).take(dimension) {
-            *component = self.as_number(key, item, Range::ANY)?;
+            *component = self.as_number(key, item, COMPONENT)?;
         }
         Some(vector)
     }
@@ -276,10 +288,19 @@ impl<'a> Section<'a> {
     pub(super) fn block(&self, dimension: usize) -> Block {
         let block =
             Block { min: self.vector("min", dimension, None), max: self.vector("max", dimension, None) };
-        if let Some(axis) = (0..dimension).find(|a| block.max[*a] <= block.min[*a]) {
-            let axis = ["x", "y", "z"][axis];
-            let reason = format!("`max` must be greater than `min` in {axis}");
-            self.report.value(&self.path, self.node.origin, reason);
+        let corners = [self.node("min"), self.node("max")];
+        if let Some(axis) = (0..dimension).find(|a| block.max[*a] <= block.min[*a])
+            && let [Some(min), Some(max)] = corners
+        {
+            // Where an override changed one corner, that one is wrong.
+            let axis_name = ["x", "y", "z"][axis];
+            if min.origin.source > max.origin.source {
+                let reason = format!("must be less than `max` in {axis_name}, {}", block.max[axis]);
+                self.wrong("min", min, reason);
+            } else {
+                let reason = format!("must be greater than `min` in {axis_name}, {}", block.min[axis]);
+                self.wrong("max", max, reason);
+            }
         }
         block
     }
