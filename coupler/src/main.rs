@@ -24,6 +24,8 @@ struct Arguments {
 enum Command {
     /// Simulates a scene
     Run(RunArguments),
+    /// Validates a scene; prints counts, time steps, memory and expected time
+    Check(SceneArguments),
     /// A role's process; started by `run`
     #[command(hide = true)]
     Role {
@@ -74,6 +76,13 @@ struct RunArguments {
 fn main() -> ExitCode {
     match Arguments::parse().command {
         Command::Run(arguments) => run_scene(arguments),
+        Command::Check(arguments) => match load(&arguments) {
+            Ok(scene) => {
+                print!("{}", halfstep::check::describe(&scene));
+                ExitCode::SUCCESS
+            }
+            Err(code) => code,
+        },
         Command::Role { name } => serve_role(&name),
     }
 }
@@ -144,7 +153,9 @@ fn serve_role(name: &str) -> ExitCode {
     };
     let result = abort_flag()
         .map_err(|e| lockstep::RoleError::Start(format!("cannot watch for signals: {e}")))
-        .and_then(|abort| lockstep::serve_process(roles::stem(role), abort, |scene| roles::build(role, scene)));
+        .and_then(|abort| {
+            lockstep::serve_process(roles::stem(role), abort, |scene| roles::build(role, scene))
+        });
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

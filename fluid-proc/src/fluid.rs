@@ -75,58 +75,56 @@ impl<const D: usize> Fluid<D> {
         let volume = scene.resolution.powi(D as i32);
         let state = StateEquation::new(fluid.density, fluid.sound_speed, fluid.background_pressure);
         let columns = Columns::new(&layout.fluid, &state, volume);
-        let forced = |name| scene.effects.get(&name).copied().unwrap_or(Switch::Auto);
-        let non_negative = forced(EffectName::NonNegativeWallPressure) != Switch::Off;
+        let non_negative = scene.switch(EffectName::NonNegativeWallPressure) != Switch::Off;
+        let damping = ArtificialViscosity::new(fluid.artificial_viscosity, fluid.sound_speed, h);
+        let wall_guard = match scene.switch(EffectName::WallGuard) {
+            Switch::Off => damping,
+            _ => ArtificialViscosity::at_walls(fluid.artificial_viscosity, fluid.sound_speed, h),
+        };
         let walls = (!layout.wall.is_empty())
             .then(|| Walls::new(&layout.wall, &state, volume, 2.0 * h + skin, non_negative));
         let domain = geometry::domain(scene);
-        let viscous = match forced(EffectName::Viscosity) {
-            Switch::On => fluid.viscosity > 0.0,
-            Switch::Off => false,
-            Switch::Auto => crate::viscosity_matters(scene),
-        };
         let coupled = Parameters::new(scene, isa);
-        Some(Self {
-            columns,
-            walls,
-            coupling: coupled.map(Coupling::new),
-            state,
-            rows: Rows::default(),
-            smoothing_length: h,
-            skin,
-            resolution: scene.resolution,
-            kernel: scene.numerics.kernel,
-            gravity: std::array::from_fn(|d| scene.gravity[d]),
-            probes: scene.probes.iter().map(|p| p.kind).filter(|k| k.phase() == Phase::Fluid).collect(),
-            removed: 0,
-            isa,
-            limits: Limits::new(scene),
-            diffusion: fluid.density_diffusion,
-            strength: Strength(fluid.density_diffusion_coefficient * h * fluid.sound_speed),
-            artificial_viscosity: ArtificialViscosity::new(fluid.artificial_viscosity, fluid.sound_speed, h),
-            wall_guard: ArtificialViscosity::at_walls(fluid.artificial_viscosity, fluid.sound_speed, h),
-            viscosity: viscous.then_some(fluid.viscosity),
-            domain: (
-                std::array::from_fn(|d| domain.min[d]),
-                std::array::from_fn(|d| domain.max[d]),
-            ),
-            fluid_list: ClusterList::default(),
-            wall_list: ClusterList::default(),
-            list_of_walls: ClusterList::default(),
-            fluid_sums: Vec::new(),
-            wall_sums: Vec::new(),
-            extrapolations: Vec::new(),
-            gradient_sums: Vec::new(),
-            gradient: vectors(0),
-            stress: StressTerm::default(),
-            velocity_gradients: [Vec::new(), Vec::new()],
-            displacement: 0.0,
-            largest_speed: 0.0,
-            largest_acceleration: 0.0,
-            sorted: false,
-            pair_evaluations: 0,
-        }
-        .prepared())
+        Some(
+            Self {
+                columns,
+                walls,
+                coupling: coupled.map(Coupling::new),
+                state,
+                rows: Rows::default(),
+                smoothing_length: h,
+                skin,
+                resolution: scene.resolution,
+                kernel: scene.numerics.kernel,
+                gravity: std::array::from_fn(|d| scene.gravity[d]),
+                probes: scene.probes.iter().map(|p| p.kind).filter(|k| k.phase() == Phase::Fluid).collect(),
+                removed: 0,
+                isa,
+                limits: Limits::new(scene),
+                diffusion: fluid.density_diffusion,
+                strength: Strength(fluid.density_diffusion_coefficient * h * fluid.sound_speed),
+                artificial_viscosity: damping,
+                wall_guard,
+                viscosity: crate::viscosity_acts(scene).then_some(fluid.viscosity),
+                domain: (std::array::from_fn(|d| domain.min[d]), std::array::from_fn(|d| domain.max[d])),
+                fluid_list: ClusterList::default(),
+                wall_list: ClusterList::default(),
+                list_of_walls: ClusterList::default(),
+                fluid_sums: Vec::new(),
+                wall_sums: Vec::new(),
+                extrapolations: Vec::new(),
+                gradient_sums: Vec::new(),
+                gradient: vectors(0),
+                stress: StressTerm::default(),
+                velocity_gradients: [Vec::new(), Vec::new()],
+                displacement: 0.0,
+                largest_speed: 0.0,
+                largest_acceleration: 0.0,
+                sorted: false,
+                pair_evaluations: 0,
+            }
+            .prepared(),
+        )
     }
 
     fn prepared(mut self) -> Self {
@@ -256,7 +254,8 @@ impl<const D: usize> Fluid<D> {
             }
             DensityDiffusion::Hydrostatic => {
                 let scale = self.state.density / self.state.sound_speed.powi(2);
-                let effect = Hydrostatic { strength: self.strength, gradient: self.gravity.map(|g| scale * g) };
+                let effect =
+                    Hydrostatic { strength: self.strength, gradient: self.gravity.map(|g| scale * g) };
                 self.rates(kernel, effect, &mut fluid_sums, &mut wall_sums);
             }
             DensityDiffusion::DeltaSph => {
@@ -299,7 +298,13 @@ impl<const D: usize> Fluid<D> {
             Some(_) => {
                 let (inner, outer) = (Viscosity(&self.stress), ViscosityAtWall(&self.stress));
                 self.pass(kernel, (damping, diffusion, inner), &self.fluid_list, None, fluid_sums);
-                self.pass(kernel, (self.wall_guard, (), outer), &self.wall_list, self.walls.as_ref(), wall_sums);
+                self.pass(
+                    kernel,
+                    (self.wall_guard, (), outer),
+                    &self.wall_list,
+                    self.walls.as_ref(),
+                    wall_sums,
+                );
             }
         }
     }

@@ -45,8 +45,7 @@ impl<const D: usize> Solid<D> {
     /// With any model.
     pub fn with_model(scene: &Scene, isa: Isa, model: Box<dyn SolidModel<D>>) -> Self {
         let phase_blind = scene.interface.treatment == Treatment::PhaseBlind;
-        let interface =
-            Parameters::<D>::new(scene, isa).filter(|_| phase_blind).map(Interface::new);
+        let interface = Parameters::<D>::new(scene, isa).filter(|_| phase_blind).map(Interface::new);
         let probes = scene
             .probes
             .iter()

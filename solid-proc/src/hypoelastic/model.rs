@@ -70,10 +70,10 @@ impl<const D: usize> Hypoelastic<D> {
         let layout = geometry::layout::<D>(scene);
         let h = material.smoothing_ratio * scene.resolution;
         let n = layout.solid.len();
-        let forced = |name| scene.effects.get(&name).copied().unwrap_or(Switch::Auto);
         let exponent = material.artificial_stress.exponent.round() as u32;
-        let artificial = material.artificial_stress.strength > 0.0 && forced(EffectName::ArtificialStress) != Switch::Off;
-        let walls = (forced(EffectName::WallContact) != Switch::Off)
+        let artificial = material.artificial_stress.strength > 0.0
+            && scene.switch(EffectName::ArtificialStress) != Switch::Off;
+        let walls = (scene.switch(EffectName::WallContact) != Switch::Off)
             .then(|| Walls::new(&layout.wall, (2.0 + SKIN) * h))
             .flatten();
         let domain = geometry::domain(scene);
@@ -86,11 +86,15 @@ impl<const D: usize> Hypoelastic<D> {
             resolution: scene.resolution,
             gravity: std::array::from_fn(|d| scene.gravity[d]),
             domain: (std::array::from_fn(|d| domain.min[d]), std::array::from_fn(|d| domain.max[d])),
-            renormalised: forced(EffectName::RenormalisedGradient) == Switch::On,
+            renormalised: scene.switch(EffectName::RenormalisedGradient) == Switch::On,
             artificial_stress: artificial.then_some(exponent),
             mass: material.density * scene.resolution.powi(D as i32),
             material,
-            interface_set: surface_set(&layout.solid, 2.0 * scene.smoothing_ratio * scene.resolution, scene.resolution),
+            interface_set: surface_set(
+                &layout.solid,
+                2.0 * scene.smoothing_ratio * scene.resolution,
+                scene.resolution,
+            ),
             points: layout.solid,
             id: (0..n as u32).collect(),
             slot_of: vec![0; n],
