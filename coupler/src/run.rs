@@ -122,6 +122,7 @@ pub fn run(scene: &Scene, options: &RunOptions) -> Result<(RunReport, Option<Run
             fluid: layout.fluid.len() as u64,
             solid: layout.solid.len() as u64,
             wall: layout.wall.len() as u64,
+            removed: 0,
         },
         ..RunReport::default()
     };
@@ -290,7 +291,7 @@ impl Session<'_> {
         let system = |what: &str, e: std::io::Error| RunError::System(format!("{what}: {e}"));
         let scene_file = self.directory.file("scene.json");
         let text = serde_json::to_string_pretty(self.scene).map_err(|e| RunError::System(e.to_string()))?;
-        std::fs::write(&scene_file, text).map_err(|e| system("cannot write scene.json", e))?;
+        output::atomic::replace_bytes(&scene_file, text.as_bytes())?;
         let scene_file = scene_file.canonicalize().map_err(|e| system("scene.json", e))?;
         let folder = self.directory.path().canonicalize().map_err(|e| system("the run's folder", e))?;
         let program = std::env::current_exe().map_err(|e| system("cannot find the own program", e))?;

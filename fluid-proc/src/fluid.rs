@@ -1,14 +1,15 @@
 //! The fluid as a [`Role`]: what happens in a half-step, and which effects take part.
 
 use crate::artificial_viscosity::ArtificialViscosity;
-use crate::columns::{Columns, Vectors, vectors};
+use crate::columns::{Columns, Shown, Vectors, vectors};
 use crate::density_diffusion::{DeltaSph, Hydrostatic, Simple, Strength};
 use crate::density_gradient::{self, GradientSum};
 use crate::interface::Coupling;
 use crate::rates::{PairEffect, RateLaw, RateSum, collect};
 use crate::time_step::Limits;
 use crate::viscosity::{self, StressTerm, VelocityGradient, Viscosity, ViscosityAtWall};
-use crate::wall::{WallLaw, WallSum, Walls};
+use crate::wall::{Damping, WallLaw, WallSum, Walls};
+use crate::wall_guard::{GUARD, WallViscosity};
 use halfstep_shared::failure::{Diverged, Quantity, RoleName};
 use halfstep_shared::geometry;
 use halfstep_shared::interface::Parameters;
@@ -39,13 +40,13 @@ pub struct Fluid<const D: usize> {
     pub(crate) kernel: KernelName,
     pub(crate) gravity: [f64; D],
     pub(crate) probes: Vec<ProbeKind>,
-    pub(crate) removed: u64,
+
     isa: Isa,
     limits: Limits,
     diffusion: DensityDiffusion,
     strength: Strength,
     artificial_viscosity: ArtificialViscosity,
-    wall_guard: ArtificialViscosity,
+    quadratic: f64,
     viscosity: Option<f64>,
     domain: ([f64; D], [f64; D]),
     fluid_list: ClusterList,
@@ -76,13 +77,12 @@ impl<const D: usize> Fluid<D> {
         let state = StateEquation::new(fluid.density, fluid.sound_speed, fluid.background_pressure);
         let columns = Columns::new(&layout.fluid, &state, volume);
         let non_negative = scene.switch(EffectName::NonNegativeWallPressure) != Switch::Off;
-        let damping = ArtificialViscosity::new(fluid.artificial_viscosity, fluid.sound_speed, h);
-        let wall_guard = match scene.switch(EffectName::WallGuard) {
-            Switch::Off => damping,
-            _ => ArtificialViscosity::at_walls(fluid.artificial_viscosity, fluid.sound_speed, h),
-        };
+        let plain = fluid.artificial_viscosity.linear;
+        let guarded =
+            if scene.switch(EffectName::WallGuard) == Switch::Off { plain } else { plain.max(GUARD) };
+        let damping = Damping { free_slip: guarded * fluid.sound_speed, plain: plain * fluid.sound_speed };
         let walls = (!layout.wall.is_empty())
-            .then(|| Walls::new(&layout.wall, &state, volume, 2.0 * h + skin, non_negative));
+            .then(|| Walls::new(&layout.wall, &state, volume, 2.0 * h + skin, non_negative, damping));
         let domain = geometry::domain(scene);
         let coupled = Parameters::new(scene, isa);
         Some(
@@ -98,13 +98,17 @@ impl<const D: usize> Fluid<D> {
                 kernel: scene.numerics.kernel,
                 gravity: std::array::from_fn(|d| scene.gravity[d]),
                 probes: scene.probes.iter().map(|p| p.kind).filter(|k| k.phase() == Phase::Fluid).collect(),
-                removed: 0,
+
                 isa,
                 limits: Limits::new(scene),
                 diffusion: fluid.density_diffusion,
                 strength: Strength(fluid.density_diffusion_coefficient * h * fluid.sound_speed),
-                artificial_viscosity: damping,
-                wall_guard,
+                artificial_viscosity: ArtificialViscosity::new(
+                    fluid.artificial_viscosity,
+                    fluid.sound_speed,
+                    h,
+                ),
+                quadratic: fluid.artificial_viscosity.quadratic,
                 viscosity: crate::viscosity_acts(scene).then_some(fluid.viscosity),
                 domain: (std::array::from_fn(|d| domain.min[d]), std::array::from_fn(|d| domain.max[d])),
                 fluid_list: ClusterList::default(),
@@ -145,7 +149,6 @@ impl<const D: usize> Fluid<D> {
             });
             if outside && self.columns.id[slot] != PADDING {
                 self.columns.id[slot] = PADDING;
-                self.removed += 1;
             }
         }
         let reach = 2.0 * self.smoothing_length + self.skin;
@@ -183,7 +186,8 @@ impl<const D: usize> Fluid<D> {
     fn scan(&mut self) {
         let c = &self.columns;
         let (mut moved, mut fast, mut pushed) = (0.0_f64, 0.0_f64, 0.0_f64);
-        for slot in 0..c.slots() {
+        // Padding repeats particles without the solid's forces; what becomes of it must not steer the run.
+        for slot in (0..c.slots()).filter(|&s| c.id[s] != PADDING) {
             let (mut m, mut v2, mut a2) = (0.0, 0.0, 0.0);
             for d in 0..D {
                 let dx = c.now.position[d][slot] - c.reference[d][slot];
@@ -290,21 +294,27 @@ impl<const D: usize> Fluid<D> {
         wall_sums: &mut [RateSum<D>],
     ) {
         let damping = self.artificial_viscosity;
+        let stress = &self.stress;
         match self.viscosity {
             None => {
-                self.pass(kernel, (damping, diffusion, ()), &self.fluid_list, None, fluid_sums);
-                self.pass(kernel, (self.wall_guard, (), ()), &self.wall_list, self.walls.as_ref(), wall_sums);
+                self.pass(kernel, (damping, diffusion, ()), &self.fluid_list, &self.columns.now, fluid_sums)
             }
             Some(_) => {
-                let (inner, outer) = (Viscosity(&self.stress), ViscosityAtWall(&self.stress));
-                self.pass(kernel, (damping, diffusion, inner), &self.fluid_list, None, fluid_sums);
-                self.pass(
-                    kernel,
-                    (self.wall_guard, (), outer),
-                    &self.wall_list,
-                    self.walls.as_ref(),
-                    wall_sums,
-                );
+                let effects = (damping, diffusion, Viscosity(stress));
+                self.pass(kernel, effects, &self.fluid_list, &self.columns.now, fluid_sums);
+            }
+        }
+        let Some(walls) = &self.walls else { return };
+        let at_walls = WallViscosity {
+            smoothing_length: self.smoothing_length,
+            linear: &walls.damping,
+            quadratic: self.quadratic,
+        };
+        match self.viscosity {
+            None => self.pass(kernel, (at_walls, (), ()), &self.wall_list, &walls.shown, wall_sums),
+            Some(_) => {
+                let effects = (at_walls, (), ViscosityAtWall(stress));
+                self.pass(kernel, effects, &self.wall_list, &walls.shown, wall_sums);
             }
         }
     }
@@ -314,14 +324,11 @@ impl<const D: usize> Fluid<D> {
         kernel: K,
         effects: E,
         list: &ClusterList,
-        walls: Option<&Walls<D>>,
+        sources: &Shown<D>,
         sums: &mut [RateSum<D>],
     ) {
-        let targets = &self.columns.now;
-        let sources = walls.map_or(targets, |w| &w.shown);
-        if list.clusters() > 0 {
-            pair::pass(self.isa, &RateLaw { kernel, effects, targets, sources }, list, sums);
-        }
+        let law = RateLaw { kernel, effects, targets: &self.columns.now, sources };
+        pair::pass(self.isa, &law, list, sums);
     }
 
     fn passes_over_fluid(&self) -> u64 {

@@ -19,6 +19,7 @@ mod term_tests;
 pub mod time_step;
 pub mod viscosity;
 pub mod wall;
+pub mod wall_guard;
 
 pub use fluid::Fluid;
 

@@ -161,7 +161,7 @@ impl<const D: usize> Hypoelastic<D> {
 
     fn moved_too_far(&self) -> bool {
         let limit = 0.25 * self.skin * self.skin;
-        (0..self.id.len()).any(|s| {
+        (0..self.id.len()).filter(|&s| self.id[s] != PADDING).any(|s| {
             let r2: f64 = (0..D).map(|d| (self.now.position[d][s] - self.reference[d][s]).powi(2)).sum();
             r2 > limit
         })
@@ -371,7 +371,7 @@ impl<const D: usize> Hypoelastic<D> {
             let s = slot as usize;
             let rho = self.now.density[s];
             let v2: f64 = (0..D).map(|d| self.now.velocity[d][s].powi(2)).sum();
-            let stress: f64 = (0..D).map(|d| self.now.stress[0][d][s].abs()).sum();
+            let stress: f64 = self.stress_at(s).as_flattened().iter().map(|s| s.abs()).sum();
             let (quantity, value) = if !(rho > rho0 / 3.0 && rho < rho0 * 3.0) {
                 (Quantity::Density, rho)
             } else if v2.is_nan() || v2 > fastest * fastest {
@@ -410,8 +410,8 @@ impl<const D: usize> Hypoelastic<D> {
     }
 }
 
-/// Particles within `reach` of the surface: those whose ball of that radius, less half a spacing, is not full of the
-/// same solid. Every particle for plates thinner than twice the reach.
+/// Numbers of the particles within `reach` of a surface particle, ascending. A surface particle lacks one of its nearest
+/// lattice neighbours (the 3^D - 1 within sqrt(D) dx). Every particle for plates thinner than twice the reach.
 fn surface_set<const D: usize>(points: &[SolidPoint<D>], reach: f64, resolution: f64) -> Vec<u32> {
     let mut x: [Vec<f64>; D] = std::array::from_fn(|d| points.iter().map(|p| p.position[d]).collect());
     let mut id: Vec<u32> = (0..points.len() as u32).collect();
@@ -433,7 +433,6 @@ fn surface_set<const D: usize>(points: &[SolidPoint<D>], reach: f64, resolution:
             }
         });
     };
-    // Surface particles lack one of the nearest lattice neighbours (3^D - 1 within sqrt(D) dx).
     let ring = (D as f64).sqrt() * 1.05 * resolution;
     let full = 3_usize.pow(D as u32);
     let mut surface = vec![false; id.len()];
