@@ -238,13 +238,16 @@ impl Session<'_> {
         if self.options.solid == SolidSource::ByHand {
             config.handshake_seconds = self.options.solid_wait;
         }
-        let outcome = if self.options.in_process && self.options.solid == SolidSource::BuiltIn {
-            self.as_threads(&config, clock, recorder)
-        } else {
-            self.as_processes(&config, clock, recorder)
-        };
+        // The coupler's sums are short: one thread, and no worker to wake.
+        let outcome = lockstep::on_threads(1, || {
+            if self.options.in_process && self.options.solid == SolidSource::BuiltIn {
+                self.as_threads(&config, clock, recorder)
+            } else {
+                self.as_processes(&config, clock, recorder)
+            }
+        });
         link::cleanup(&config);
-        let outcome = outcome?;
+        let outcome = outcome??;
         let hash = outcome.fluid.state_hash ^ outcome.solid.state_hash.rotate_left(1);
         report.audit.state_hash = Some(format!("{hash:016x}"));
         report.audit.action_reaction = Some(outcome.action_reaction);

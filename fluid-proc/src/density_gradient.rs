@@ -9,6 +9,7 @@ use halfstep_shared::kernel::Kernel;
 use halfstep_shared::lane::{Arch, LANES, Lane};
 use halfstep_shared::pair::{PairLaw, distance};
 use nalgebra::{SMatrix, SVector};
+use rayon::prelude::*;
 
 /// Determinant of M below which the gradient is left out.
 pub const SMALLEST_DETERMINANT: f64 = 0.05;
@@ -70,16 +71,16 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for GradientLaw<'_, K, D> {
 
 /// Solves for the gradients of all slots.
 pub fn solve<const D: usize>(sums: &[GradientSum<D>], gradient: &mut [Vec<f64>; D]) {
-    for (c, sum) in sums.iter().enumerate() {
-        for k in 0..LANES {
-            let g: [f64; D] = renormalised(
-                std::array::from_fn(|a| sum.raw[a].0[k]),
-                std::array::from_fn(|a| std::array::from_fn(|b| sum.moment[a.min(b)][a.max(b)].0[k])),
-            );
-            for d in 0..D {
-                gradient[d][c * LANES + k] = g[d];
+    for (d, column) in gradient.iter_mut().enumerate() {
+        column.par_chunks_mut(LANES).zip(sums).with_min_len(128).for_each(|(values, sum)| {
+            for (k, value) in values.iter_mut().enumerate() {
+                let g: [f64; D] = renormalised(
+                    std::array::from_fn(|a| sum.raw[a].0[k]),
+                    std::array::from_fn(|a| std::array::from_fn(|b| sum.moment[a.min(b)][a.max(b)].0[k])),
+                );
+                *value = g[d];
             }
-        }
+        });
     }
 }
 

@@ -5,7 +5,7 @@ use crate::columns::{Columns, Vectors, vectors};
 use crate::density_diffusion::{DeltaSph, Hydrostatic, Simple, Strength};
 use crate::density_gradient::{self, GradientSum};
 use crate::interface::Coupling;
-use crate::rates::{PairEffect, RateLaw, RateSum, scatter};
+use crate::rates::{PairEffect, RateLaw, RateSum, collect};
 use crate::time_step::Limits;
 use crate::viscosity::{self, StressTerm, VelocityGradient, Viscosity, ViscosityAtWall};
 use crate::wall::{WallLaw, WallSum, Walls};
@@ -264,15 +264,8 @@ impl<const D: usize> Fluid<D> {
                 self.rates(kernel, effect, &mut fluid_sums, &mut wall_sums);
             }
         }
-        for d in 0..D {
-            let g = self.gravity[d];
-            self.columns.acceleration[d].iter_mut().for_each(|a| *a = g);
-        }
-        self.columns.density_rate.iter_mut().for_each(|r| *r = 0.0);
-        scatter(&fluid_sums, &mut self.columns.acceleration, &mut self.columns.density_rate);
-        if self.walls.is_some() {
-            scatter(&wall_sums, &mut self.columns.acceleration, &mut self.columns.density_rate);
-        }
+        let columns = &mut self.columns;
+        collect(self.gravity, &fluid_sums, &wall_sums, &mut columns.acceleration, &mut columns.density_rate);
         self.fluid_sums = fluid_sums;
         self.wall_sums = wall_sums;
     }

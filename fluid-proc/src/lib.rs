@@ -12,6 +12,10 @@ pub mod interface;
 pub mod measure;
 pub mod momentum;
 pub mod rates;
+#[cfg(test)]
+mod fluid_tests;
+#[cfg(test)]
+mod term_tests;
 pub mod time_step;
 pub mod viscosity;
 pub mod wall;

@@ -5,6 +5,7 @@ use crate::momentum::pressure_and_continuity;
 use halfstep_shared::kernel::Kernel;
 use halfstep_shared::lane::{Arch, LANES, Lane};
 use halfstep_shared::pair::{PairLaw, distance, dot};
+use rayon::prelude::*;
 
 /// One particle with one of its neighbours, four times.
 #[derive(Clone, Copy, Debug)]
@@ -165,15 +166,38 @@ impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for RateLaw<'_, 
     }
 }
 
-/// Adds the sums of a pass to columns.
-pub fn scatter<const D: usize>(sums: &[RateSum<D>], acceleration: &mut [Vec<f64>; D], density_rate: &mut [f64]) {
-    for (c, sum) in sums.iter().enumerate() {
-        for k in 0..LANES {
-            let slot = c * LANES + k;
-            for d in 0..D {
-                acceleration[d][slot] += sum.acceleration[d].0[k];
-            }
-            density_rate[slot] += sum.density_rate.0[k];
-        }
+/// Slots that one task collects.
+const TASK: usize = 512;
+
+/// Acceleration and density rate of each slot: a constant acceleration plus the sums over fluid and walls (none: empty).
+pub fn collect<const D: usize>(
+    constant: [f64; D],
+    fluid: &[RateSum<D>],
+    walls: &[RateSum<D>],
+    acceleration: &mut [Vec<f64>; D],
+    density_rate: &mut [f64],
+) {
+    for d in 0..D {
+        gather(&mut acceleration[d], constant[d], fluid, walls, |sum| sum.acceleration[d]);
     }
+    gather(density_rate, 0.0, fluid, walls, |sum| sum.density_rate);
+}
+
+fn gather<const D: usize>(
+    column: &mut [f64],
+    constant: f64,
+    fluid: &[RateSum<D>],
+    walls: &[RateSum<D>],
+    of: impl Fn(&RateSum<D>) -> Lane + Sync,
+) {
+    column.par_chunks_mut(TASK).enumerate().for_each(|(task, part)| {
+        for (c, values) in part.chunks_exact_mut(LANES).enumerate() {
+            let cluster = task * (TASK / LANES) + c;
+            let mut sum = Lane::splat(constant) + of(&fluid[cluster]);
+            if let Some(wall) = walls.get(cluster) {
+                sum += of(wall);
+            }
+            values.copy_from_slice(&sum.0);
+        }
+    });
 }

@@ -27,6 +27,9 @@ pub trait PairLaw<const D: usize>: Sync {
 /// Runs a law over all targets of a list; `sums` has one entry for each cluster.
 pub fn pass<const D: usize, L: PairLaw<D>>(isa: Isa, law: &L, list: &ClusterList, sums: &mut [L::Sum]) {
     assert_eq!(sums.len(), list.clusters(), "one sum for each cluster");
+    if let ([chunk], true) = (list.chunks(), sums.len() <= CHUNK_CLUSTERS) {
+        return run_chunk(isa, law, 0, chunk, sums);
+    }
     sums.par_chunks_mut(CHUNK_CLUSTERS).zip(list.chunks()).enumerate().for_each(|(c, (sums, chunk))| {
         run_chunk(isa, law, c * CHUNK_CLUSTERS * LANES, chunk, sums);
     });

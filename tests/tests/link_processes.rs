@@ -2,12 +2,16 @@
 
 use halfstep::supervise::{Children, stop_flag};
 use halfstep_shared::failure::RoleName::{self, Coupler, Fluid, Solid};
-use halfstep_shared::link::{Claim, LinkConfig, cleanup_stale};
+use halfstep_shared::link::{
+    Claim, Expect, LinkConfig, LinkError, PhaseLink, Processes, Threads, cleanup_stale,
+};
+use halfstep_tests::conformance::link::suite::with_links;
 use halfstep_tests::conformance::link::{Run, eventually};
+use std::os::unix::fs::MetadataExt;
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::process::Command;
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 const ROLES: [RoleName; 3] = [Fluid, Solid, Coupler];
@@ -39,6 +43,52 @@ fn log_of(dir: &tempfile::TempDir) -> String {
 fn settle(run: &Run) {
     eventually(20.0, "the run's start", || run.leftovers().len() > 20);
     std::thread::sleep(Duration::from_millis(200));
+}
+
+#[test]
+fn memory_that_is_not_there_is_refused_before_anything_is_made() {
+    let run = Run::new(u32::MAX, 1);
+    match PhaseLink::<Processes>::open(&run, Fluid, None).map(drop) {
+        Err(LinkError::SharedMemoryFull { needed, available }) => {
+            assert!(needed > available && needed >= 128 * u64::from(u32::MAX));
+            assert!(needed <= run.shared_memory_bytes());
+        }
+        other => panic!("{other:?}"),
+    }
+    // On the heap there is no such limit to ask for.
+    let config = LinkConfig { handshake_seconds: 0.1, ..LinkConfig::new(100, 100) };
+    let error = PhaseLink::<Threads>::open(&config, Fluid, None).map(drop).unwrap_err();
+    assert!(matches!(error, LinkError::HandshakeTimeout { .. }), "{error}");
+}
+
+/// Every page of every object is taken before the first message, so that no later write can fail.
+#[test]
+fn memory_is_reserved() {
+    let run = Run::new(20_000, 3_000);
+    let whole = AtomicU64::new(0);
+    with_links::<Processes>(
+        &run,
+        None,
+        |mut fluid| drop(fluid.receive_forces(&Expect::new(0, 0))),
+        |mut solid| drop(solid.receive_forces(&Expect::new(0, 0))),
+        |link| {
+            eventually(5.0, "the others' reservations", || {
+                let objects = run.leftovers().into_iter().filter(|name| !name.starts_with('/'));
+                let sizes = objects.map(|name| std::fs::metadata(Path::new("/dev/shm").join(name)).unwrap());
+                let (mut length, mut missing) = (0, 0);
+                for data in sizes {
+                    length += data.len();
+                    missing += data.len().saturating_sub(512 * data.blocks());
+                }
+                whole.store(length, Ordering::Relaxed);
+                missing == 0
+            });
+            drop(link);
+        },
+    );
+    let (actual, estimate) = (whole.into_inner(), run.shared_memory_bytes());
+    assert!(actual > 20_000 * 128 * 4, "{actual}");
+    assert!(actual <= estimate && estimate < actual + actual / 5, "{actual} bytes, estimated {estimate}");
 }
 
 #[test]

@@ -7,6 +7,8 @@ mod gradient;
 mod model;
 mod rates;
 mod stress_rate;
+#[cfg(test)]
+mod tests;
 mod wall;
 
 pub use model::Hypoelastic;

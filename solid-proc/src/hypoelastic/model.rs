@@ -384,6 +384,28 @@ impl<const D: usize> Hypoelastic<D> {
     }
 }
 
+#[cfg(test)]
+impl<const D: usize> Hypoelastic<D> {
+    /// Gives every particle a velocity by its position.
+    pub(super) fn set_velocity(&mut self, v: impl Fn([f64; D]) -> [f64; D]) {
+        for slot in 0..self.id.len() {
+            let at = v(std::array::from_fn(|d| self.now.position[d][slot]));
+            for d in 0..D {
+                self.now.velocity[d][slot] = at[d];
+            }
+        }
+    }
+
+    /// Rate of the deviatoric stress of every particle.
+    pub(super) fn stress_rates(&mut self, load: &Load<D>) -> Vec<[[f64; D]; D]> {
+        self.compute_rates(load);
+        let rate = |s: usize| {
+            std::array::from_fn(|a| std::array::from_fn(|b: usize| self.rates.stress[a.min(b)][a.max(b)][s]))
+        };
+        self.slot_of.iter().map(|&s| rate(s as usize)).collect()
+    }
+}
+
 /// Particles within `reach` of the surface: those whose ball of that radius, less half a spacing, is not full of the
 /// same solid. Every particle for plates thinner than twice the reach.
 fn surface_set<const D: usize>(points: &[SolidPoint<D>], reach: f64, resolution: f64) -> Vec<u32> {

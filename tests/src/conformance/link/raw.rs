@@ -109,6 +109,14 @@ impl<S: Transport> RawRole<S> {
         })
     }
 
+    /// Listeners, notifiers and nodes that a wake service of another role has room for, as strings.
+    pub fn wake_options(&self, owner: &str) -> [String; 3] {
+        let name = format!("halfstep/{owner}/wake");
+        let service = self.others.iter().find(|s| s.name().as_str() == name).unwrap();
+        let options = service.static_config();
+        [options.max_listeners(), options.max_notifiers(), options.max_nodes()].map(|n| n.to_string())
+    }
+
     /// Writes a message and wakes everybody.
     pub fn send<R: Wire, H: Wire>(&self, writer: &Writer<S, R, H>, header: H, records: &[R]) {
         let mut sample = writer.loan_slice_uninit(records.len()).unwrap();

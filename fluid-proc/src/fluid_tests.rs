@@ -1,0 +1,125 @@
+//! The fluid as a role: walls, rest, time step.
+
+use crate::Fluid;
+use crate::time_step::Limits;
+use halfstep_shared::lane::Isa;
+use halfstep_shared::neighbours::PADDING;
+use halfstep_shared::role::{Role, audit};
+use halfstep_shared::scene::{self, Scene};
+use std::path::Path;
+
+fn tank(overrides: &[&str]) -> Scene {
+    let text = r#"
+        resolution = 0.01
+        end_time = 1.0
+        [fluid]
+        density = 1000.0
+        sound_speed = 20.0
+        [[shape]]
+        name = "water"
+        phase = "fluid"
+        box = { min = [0.0, 0.0], max = [0.2, 0.1] }
+        pressure = "hydrostatic"
+        [[shape]]
+        name = "tank"
+        phase = "wall"
+        tank = { min = [0.0, 0.0], max = [0.2, 0.2], open = ["top"] }
+    "#;
+    let overrides: Vec<String> = overrides.iter().map(|&o| o.into()).collect();
+    scene::parse(text, Path::new("tank.toml"), &overrides).expect("a right scene")
+}
+
+#[test]
+fn walls_show_the_hydrostatic_pressure() {
+    let mut fluid = Fluid::<2>::new(&tank(&[]), Isa::detect()).unwrap();
+    fluid.own_sums();
+    let walls = fluid.walls.as_ref().unwrap();
+    let mut seen = 0;
+    for s in (0..walls.slots()).filter(|&s| walls.id[s] != PADDING) {
+        let x: [f64; 2] = std::array::from_fn(|d| walls.shown.position[d][s]);
+        // Two layers are within reach of the water: p = rho g (0.1 - y), exact for a linear field but for the compressed
+        // density in the extrapolation (0.2 %).
+        let deep_corner = x[1] < -0.01 && !(0.0..0.2).contains(&x[0]);
+        if !deep_corner && x[1] < 0.09 && x[1] > -0.02 && x[0] > -0.02 && x[0] < 0.22 {
+            let exact = 1000.0 * 9.81 * (0.1 - x[1]);
+            assert!((walls.pressure[s] - exact).abs() < 0.005 * exact, "{x:?}: {} {exact}", walls.pressure[s]);
+            seen += 1;
+        }
+    }
+    assert!(seen > 30);
+    // Above the water nothing is near: zero.
+    let dry = (0..walls.slots()).filter(|&s| walls.id[s] != PADDING && walls.shown.position[1][s] > 0.14);
+    assert!(dry.map(|s| walls.pressure[s]).all(|p| p == 0.0));
+}
+
+#[test]
+fn walls_mirror_the_normal_velocity() {
+    let scene = tank(&["shape.water.velocity=[0.3,-0.2]"]);
+    let mut fluid = Fluid::<2>::new(&scene, Isa::detect()).unwrap();
+    fluid.own_sums();
+    let walls = fluid.walls.as_ref().unwrap();
+    let at = |x: f64, y: f64| {
+        (0..walls.slots())
+            .find(|&s| {
+                (walls.shown.position[0][s] - x).abs() < 1e-9 && (walls.shown.position[1][s] - y).abs() < 1e-9
+            })
+            .map(|s| [walls.shown.velocity[0][s], walls.shown.velocity[1][s]])
+            .unwrap()
+    };
+    let near = |a: [f64; 2], b: [f64; 2]| assert!((a[0] - b[0]).abs() + (a[1] - b[1]).abs() < 1e-12, "{a:?} {b:?}");
+    near(at(0.105, -0.005), [0.3, 0.2]); // floor: along kept, normal reversed
+    near(at(-0.005, 0.055), [-0.3, -0.2]); // side
+    near(at(-0.005, -0.005), [-0.3, 0.2]); // corner: both
+}
+
+#[test]
+fn still_water_stays_still() {
+    let mut fluid = Fluid::<2>::new(&tank(&[]), Isa::detect()).unwrap();
+    let mut record = Vec::new();
+    let mut largest = 0.0_f64;
+    for step in 0..400 {
+        let dt = fluid.dt_limit();
+        for stage in 0..2 {
+            fluid.publish(&[], &mut record);
+            fluid.own_sums();
+            fluid.advance(step, stage, dt, &[]).unwrap();
+        }
+        largest = largest.max(fluid.audit()[audit::KINETIC_ENERGY]);
+    }
+    // Energy of the same water falling through a tenth of its depth: 20 kg/m * g * 0.01 m = 2 J/m.
+    assert!(largest < 2e-3, "{largest}");
+}
+
+#[test]
+fn time_step_limits_by_hand() {
+    // h = 0.0133, c0 = 20: 0.25 * 0.0133 / (20 + 5); acceleration 100: 0.25 sqrt(0.0133 / 100).
+    let limits = Limits::new(&tank(&[]));
+    assert!((limits.time_step(5.0, 0.0) - 0.25 * 0.0133 / 25.0).abs() < 1e-15);
+    assert!((limits.time_step(0.0, 1e6) - 0.25 * (0.0133_f64 / 1e6).sqrt()).abs() < 1e-15);
+    // Honey: 0.125 h² rho / mu = 0.125 * 1.7689e-4 * 1000 / 1000.
+    let viscous = Limits::new(&tank(&["fluid.viscosity=1000.0"]));
+    assert!((viscous.time_step(0.0, 0.0) - 0.125 * 1.7689e-4).abs() < 1e-12);
+}
+
+#[test]
+fn divergence_names_the_particle() {
+    let mut fluid = Fluid::<2>::new(&tank(&[]), Isa::detect()).unwrap();
+    let mut record = Vec::new();
+    let mut failure = None;
+    for step in 0..50 {
+        for stage in 0..2 {
+            fluid.publish(&[], &mut record);
+            fluid.own_sums();
+            // A hundred times the stable step.
+            if let Err(diverged) = fluid.advance(step, stage, 0.02, &[]) {
+                failure = Some(diverged);
+            }
+        }
+        if failure.is_some() {
+            break;
+        }
+    }
+    let diverged = failure.expect("an absurd time step diverges");
+    assert!(diverged.to_string().contains("the fluid diverged at step"));
+    assert!(diverged.particle < 200);
+}

@@ -1,0 +1,185 @@
+//! The hypoelastic solid: exact deformations, symmetries, sub-steps.
+
+use crate::hypoelastic::Hypoelastic;
+use crate::model::{Load, SolidModel};
+use halfstep_shared::lane::Isa;
+use halfstep_shared::scene::{self, Scene};
+use proptest::prelude::*;
+use std::path::Path;
+
+fn block(overrides: &[&str]) -> Scene {
+    let text = r#"
+        resolution = 0.01
+        end_time = 1.0
+        gravity = [0.0, 0.0]
+        [solid]
+        density = 1000.0
+        youngs_modulus = 1e6
+        poissons_ratio = 0.3
+        [[shape]]
+        name = "block"
+        phase = "solid"
+        box = { min = [0.0, 0.0], max = [0.2, 0.15] }
+    "#;
+    let overrides: Vec<String> = overrides.iter().map(|&o| o.into()).collect();
+    scene::parse(text, Path::new("block.toml"), &overrides).expect("a right scene")
+}
+
+/// The block with a velocity field.
+fn moving(overrides: &[&str], v: impl Fn([f64; 2]) -> [f64; 2]) -> Hypoelastic<2> {
+    let mut solid = Hypoelastic::<2>::new(&block(overrides), Isa::detect()).unwrap();
+    solid.set_velocity(v);
+    solid
+}
+
+fn interior(x: [f64; 2]) -> bool {
+    x[0] > 0.04 && x[0] < 0.16 && x[1] > 0.04 && x[1] < 0.11
+}
+
+/// Largest |ds/dt| over particles that `which` picks.
+fn largest_stress_rate(solid: &mut Hypoelastic<2>, which: impl Fn([f64; 2]) -> bool) -> f64 {
+    let load = Load::none(solid.particles());
+    let rates = solid.stress_rates(&load);
+    (0..solid.particles() as u32)
+        .filter(|&p| which(solid.reference(p)))
+        .map(|p| rates[p as usize].as_flattened().iter().fold(0.0_f64, |m, r| m.max(r.abs())))
+        .fold(0.0, f64::max)
+}
+
+#[test]
+fn rigid_rotation_makes_no_stress_inside() {
+    // Rate 2 about the middle. 2 G w = 1.5e6 would be the scale of a real strain.
+    let spin = |x: [f64; 2]| [-2.0 * (x[1] - 0.075), 2.0 * (x[0] - 0.1)];
+    let mut plain = moving(&[], spin);
+    assert!(largest_stress_rate(&mut plain, interior) < 1e-6);
+    // The plain gradient makes some at the surface, the renormalised one nowhere.
+    assert!(largest_stress_rate(&mut plain, |_| true) > 1e4);
+    let mut renormalised = moving(&["effects.renormalised-gradient=\"on\""], spin);
+    assert!(largest_stress_rate(&mut renormalised, |_| true) < 1e-6);
+}
+
+#[test]
+fn uniform_stretch_has_hookes_rate() {
+    // dv_x/dx = 1: ds_xx/dt = 2 G (1 - 1/3) = 4/3 G, ds_yy/dt = -2/3 G, G = E / 2.6; renormalised, so everywhere.
+    let mut solid = moving(&["effects.renormalised-gradient=\"on\""], |x| [x[0], 0.0]);
+    let load = Load::none(solid.particles());
+    let g = 1e6 / 2.6;
+    for rate in solid.stress_rates(&load) {
+        assert!((rate[0][0] - 4.0 / 3.0 * g).abs() < 1e-6 * g, "{rate:?}");
+        assert!((rate[1][1] + 2.0 / 3.0 * g).abs() < 1e-6 * g);
+        assert!(rate[0][1].abs() < 1e-6 * g);
+    }
+}
+
+#[test]
+fn a_block_at_rest_stays_at_rest() {
+    let mut solid = moving(&[], |_| [0.0; 2]);
+    let load = Load::none(solid.particles());
+    let before: Vec<_> = (0..solid.particles() as u32).map(|p| solid.record(p)).collect();
+    for _ in 0..10 {
+        let dt = solid.sub_step_limit();
+        solid.advance(0, dt, 1, &load).unwrap();
+        solid.advance(1, dt, 1, &load).unwrap();
+    }
+    for r in before {
+        let now = solid.record(r.id);
+        for d in 0..2 {
+            assert!((now.position[d] - r.position[d]).abs() < 1e-14);
+        }
+    }
+}
+
+#[test]
+fn a_force_accelerates_the_whole_block() {
+    // 1 N/m on every particle of mass 0.1 kg/m: 10 m/s² for 20 steps.
+    let mut solid = moving(&[], |_| [0.0; 2]);
+    let mut load = Load::none(solid.particles());
+    load.force.fill([1.0, 0.0]);
+    let dt = solid.sub_step_limit();
+    for _ in 0..20 {
+        solid.advance(0, dt, 1, &load).unwrap();
+        solid.advance(1, dt, 1, &load).unwrap();
+    }
+    for p in 0..solid.particles() as u32 {
+        assert!((solid.velocity(p)[0] - 10.0 * 20.0 * dt).abs() < 1e-12);
+        assert!(solid.velocity(p)[1].abs() < 1e-12);
+    }
+}
+
+#[test]
+fn sub_steps_agree_with_single_steps() {
+    // The same time with 4 sub-steps of a step four times as long: the same field up to the order of the scheme.
+    let bend = |x: [f64; 2]| [0.0, 0.3 * x[0] * x[0]];
+    let (mut one, mut four) = (moving(&[], bend), moving(&[], bend));
+    let load = Load::none(one.particles());
+    let dt = 0.25 * one.sub_step_limit();
+    for _ in 0..40 {
+        one.advance(0, dt, 1, &load).unwrap();
+        one.advance(1, dt, 1, &load).unwrap();
+    }
+    for _ in 0..10 {
+        four.advance(0, 4.0 * dt, 4, &load).unwrap();
+        four.advance(1, 4.0 * dt, 4, &load).unwrap();
+    }
+    // Without load the sub-steps of stage 1 are exactly the single steps.
+    for p in 0..one.particles() as u32 {
+        assert!((one.record(p).position[1] - four.record(p).position[1]).abs() < 1e-13);
+    }
+}
+
+#[test]
+fn clamped_particles_do_not_move() {
+    let clamp = "shape.block.clamp={min=[0.0,0.0],max=[0.05,0.2]}";
+    let mut solid = moving(&[clamp], |_| [0.0; 2]);
+    let mut load = Load::none(solid.particles());
+    load.force.fill([0.0, -1.0]);
+    let dt = solid.sub_step_limit();
+    for _ in 0..50 {
+        solid.advance(0, dt, 2, &load).unwrap();
+        solid.advance(1, dt, 2, &load).unwrap();
+    }
+    for p in 0..solid.particles() as u32 {
+        let (x0, r) = (solid.reference(p), solid.record(p));
+        if x0[0] < 0.05 {
+            assert_eq!(r.flags, 1);
+            assert_eq!([r.position[0], r.position[1]], x0);
+        } else {
+            assert!(r.position[1] < x0[1]);
+        }
+    }
+}
+
+#[test]
+fn the_interface_set_is_a_ribbon_under_the_surface() {
+    // 60 x 60 spacings, 2h = 2.66 dx: surface rows lie half a spacing under the surface, two more are within reach.
+    let solid = Hypoelastic::<2>::new(&block(&["shape.block.box.max=[0.6,0.6]"]), Isa::detect()).unwrap();
+    let expected = 60 * 60 - 54 * 54;
+    assert_eq!(solid.interface_set().len(), expected);
+    assert!(solid.interface_set().windows(2).all(|w| w[0] < w[1]));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+    #[test]
+    fn inner_forces_sum_to_zero(a in -2.0..2.0f64, b in -2.0..2.0f64, c in -9.0..9.0f64) {
+        let mut solid = moving(&[], |x| [a * x[0] + c * x[1] * x[1], b * x[1] + c * x[0]]);
+        let load = Load::none(solid.particles());
+        let dt = solid.sub_step_limit();
+        let momentum = |s: &Hypoelastic<2>| {
+            (0..s.particles() as u32).fold([0.0; 2], |m, p| {
+                let v = s.velocity(p);
+                [m[0] + v[0], m[1] + v[1]]
+            })
+        };
+        let speed: f64 = (0..solid.particles() as u32).map(|p| solid.velocity(p)[0].hypot(solid.velocity(p)[1])).sum();
+        let before = momentum(&solid);
+        for _ in 0..5 {
+            solid.advance(0, dt, 1, &load).unwrap();
+            solid.advance(1, dt, 1, &load).unwrap();
+        }
+        let after = momentum(&solid);
+        for d in 0..2 {
+            prop_assert!((after[d] - before[d]).abs() <= 1e-12 * (speed + 1.0));
+        }
+    }
+}

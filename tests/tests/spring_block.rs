@@ -1,0 +1,173 @@
+//! A solid that shares no code with halfstep: a block on a spring, written in Python against docs/protocol.md.
+
+use halfstep::supervise::Children;
+use halfstep_shared::failure::RoleName::{Fluid, Solid};
+use halfstep_shared::link::{Claim, CouplerLink, Expect, LinkConfig, PhaseLink, Processes};
+use halfstep_shared::protocol::{ForceHeader, ForceRecord, StateHeader, StateRecord, order, status};
+use halfstep_shared::scene::{Block, Geometry, Phase};
+use halfstep_tests::conformance::link::Run;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Duration;
+
+const RESOLUTION: f64 = 0.01;
+const SOLID_DENSITY: f64 = 1200.0;
+const STIFFNESS: f64 = 4.0e4;
+const WIDTH: f64 = 0.05;
+const HEIGHT: f64 = 0.10;
+/// Depth of the water at the block's left side times its weight, Pa.
+const BOTTOM_PRESSURE: f64 = 1000.0 * 9.81 * HEIGHT;
+
+/// The interpreter of an environment with what the script needs.
+fn python() -> PathBuf {
+    let setup = Path::new(env!("CARGO_MANIFEST_DIR")).join("python/setup.sh");
+    let output = Command::new("sh").arg(setup).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap().trim().into()
+}
+
+fn scene() -> serde_json::Value {
+    let block = Block { min: [0.2, 0.0, 0.0], max: [0.2 + WIDTH, HEIGHT, 0.0] };
+    serde_json::json!({
+        "dimension": 2,
+        "resolution": RESOLUTION,
+        "solid": { "density": SOLID_DENSITY },
+        "shapes": [
+            { "phase": Phase::Fluid, "geometry": Geometry::Box(Block { min: [0.0; 3], max: [0.2, HEIGHT, 0.0] }) },
+            { "phase": Phase::Solid, "geometry": Geometry::Box(block) },
+        ],
+    })
+}
+
+/// The pressure of water at rest on the left side, half of it as f_i and half as a force, so that both are needed.
+fn hydrostatic(record: &StateRecord) -> ForceRecord {
+    let on_left_side = (record.id as usize) < (HEIGHT / RESOLUTION).round() as usize;
+    let depth = HEIGHT - record.position[1];
+    let force = if on_left_side { BOTTOM_PRESSURE * depth / HEIGHT * RESOLUTION } else { 0.0 };
+    ForceRecord {
+        id: record.id,
+        flags: 0,
+        cross_viscosity: [0.5 * force / record.mass, 7.0, 0.0],
+        stress_force: [0.5 * force, -3.0, 0.0],
+    }
+}
+
+/// A fluid that says nothing of interest, on time.
+fn fluid(config: &LinkConfig) {
+    let mut link = PhaseLink::<Processes>::open(config, Fluid, None).unwrap();
+    let (mut time, mut dt) = (0.0, 0.0);
+    for half_step in 0.. {
+        let (step, stage) = (half_step / 2, (half_step % 2) as u32);
+        let told = if stage == 0 { 0.0 } else { dt };
+        drop(link.receive_peer(&Expect::new(step, stage).time(time).dt(told)).unwrap());
+        let header = StateHeader { step, stage, time, dt: told, dt_limit: 1.0, ..StateHeader::default() };
+        link.send_state(&header, &[]).unwrap();
+        let answer = link.receive_forces(&Expect::new(step, stage).time(time)).unwrap();
+        if answer.header().order & order::STOP != 0 {
+            link.send_state(&StateHeader { stage: 2, status: status::FINISHED, ..header }, &[]).unwrap();
+            return;
+        }
+        dt = answer.header().dt;
+        time = if stage == 0 { time } else { answer.header().next_time };
+    }
+}
+
+/// The block's displacement at the start of each step and at the end of the last.
+fn coupler(config: &LinkConfig, steps: u64, dt: f64) -> Vec<(f64, f64)> {
+    let mut link = CouplerLink::<Processes>::open(config, None).unwrap();
+    let mut curve = Vec::new();
+    let mut time = 0.0;
+    for step in 0.. {
+        let next_time = time + dt;
+        let stops = step == steps;
+        for stage in 0..2 {
+            let expect = Expect::new(step, stage).time(time).dt(if stage == 0 { 0.0 } else { dt });
+            let order = if stops { order::STOP } else { order::GO };
+            let header = ForceHeader { order, step, stage, time, dt, next_time, ..ForceHeader::default() };
+            drop(link.receive_state(Fluid, &expect).unwrap());
+            link.send_forces(Fluid, &header, &[]).unwrap();
+            let solid = link.receive_state(Solid, &expect).unwrap();
+            let records = solid.records();
+            assert_eq!(records.len(), 50);
+            if stage == 0 {
+                curve.push((time, records[0].position[0] - 0.205));
+            }
+            let answer = |record: &StateRecord| hydrostatic(record);
+            let forces: Vec<ForceRecord> =
+                if stops { Vec::new() } else { records.iter().map(answer).collect() };
+            link.send_forces(Solid, &header, &forces).unwrap();
+            if stops {
+                for role in [Fluid, Solid] {
+                    let last = link.receive_state(role, &Expect::new(step, 2)).unwrap();
+                    assert_eq!(last.header().status, status::FINISHED);
+                }
+                return curve;
+            }
+        }
+        time = next_time;
+    }
+    unreachable!("it stops")
+}
+
+/// Shows what the script printed if the test fails.
+struct Shown(PathBuf);
+
+impl Drop for Shown {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            eprintln!("{}", std::fs::read_to_string(&self.0).unwrap_or_default());
+        }
+    }
+}
+
+#[test]
+fn a_python_block_swings_about_its_equilibrium() {
+    let python = python();
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("python/spring_block.py");
+    assert!(std::fs::read_to_string(&script).unwrap().lines().count() <= 60, "it is meant to be short");
+    let dir = tempfile::tempdir().unwrap();
+    let scene_path = dir.path().join("scene.json");
+    std::fs::write(&scene_path, scene().to_string()).unwrap();
+    let log = dir.path().join("log.txt");
+    let _shown = Shown(log.clone());
+
+    let run = Run::new(0, 50);
+    let config: &LinkConfig = &run;
+    let claim = Claim::new(config).unwrap();
+    let mut children = Children::new(&log);
+    let line = format!("'{}' '{}' {STIFFNESS}", python.display(), script.display());
+    children.spawn_shell(Solid, &line, config, &scene_path).unwrap();
+
+    let mass = SOLID_DENSITY * WIDTH * HEIGHT;
+    let load = 0.5 * BOTTOM_PRESSURE * HEIGHT;
+    let equilibrium = load / STIFFNESS;
+    let frequency = (STIFFNESS / mass).sqrt();
+    let period = 2.0 * std::f64::consts::PI / frequency;
+    let curve = std::thread::scope(|threads| {
+        threads.spawn(|| fluid(config));
+        coupler(config, 1000, period / 400.0)
+    });
+    assert!(children.wait(Duration::from_secs(10)));
+    assert!(children.first_exit().is_some_and(|(_, status)| status.success()));
+    drop(claim);
+
+    assert_eq!(curve.len(), 1001);
+    for (time, displacement) in &curve {
+        let exact = equilibrium * (1.0 - (frequency * time).cos());
+        assert!((displacement - exact).abs() < 1e-3 * equilibrium, "{time}: {displacement}, exactly {exact}");
+    }
+    let mean = curve[..800].iter().map(|(_, x)| x).sum::<f64>() / 800.0;
+    assert!((mean / equilibrium - 1.0).abs() < 1e-3, "equilibrium {mean}, expected {equilibrium}");
+    // Upward crossings of the equilibrium are a period apart.
+    let crossings: Vec<f64> = curve
+        .windows(2)
+        .filter(|pair| pair[0].1 < equilibrium && pair[1].1 >= equilibrium)
+        .map(|pair| {
+            let [(t0, x0), (t1, x1)] = [pair[0], pair[1]];
+            t0 + (t1 - t0) * (equilibrium - x0) / (x1 - x0)
+        })
+        .collect();
+    assert_eq!(crossings.len(), 3);
+    let measured = (crossings[2] - crossings[0]) / 2.0;
+    assert!((measured / period - 1.0).abs() < 1e-3, "period {measured}, expected {period}");
+}
