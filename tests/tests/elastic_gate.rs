@@ -87,3 +87,39 @@ fn the_phase_blind_gate_opens() {
     assert!(x.at(0.005) < x.at(0.01) && x.at(0.01) < x.at(0.015) && x.at(0.015) < x.at(0.02));
     assert!((0.5..12.5).contains(&x.at(0.02)), "{}", x.at(0.02));
 }
+
+#[test]
+#[ignore = "minutes: full resolution"]
+fn the_gate_at_5_across() {
+    let run = scene("elastic-gate").until(0.24).threads(2).run();
+    sound(&run);
+    within_literature(state("gate, moving wall, 1 mm", &run));
+    let experiment = Curve::reference("elastic-gate/experiment.csv", "x [mm]");
+    let rms = tip(&run, "x").rms_to(&experiment);
+    // As close as the published computation that comes with the experiment (Antoci et al. 2007: 50.1 for 46.4 mm).
+    assert!(rms < 4.0, "{rms} mm");
+}
+
+#[test]
+#[ignore = "many minutes: the paper's interface at full resolution"]
+fn the_phase_blind_gate_at_5_across() {
+    let run = scene("elastic-gate").set("interface.treatment", "phase-blind").until(0.1).threads(2).run();
+    state("gate, phase-blind, 1 mm", &run);
+    assert!(run.report.audit.action_reaction.unwrap() <= 1e-12);
+    let experiment = Curve::reference("elastic-gate/experiment.csv", "x [mm]");
+    for time in [0.04, 0.08] {
+        let (found, truth) = (tip(&run, "x").at(time), experiment.at(time));
+        assert!((found - truth).abs() < 5.0, "{found} mm at {time} s, {truth} mm in the experiment");
+    }
+}
+
+#[test]
+#[ignore = "many minutes: up to 10 particles across"]
+fn the_gate_from_2_to_10_across() {
+    for across in [2, 4, 5, 10] {
+        let resolution = 0.005 / f64::from(across);
+        let run = scene("elastic-gate").set("resolution", resolution).until(0.16).threads(2).run();
+        sound(&run);
+        within_literature(state(&format!("gate, {across} across"), &run));
+    }
+}
