@@ -77,7 +77,8 @@ impl Clock {
     pub fn tick(&mut self, limit: f64, stop: bool) -> Result<Tick, Diverged> {
         let remaining = self.end - self.time;
         let last = stop || remaining <= self.end * 1e-12;
-        let tick = |dt, next_time, frame, row| Tick { step: self.step, time: self.time, dt, next_time, frame, row };
+        let tick =
+            |dt, next_time, frame, row| Tick { step: self.step, time: self.time, dt, next_time, frame, row };
         if last {
             return Ok(tick(None, self.time, true, true));
         }
@@ -157,7 +158,15 @@ mod tests {
 
     #[test]
     fn the_step_grows_by_a_tenth_at_most_and_shrinks_at_once() {
-        let (steps, _, end) = run(clock(1.0, None), |n| if n == 3 { 0.01 } else if n == 0 { 0.02 } else { 1.0 });
+        let (steps, _, end) = run(clock(1.0, None), |n| {
+            if n == 3 {
+                0.01
+            } else if n == 0 {
+                0.02
+            } else {
+                1.0
+            }
+        });
         assert!((steps[1] / steps[0] - 1.1).abs() < 1e-12);
         assert_eq!(steps[3], 0.01);
         assert!((steps[4] - 0.011).abs() < 1e-15);

@@ -2,6 +2,7 @@
 
 use crate::clock::{Clock, Tick};
 use crate::cross_viscosity::CrossViscosity;
+use crate::foreign::ForeignSolid;
 use crate::recorder::{Measured, Recorder};
 use crate::run::RunError;
 use halfstep_shared::failure::{Diverged, Quantity, RoleName};
@@ -48,11 +49,14 @@ pub struct Coupler<S: Transport, const D: usize> {
     compute: Duration,
     frame: u64,
     solid_count: Option<usize>,
+    foreign: Option<ForeignSolid>,
 }
 
 impl<S: Transport, const D: usize> Coupler<S, D> {
     /// For a scene with both phases, on a link whose partners are connected.
-    pub fn new(link: CouplerLink<S>, scene: &Scene) -> Option<Self> {
+    ///
+    /// `foreign` stands in for what a solid of somebody else's does not do itself.
+    pub fn new(link: CouplerLink<S>, scene: &Scene, foreign: Option<ForeignSolid>) -> Option<Self> {
         Some(Self {
             link,
             interface: Interface::new(Parameters::new(scene, Isa::detect())?),
@@ -65,6 +69,7 @@ impl<S: Transport, const D: usize> Coupler<S, D> {
             compute: Duration::ZERO,
             frame: 0,
             solid_count: None,
+            foreign,
         })
     }
 
@@ -86,11 +91,24 @@ impl<S: Transport, const D: usize> Coupler<S, D> {
             let limit = fluid.header().dt_limit.min(solid.header().dt_limit);
             let tick = clock.tick(limit, stopped)?;
             self.answer(&tick, 0, &fluid, &solid)?;
-            recorder.note(&tick, Some(Measured::of(fluid.header())), Some(Measured::of(solid.header())))?;
+            let mut of_solid = Measured::of(solid.header());
+            if let Some(foreign) = &mut self.foreign {
+                if tick.frame {
+                    foreign.write(self.frame - 1, tick.time, solid.records())?;
+                }
+                let values = foreign.measure(solid.records());
+                if of_solid.probes.is_empty() {
+                    of_solid.probes = values;
+                }
+            }
+            recorder.note(&tick, Some(Measured::of(fluid.header())), Some(of_solid))?;
             drop((fluid, solid));
             let Some(dt) = tick.dt else {
                 let last = Expect::new(step, 2).time(time);
                 let (fluid, solid) = self.receive(&last)?;
+                if let Some(foreign) = self.foreign.take() {
+                    foreign.finish()?;
+                }
                 return Ok(self.outcome(stopped, *fluid.header(), *solid.header()));
             };
             let (fluid, solid) = self.receive(&Expect::new(step, 1).time(time).dt(dt))?;
@@ -110,7 +128,11 @@ impl<S: Transport, const D: usize> Coupler<S, D> {
         if expect.stage < 2 {
             let count = *self.solid_count.get_or_insert(solid.records().len());
             if count != solid.records().len() {
-                return Err(RunError::SolidCount { first: count, now: solid.records().len(), step: expect.step });
+                return Err(RunError::SolidCount {
+                    first: count,
+                    now: solid.records().len(),
+                    step: expect.step,
+                });
             }
         }
         self.checks += 2;
@@ -143,7 +165,11 @@ impl<S: Transport, const D: usize> Coupler<S, D> {
         header.order = orders;
         self.evaluate(fluid, solid);
         self.compute += start.elapsed();
-        self.link.send_forces(RoleName::Solid, &ForceHeader { epoch: solid.header().epoch, ..header }, &self.solid_forces)?;
+        self.link.send_forces(
+            RoleName::Solid,
+            &ForceHeader { epoch: solid.header().epoch, ..header },
+            &self.solid_forces,
+        )?;
         self.link.send_forces(RoleName::Fluid, &header, &self.fluid_forces)?;
         let start = Instant::now();
         if self.half_steps.is_multiple_of(AUDIT_INTERVAL) {

@@ -1,8 +1,11 @@
 //! The front door: runs scenes, couples fluid and solid in lock-step, writes what a run leaves.
 
+pub mod check;
 pub mod clock;
 pub mod couple;
 pub mod cross_viscosity;
+pub mod effects;
+pub mod foreign;
 pub mod recorder;
 pub mod roles;
 pub mod run;

@@ -26,6 +26,8 @@ struct Arguments {
 enum Command {
     /// Simulates a scene
     Run(RunArguments),
+    /// Validates a scene; prints counts, time steps, memory and expected time
+    Check(SceneArguments),
     /// A role's process; started by `run`
     #[command(hide = true)]
     Role {
@@ -76,6 +78,13 @@ struct RunArguments {
 fn main() -> ExitCode {
     match Arguments::parse().command {
         Command::Run(arguments) => run_scene(arguments),
+        Command::Check(arguments) => match load(&arguments) {
+            Ok(scene) => {
+                print!("{}", halfstep::check::describe(&scene));
+                ExitCode::SUCCESS
+            }
+            Err(code) => code,
+        },
         Command::Role { name } => serve_role(&name),
     }
 }
@@ -145,9 +154,10 @@ fn serve_role(name: &str) -> ExitCode {
         }
     };
     let launcher = parent_id();
-    let result = abort_flag()
-        .map_err(|e| RoleError::Start(format!("cannot watch for signals: {e}")))
-        .and_then(|abort| lockstep::serve_process(roles::stem(role), abort, |scene| roles::build(role, scene)));
+    let result =
+        abort_flag().map_err(|e| RoleError::Start(format!("cannot watch for signals: {e}"))).and_then(
+            |abort| lockstep::serve_process(roles::stem(role), abort, |scene| roles::build(role, scene)),
+        );
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

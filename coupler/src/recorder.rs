@@ -49,7 +49,6 @@ pub struct Recorder {
     dt: (f64, f64, f64),
     particle_steps: f64,
     sub_steps: u32,
-    mass: f64,
     first_momentum: Option<[f64; 3]>,
     momentum_scale: f64,
     momentum_drift: f64,
@@ -58,6 +57,7 @@ pub struct Recorder {
     density_error: f64,
     gap: f64,
     removed: u64,
+    first_fluid: Option<u64>,
     isolated: bool,
 }
 
@@ -95,7 +95,6 @@ impl Recorder {
             dt: (f64::INFINITY, 0.0, 0.0),
             particle_steps: 0.0,
             sub_steps: 0,
-            mass: 0.0,
             first_momentum: None,
             momentum_scale: 0.0,
             momentum_drift: 0.0,
@@ -104,6 +103,7 @@ impl Recorder {
             density_error: 0.0,
             gap: f64::INFINITY,
             removed: 0,
+            first_fluid: None,
             isolated,
         })
     }
@@ -159,34 +159,30 @@ impl Recorder {
     }
 
     fn audit(&mut self, fluid: Option<&Measured<'_>>, solid: Option<&Measured<'_>>) {
-        let (mut momentum, mut energy, mut mass) = ([0.0; 3], 0.0, 0.0);
+        let (mut momentum, mut kinetic, mut stored, mut mass) = ([0.0; 3], 0.0, 0.0, 0.0);
         for m in [fluid, solid].into_iter().flatten() {
             for d in 0..3 {
                 momentum[d] += m.audit[audit::MOMENTUM + d];
             }
-            energy += m.audit[audit::KINETIC_ENERGY];
+            kinetic += m.audit[audit::KINETIC_ENERGY];
+            stored += m.audit[audit::STORED_ENERGY];
             mass += m.audit[audit::MASS];
         }
         if let Some(f) = fluid {
             self.density_error = self.density_error.max(f.audit[audit::DENSITY_ERROR]);
             self.gap = self.gap.min(f.audit[audit::GAP]);
-            self.removed = f.audit[audit::REMOVED] as u64;
+            let first = *self.first_fluid.get_or_insert(f.particles);
+            self.removed = first.saturating_sub(f.particles);
         }
-        self.mass = mass;
-        self.energy = energy;
-        self.first_energy.get_or_insert(energy);
+        self.energy = kinetic + stored;
+        self.first_energy.get_or_insert(self.energy);
         let first = *self.first_momentum.get_or_insert(momentum);
         // Scale: all mass at the speed of the largest kinetic energy seen.
-        self.momentum_scale = self.momentum_scale.max((2.0 * energy * mass).sqrt());
+        self.momentum_scale = self.momentum_scale.max((2.0 * kinetic * mass).sqrt());
         if self.isolated && self.momentum_scale > 0.0 {
             let drift = (0..3).map(|d| (momentum[d] - first[d]).abs()).fold(0.0, f64::max);
             self.momentum_drift = self.momentum_drift.max(drift / self.momentum_scale);
         }
-    }
-
-    /// Particles that left the domain.
-    pub fn removed(&self) -> u64 {
-        self.removed
     }
 
     /// Puts the statistics into the report.
@@ -207,9 +203,12 @@ impl Recorder {
         }
         report.sub_steps = (self.sub_steps > 0).then_some(self.sub_steps);
         report.audit.momentum_drift = self.isolated.then_some(self.momentum_drift);
-        report.audit.energy_drift =
-            self.first_energy.filter(|&e| self.isolated && e > 0.0).map(|e| self.energy / e - 1.0);
-        report.audit.density_error = Some(self.density_error);
+        report.audit.energy_drift = self
+            .first_energy
+            .filter(|&e| self.isolated && self.first_fluid.is_none() && e > 0.0)
+            .map(|e| self.energy / e - 1.0);
+        report.particles.removed = self.removed;
+        report.audit.density_error = self.first_fluid.map(|_| self.density_error);
         report.audit.min_gap = self.gap.is_finite().then_some(self.gap);
     }
 }

@@ -2,6 +2,8 @@
 
 use crate::clock::Clock;
 use crate::couple::{CoupledOutcome, Coupler};
+use crate::effects;
+use crate::foreign::ForeignSolid;
 use crate::recorder::Recorder;
 use crate::roles;
 use crate::solo::run_solo;
@@ -46,7 +48,9 @@ pub enum RunError {
         link: LinkError,
     },
     /// The solid changed the size of its interface set.
-    #[error("the solid published {now} interface particles at step {step} and {first} before; the number is fixed")]
+    #[error(
+        "the solid published {now} interface particles at step {step} and {first} before; the number is fixed"
+    )]
     SolidCount {
         /// At first.
         first: usize,
@@ -118,9 +122,16 @@ pub fn run(scene: &Scene, options: &RunOptions) -> Result<(RunReport, Option<Run
             fluid: layout.fluid.len() as u64,
             solid: layout.solid.len() as u64,
             wall: layout.wall.len() as u64,
+            removed: 0,
         },
         ..RunReport::default()
     };
+    let counts = geometry::Counts {
+        fluid: report.particles.fluid,
+        solid: report.particles.solid,
+        wall: report.particles.wall,
+    };
+    report.effects = effects::ledger(scene, &counts);
     start_log(&directory)?;
     report.audit.isa = Some(Isa::detect().bits_name().into());
     report.write(&directory.file("run.json"))?;
@@ -128,7 +139,7 @@ pub fn run(scene: &Scene, options: &RunOptions) -> Result<(RunReport, Option<Run
     let mut clock = Clock::new(scene);
     let foreign = options.solid != SolidSource::BuiltIn;
     let result = if scene.fluid.is_some() && (scene.solid.is_some() || foreign) {
-        let capacity = capacities(scene, &report.particles, foreign);
+        let capacity = capacities(scene, report.particles.fluid, report.particles.solid, foreign);
         let session = Session { scene, options, directory: &directory, stop: &stop, capacity };
         session.coupled(&mut clock, &mut recorder, &mut report)
     } else {
@@ -142,14 +153,18 @@ pub fn run(scene: &Scene, options: &RunOptions) -> Result<(RunReport, Option<Run
         }
         Err(error) => {
             tracing::error!("{error}");
-            report.status =
-                Some(if matches!(error, RunError::Diverged(_)) { RunStatus::Diverged } else { RunStatus::Failed });
+            report.status = Some(if matches!(error, RunError::Diverged(_)) {
+                RunStatus::Diverged
+            } else {
+                RunStatus::Failed
+            });
             report.error = Some(error.to_string());
             Some(error)
         }
     };
     report.write(&directory.file("run.json"))?;
-    for picture in [output::draw_plot(scene, directory.path()).map(Some), output::draw_contact(scene, directory.path())]
+    for picture in
+        [output::draw_plot(scene, directory.path()).map(Some), output::draw_contact(scene, directory.path())]
     {
         if let Err(e) = picture {
             tracing::warn!("a picture could not be drawn: {e}");
@@ -166,7 +181,8 @@ fn start_log(directory: &RunDirectory) -> Result<(), RunError> {
         .append(true)
         .open(&path)
         .map_err(|e| RunError::System(format!("cannot open {}: {e}", path.display())))?;
-    let subscriber = tracing_subscriber::fmt().with_ansi(false).with_writer(std::sync::Mutex::new(log)).finish();
+    let subscriber =
+        tracing_subscriber::fmt().with_ansi(false).with_writer(std::sync::Mutex::new(log)).finish();
     // A process that runs several scenes keeps its first log.
     if tracing::subscriber::set_global_default(subscriber).is_err() {
         tracing::debug!("the log is open already");
@@ -174,11 +190,11 @@ fn start_log(directory: &RunDirectory) -> Result<(), RunError> {
     Ok(())
 }
 
-/// Interface capacities of fluid and solid.
-fn capacities(scene: &Scene, particles: &Particles, foreign: bool) -> (u32, u32) {
-    let solid = if foreign { particles.solid.max(4096) } else { particles.solid };
+/// Interface capacities of fluid and solid for these numbers of particles.
+pub fn capacities(scene: &Scene, fluid: u64, solid: u64, foreign: bool) -> (u32, u32) {
+    let solid = if foreign { solid.max(4096) } else { solid };
     // A ribbon of about four layers on each side of the solid's surface, and room for compression.
-    let ribbon = (24 * solid).max(4096).min(particles.fluid);
+    let ribbon = (24 * solid).max(4096).min(fluid);
     let fluid = scene.numerics.interface_capacity.map_or(ribbon, u64::from);
     (fluid.max(1) as u32, solid.max(1) as u32)
 }
@@ -206,7 +222,11 @@ fn solo(
     let outcome = result?;
     report.audit.state_hash = Some(format!("{:016x}", outcome.state_hash));
     let seconds = Some(outcome.seconds);
-    if name == RoleName::Fluid { report.roles.fluid = seconds } else { report.roles.solid = seconds }
+    if name == RoleName::Fluid {
+        report.roles.fluid = seconds
+    } else {
+        report.roles.solid = seconds
+    }
     Ok(outcome.stopped)
 }
 
@@ -255,8 +275,10 @@ impl Session<'_> {
         report.roles.fluid = Some(seconds(&outcome.fluid));
         report.roles.solid = Some(seconds(&outcome.solid));
         report.roles.coupler = Some(outcome.seconds);
-        report.round_trip_us =
-            Some(output::run_json::Percentiles { p50: outcome.fluid.probes[0], p99: outcome.fluid.probes[1] });
+        report.round_trip_us = Some(output::run_json::Percentiles {
+            p50: outcome.fluid.probes[0],
+            p99: outcome.fluid.probes[1],
+        });
         Ok(outcome.stopped)
     }
 
@@ -269,7 +291,7 @@ impl Session<'_> {
         let system = |what: &str, e: std::io::Error| RunError::System(format!("{what}: {e}"));
         let scene_file = self.directory.file("scene.json");
         let text = serde_json::to_string_pretty(self.scene).map_err(|e| RunError::System(e.to_string()))?;
-        std::fs::write(&scene_file, text).map_err(|e| system("cannot write scene.json", e))?;
+        output::atomic::replace_bytes(&scene_file, text.as_bytes())?;
         let scene_file = scene_file.canonicalize().map_err(|e| system("scene.json", e))?;
         let folder = self.directory.path().canonicalize().map_err(|e| system("the run's folder", e))?;
         let program = std::env::current_exe().map_err(|e| system("cannot find the own program", e))?;
@@ -346,7 +368,11 @@ impl Session<'_> {
         clock: &mut Clock,
         recorder: &mut Recorder,
     ) -> Result<CoupledOutcome, RunError> {
-        let mut coupler = Coupler::<S, 2>::new(link, self.scene)
+        let foreign = match self.options.solid {
+            SolidSource::BuiltIn => None,
+            _ => Some(ForeignSolid::new(self.scene, self.directory.path())?),
+        };
+        let mut coupler = Coupler::<S, 2>::new(link, self.scene, foreign)
             .ok_or_else(|| RunError::System("a coupled scene needs [fluid] and [solid]".into()))?;
         coupler.run(clock, recorder, self.stop)
     }
@@ -390,15 +416,22 @@ impl Session<'_> {
         })
     }
 
-    fn role_thread(&self, name: RoleName, config: &LinkConfig, abort: Arc<AtomicBool>) -> Result<(), RoleError> {
+    fn role_thread(
+        &self,
+        name: RoleName,
+        config: &LinkConfig,
+        abort: Arc<AtomicBool>,
+    ) -> Result<(), RoleError> {
         let raised = Arc::clone(&abort);
-        let result = FrameWriter::start(self.directory.path(), roles::stem(name)).map_err(RoleError::from).and_then(|writer| {
-            lockstep::on_threads(self.threads(name), move || {
-                let mut role = roles::build(name, self.scene)
-                    .ok_or_else(|| RoleError::Start(format!("the scene has no {name}")))?;
-                lockstep::serve::<Threads>(role.as_mut(), config, Some(writer), abort)
-            })?
-        });
+        let result = FrameWriter::start(self.directory.path(), roles::stem(name))
+            .map_err(RoleError::from)
+            .and_then(|writer| {
+                lockstep::on_threads(self.threads(name), move || {
+                    let mut role = roles::build(name, self.scene)
+                        .ok_or_else(|| RoleError::Start(format!("the scene has no {name}")))?;
+                    lockstep::serve::<Threads>(role.as_mut(), config, Some(writer), abort)
+                })?
+            });
         if matches!(result, Err(RoleError::Start(_))) {
             raised.store(true, Ordering::Relaxed);
         }

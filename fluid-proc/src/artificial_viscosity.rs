@@ -7,11 +7,6 @@ use crate::rates::{FluidPair, PairEffect, PairRates};
 use halfstep_shared::lane::{Arch, Lane};
 use halfstep_shared::scene::ArtificialViscosity as Coefficients;
 
-/// A between fluid and wall: what the cross-phase f_i is between fluid and solid. Without it single particles of a thin
-/// film sink into the wall by up to 1.7 dx before their pressure stops them (elastic gate, 2.5 mm); with it 0.25 dx. A
-/// free-slip wall shows the particle's own tangential velocity, so nothing drags along it.
-const WALL_GUARD: f64 = 1.0;
-
 /// The effect.
 #[derive(Clone, Copy, Debug)]
 pub struct ArtificialViscosity {
@@ -30,12 +25,6 @@ impl ArtificialViscosity {
             quadratic: coefficients.quadratic,
         }
     }
-
-    /// Between fluid and wall: A at least [`WALL_GUARD`].
-    pub fn at_walls(coefficients: Coefficients, sound_speed: f64, smoothing_length: f64) -> Self {
-        let linear = coefficients.linear.max(WALL_GUARD);
-        Self::new(Coefficients { linear, ..coefficients }, sound_speed, smoothing_length)
-    }
 }
 
 impl<const D: usize> PairEffect<D> for ArtificialViscosity {
@@ -45,12 +34,23 @@ impl<const D: usize> PairEffect<D> for ArtificialViscosity {
 
     #[inline(always)]
     fn add<A: Arch>(&self, _: &(), _: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
-        let h = self.smoothing_length;
-        let closing = pair.approach.min(Lane::ZERO) * Lane::splat(h);
-        let softened = pair.r2 + Lane::splat(0.01 * h * h);
-        let theta = closing / softened;
-        let numerator = theta * A::mul_add(Lane::splat(self.quadratic), theta, Lane::splat(-self.linear));
-        let pi = numerator * Lane::splat(2.0) / (pair.density_i + pair.density_j);
-        rates.bracket = rates.bracket - pi;
+        let linear = Lane::splat(self.linear);
+        let quadratic = Lane::splat(self.quadratic);
+        rates.bracket = rates.bracket - damping::<D, A>(self.smoothing_length, linear, quadratic, pair);
     }
+}
+
+/// Pi_ij with `linear` = A c and `quadratic` = B.
+#[inline(always)]
+pub(crate) fn damping<const D: usize, A: Arch>(
+    h: f64,
+    linear: Lane,
+    quadratic: Lane,
+    pair: &FluidPair<D>,
+) -> Lane {
+    let closing = pair.approach.min(Lane::ZERO) * Lane::splat(h);
+    let softened = pair.r2 + Lane::splat(0.01 * h * h);
+    let theta = closing / softened;
+    let numerator = theta * A::mul_add(quadratic, theta, -linear);
+    numerator * Lane::splat(2.0) / (pair.density_i + pair.density_j)
 }

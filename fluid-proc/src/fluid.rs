@@ -1,14 +1,15 @@
 //! The fluid as a [`Role`]: what happens in a half-step, and which effects take part.
 
 use crate::artificial_viscosity::ArtificialViscosity;
-use crate::columns::{Columns, Vectors, vectors};
+use crate::columns::{Columns, Shown, Vectors, vectors};
 use crate::density_diffusion::{DeltaSph, Hydrostatic, Simple, Strength};
 use crate::density_gradient::{self, GradientSum};
 use crate::interface::Coupling;
 use crate::rates::{PairEffect, RateLaw, RateSum, collect};
 use crate::time_step::Limits;
 use crate::viscosity::{self, StressTerm, VelocityGradient, Viscosity, ViscosityAtWall};
-use crate::wall::{WallLaw, WallSum, Walls};
+use crate::wall::{Damping, WallLaw, WallSum, Walls};
+use crate::wall_guard::{GUARD, WallViscosity};
 use halfstep_shared::failure::{Diverged, Quantity, RoleName};
 use halfstep_shared::geometry;
 use halfstep_shared::interface::Parameters;
@@ -39,13 +40,13 @@ pub struct Fluid<const D: usize> {
     pub(crate) kernel: KernelName,
     pub(crate) gravity: [f64; D],
     pub(crate) probes: Vec<ProbeKind>,
-    pub(crate) removed: u64,
+
     isa: Isa,
     limits: Limits,
     diffusion: DensityDiffusion,
     strength: Strength,
     artificial_viscosity: ArtificialViscosity,
-    wall_guard: ArtificialViscosity,
+    quadratic: f64,
     viscosity: Option<f64>,
     domain: ([f64; D], [f64; D]),
     fluid_list: ClusterList,
@@ -75,58 +76,59 @@ impl<const D: usize> Fluid<D> {
         let volume = scene.resolution.powi(D as i32);
         let state = StateEquation::new(fluid.density, fluid.sound_speed, fluid.background_pressure);
         let columns = Columns::new(&layout.fluid, &state, volume);
-        let forced = |name| scene.effects.get(&name).copied().unwrap_or(Switch::Auto);
-        let non_negative = forced(EffectName::NonNegativeWallPressure) != Switch::Off;
+        let non_negative = scene.switch(EffectName::NonNegativeWallPressure) != Switch::Off;
+        let plain = fluid.artificial_viscosity.linear;
+        let guarded =
+            if scene.switch(EffectName::WallGuard) == Switch::Off { plain } else { plain.max(GUARD) };
+        let damping = Damping { free_slip: guarded * fluid.sound_speed, plain: plain * fluid.sound_speed };
         let walls = (!layout.wall.is_empty())
-            .then(|| Walls::new(&layout.wall, &state, volume, 2.0 * h + skin, non_negative));
+            .then(|| Walls::new(&layout.wall, &state, volume, 2.0 * h + skin, non_negative, damping));
         let domain = geometry::domain(scene);
-        let viscous = match forced(EffectName::Viscosity) {
-            Switch::On => fluid.viscosity > 0.0,
-            Switch::Off => false,
-            Switch::Auto => crate::viscosity_matters(scene),
-        };
         let coupled = Parameters::new(scene, isa);
-        Some(Self {
-            columns,
-            walls,
-            coupling: coupled.map(Coupling::new),
-            state,
-            rows: Rows::default(),
-            smoothing_length: h,
-            skin,
-            resolution: scene.resolution,
-            kernel: scene.numerics.kernel,
-            gravity: std::array::from_fn(|d| scene.gravity[d]),
-            probes: scene.probes.iter().map(|p| p.kind).filter(|k| k.phase() == Phase::Fluid).collect(),
-            removed: 0,
-            isa,
-            limits: Limits::new(scene),
-            diffusion: fluid.density_diffusion,
-            strength: Strength(fluid.density_diffusion_coefficient * h * fluid.sound_speed),
-            artificial_viscosity: ArtificialViscosity::new(fluid.artificial_viscosity, fluid.sound_speed, h),
-            wall_guard: ArtificialViscosity::at_walls(fluid.artificial_viscosity, fluid.sound_speed, h),
-            viscosity: viscous.then_some(fluid.viscosity),
-            domain: (
-                std::array::from_fn(|d| domain.min[d]),
-                std::array::from_fn(|d| domain.max[d]),
-            ),
-            fluid_list: ClusterList::default(),
-            wall_list: ClusterList::default(),
-            list_of_walls: ClusterList::default(),
-            fluid_sums: Vec::new(),
-            wall_sums: Vec::new(),
-            extrapolations: Vec::new(),
-            gradient_sums: Vec::new(),
-            gradient: vectors(0),
-            stress: StressTerm::default(),
-            velocity_gradients: [Vec::new(), Vec::new()],
-            displacement: 0.0,
-            largest_speed: 0.0,
-            largest_acceleration: 0.0,
-            sorted: false,
-            pair_evaluations: 0,
-        }
-        .prepared())
+        Some(
+            Self {
+                columns,
+                walls,
+                coupling: coupled.map(Coupling::new),
+                state,
+                rows: Rows::default(),
+                smoothing_length: h,
+                skin,
+                resolution: scene.resolution,
+                kernel: scene.numerics.kernel,
+                gravity: std::array::from_fn(|d| scene.gravity[d]),
+                probes: scene.probes.iter().map(|p| p.kind).filter(|k| k.phase() == Phase::Fluid).collect(),
+
+                isa,
+                limits: Limits::new(scene),
+                diffusion: fluid.density_diffusion,
+                strength: Strength(fluid.density_diffusion_coefficient * h * fluid.sound_speed),
+                artificial_viscosity: ArtificialViscosity::new(
+                    fluid.artificial_viscosity,
+                    fluid.sound_speed,
+                    h,
+                ),
+                quadratic: fluid.artificial_viscosity.quadratic,
+                viscosity: crate::viscosity_acts(scene).then_some(fluid.viscosity),
+                domain: (std::array::from_fn(|d| domain.min[d]), std::array::from_fn(|d| domain.max[d])),
+                fluid_list: ClusterList::default(),
+                wall_list: ClusterList::default(),
+                list_of_walls: ClusterList::default(),
+                fluid_sums: Vec::new(),
+                wall_sums: Vec::new(),
+                extrapolations: Vec::new(),
+                gradient_sums: Vec::new(),
+                gradient: vectors(0),
+                stress: StressTerm::default(),
+                velocity_gradients: [Vec::new(), Vec::new()],
+                displacement: 0.0,
+                largest_speed: 0.0,
+                largest_acceleration: 0.0,
+                sorted: false,
+                pair_evaluations: 0,
+            }
+            .prepared(),
+        )
     }
 
     fn prepared(mut self) -> Self {
@@ -147,7 +149,6 @@ impl<const D: usize> Fluid<D> {
             });
             if outside && self.columns.id[slot] != PADDING {
                 self.columns.id[slot] = PADDING;
-                self.removed += 1;
             }
         }
         let reach = 2.0 * self.smoothing_length + self.skin;
@@ -185,7 +186,8 @@ impl<const D: usize> Fluid<D> {
     fn scan(&mut self) {
         let c = &self.columns;
         let (mut moved, mut fast, mut pushed) = (0.0_f64, 0.0_f64, 0.0_f64);
-        for slot in 0..c.slots() {
+        // Padding repeats particles without the solid's forces; what becomes of it must not steer the run.
+        for slot in (0..c.slots()).filter(|&s| c.id[s] != PADDING) {
             let (mut m, mut v2, mut a2) = (0.0, 0.0, 0.0);
             for d in 0..D {
                 let dx = c.now.position[d][slot] - c.reference[d][slot];
@@ -256,7 +258,8 @@ impl<const D: usize> Fluid<D> {
             }
             DensityDiffusion::Hydrostatic => {
                 let scale = self.state.density / self.state.sound_speed.powi(2);
-                let effect = Hydrostatic { strength: self.strength, gradient: self.gravity.map(|g| scale * g) };
+                let effect =
+                    Hydrostatic { strength: self.strength, gradient: self.gravity.map(|g| scale * g) };
                 self.rates(kernel, effect, &mut fluid_sums, &mut wall_sums);
             }
             DensityDiffusion::DeltaSph => {
@@ -291,15 +294,27 @@ impl<const D: usize> Fluid<D> {
         wall_sums: &mut [RateSum<D>],
     ) {
         let damping = self.artificial_viscosity;
+        let stress = &self.stress;
         match self.viscosity {
             None => {
-                self.pass(kernel, (damping, diffusion, ()), &self.fluid_list, None, fluid_sums);
-                self.pass(kernel, (self.wall_guard, (), ()), &self.wall_list, self.walls.as_ref(), wall_sums);
+                self.pass(kernel, (damping, diffusion, ()), &self.fluid_list, &self.columns.now, fluid_sums)
             }
             Some(_) => {
-                let (inner, outer) = (Viscosity(&self.stress), ViscosityAtWall(&self.stress));
-                self.pass(kernel, (damping, diffusion, inner), &self.fluid_list, None, fluid_sums);
-                self.pass(kernel, (self.wall_guard, (), outer), &self.wall_list, self.walls.as_ref(), wall_sums);
+                let effects = (damping, diffusion, Viscosity(stress));
+                self.pass(kernel, effects, &self.fluid_list, &self.columns.now, fluid_sums);
+            }
+        }
+        let Some(walls) = &self.walls else { return };
+        let at_walls = WallViscosity {
+            smoothing_length: self.smoothing_length,
+            linear: &walls.damping,
+            quadratic: self.quadratic,
+        };
+        match self.viscosity {
+            None => self.pass(kernel, (at_walls, (), ()), &self.wall_list, &walls.shown, wall_sums),
+            Some(_) => {
+                let effects = (at_walls, (), ViscosityAtWall(stress));
+                self.pass(kernel, effects, &self.wall_list, &walls.shown, wall_sums);
             }
         }
     }
@@ -309,14 +324,11 @@ impl<const D: usize> Fluid<D> {
         kernel: K,
         effects: E,
         list: &ClusterList,
-        walls: Option<&Walls<D>>,
+        sources: &Shown<D>,
         sums: &mut [RateSum<D>],
     ) {
-        let targets = &self.columns.now;
-        let sources = walls.map_or(targets, |w| &w.shown);
-        if list.clusters() > 0 {
-            pair::pass(self.isa, &RateLaw { kernel, effects, targets, sources }, list, sums);
-        }
+        let law = RateLaw { kernel, effects, targets: &self.columns.now, sources };
+        pair::pass(self.isa, &law, list, sums);
     }
 
     fn passes_over_fluid(&self) -> u64 {

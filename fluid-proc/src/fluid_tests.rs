@@ -42,7 +42,11 @@ fn walls_show_the_hydrostatic_pressure() {
         let deep_corner = x[1] < -0.01 && !(0.0..0.2).contains(&x[0]);
         if !deep_corner && x[1] < 0.09 && x[1] > -0.02 && x[0] > -0.02 && x[0] < 0.22 {
             let exact = 1000.0 * 9.81 * (0.1 - x[1]);
-            assert!((walls.pressure[s] - exact).abs() < 0.005 * exact, "{x:?}: {} {exact}", walls.pressure[s]);
+            assert!(
+                (walls.pressure[s] - exact).abs() < 0.005 * exact,
+                "{x:?}: {} {exact}",
+                walls.pressure[s]
+            );
             seen += 1;
         }
     }
@@ -66,7 +70,8 @@ fn walls_mirror_the_normal_velocity() {
             .map(|s| [walls.shown.velocity[0][s], walls.shown.velocity[1][s]])
             .unwrap()
     };
-    let near = |a: [f64; 2], b: [f64; 2]| assert!((a[0] - b[0]).abs() + (a[1] - b[1]).abs() < 1e-12, "{a:?} {b:?}");
+    let near =
+        |a: [f64; 2], b: [f64; 2]| assert!((a[0] - b[0]).abs() + (a[1] - b[1]).abs() < 1e-12, "{a:?} {b:?}");
     near(at(0.105, -0.005), [0.3, 0.2]); // floor: along kept, normal reversed
     near(at(-0.005, 0.055), [-0.3, -0.2]); // side
     near(at(-0.005, -0.005), [-0.3, 0.2]); // corner: both

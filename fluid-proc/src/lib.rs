@@ -8,29 +8,38 @@ pub mod columns;
 pub mod density_diffusion;
 pub mod density_gradient;
 pub mod fluid;
+#[cfg(test)]
+mod fluid_tests;
 pub mod interface;
 pub mod measure;
 pub mod momentum;
 pub mod rates;
 #[cfg(test)]
-mod fluid_tests;
-#[cfg(test)]
 mod term_tests;
 pub mod time_step;
 pub mod viscosity;
 pub mod wall;
+pub mod wall_guard;
 
 pub use fluid::Fluid;
 
-use halfstep_shared::scene::Scene;
+use halfstep_shared::scene::{EffectName, Scene, Switch};
 
-/// Whether the physical viscosity of a scene shows beside the artificial one: its kinematic viscosity is at least 1 %
-/// of A h c0 / 8 (Monaghan 2005, two dimensions), or there is no artificial one.
-pub fn viscosity_matters(scene: &Scene) -> bool {
-    viscosity_share(scene).is_some_and(|share| share >= 0.01)
+/// Physical over artificial kinematic viscosity below which the physical one is left out.
+pub const SMALLEST_VISCOSITY_SHARE: f64 = 0.01;
+
+/// Whether the physical viscosity of a scene is computed: as the user says; else if its kinematic viscosity is at least
+/// [`SMALLEST_VISCOSITY_SHARE`] of the artificial one.
+pub fn viscosity_acts(scene: &Scene) -> bool {
+    match (scene.switch(EffectName::Viscosity), viscosity_share(scene)) {
+        (Switch::Off, _) | (_, None) => false,
+        (Switch::On, Some(_)) => true,
+        (Switch::Auto, Some(share)) => share >= SMALLEST_VISCOSITY_SHARE,
+    }
 }
 
-/// Physical over artificial kinematic viscosity; `None` without fluid or without physical viscosity.
+/// Physical over artificial kinematic viscosity A h c0 / 8 (Monaghan 2005, two dimensions); infinite without artificial
+/// one, `None` without fluid or without physical one.
 pub fn viscosity_share(scene: &Scene) -> Option<f64> {
     let fluid = scene.fluid.as_ref().filter(|f| f.viscosity > 0.0)?;
     let h = scene.smoothing_ratio * scene.resolution;

@@ -61,7 +61,8 @@ impl<const D: usize> Fluid<D> {
                     .real_slots()
                     .filter(|&s| (self.columns.now.position[0][s] - x).abs() <= 2.0 * half)
                     .map(|s| self.columns.now.position[1][s] + half)
-                    .fold(0.0, f64::max)),
+                    .reduce(f64::max)
+                    .unwrap_or(0.0)),
                 ProbeKind::Front => put(self
                     .real_slots()
                     .map(|s| self.columns.now.position[0][s] + half)
@@ -93,7 +94,6 @@ impl<const D: usize> Fluid<D> {
             .map(|s| (self.columns.now.density[s] / self.state.density - 1.0).abs())
             .fold(0.0, f64::max);
         values[audit::GAP] = self.coupling.as_ref().map_or(f64::INFINITY, |c| c.gap()) / self.resolution;
-        values[audit::REMOVED] = self.removed as f64;
         values
     }
 

@@ -189,7 +189,8 @@ fn shear_flow_has_the_stress_of_its_rate() {
         })
         .collect();
     let c = cloud(&points, 1.0);
-    let law = viscosity::GradientLaw { kernel: CubicSpline::<2>::new(H), targets: &c.shown, sources: &c.shown };
+    let law =
+        viscosity::GradientLaw { kernel: CubicSpline::<2>::new(H), targets: &c.shown, sources: &c.shown };
     let mut sums = vec![VelocityGradient::default(); c.list.clusters()];
     pair::pass(Isa::detect(), &law, &c.list, &mut sums);
     let mut stress = StressTerm::default();

@@ -19,12 +19,8 @@ impl Limits {
     /// From a scene with fluid.
     pub fn new(scene: &Scene) -> Self {
         let h = scene.smoothing_ratio * scene.resolution;
-        let mut limits = Self {
-            courant: scene.numerics.cfl,
-            smoothing_length: h,
-            sound_speed: 0.0,
-            fixed: f64::INFINITY,
-        };
+        let mut limits =
+            Self { courant: scene.numerics.cfl, smoothing_length: h, sound_speed: 0.0, fixed: f64::INFINITY };
         let Some(fluid) = &scene.fluid else { return limits };
         limits.sound_speed = fluid.sound_speed;
         if fluid.viscosity > 0.0 {
@@ -47,7 +43,11 @@ impl Limits {
     /// Largest time step for these largest speed and acceleration, s.
     pub fn time_step(&self, speed: f64, acceleration: f64) -> f64 {
         let courant = self.courant * self.smoothing_length / (self.sound_speed + speed);
-        let force = if acceleration > 0.0 { 0.25 * (self.smoothing_length / acceleration).sqrt() } else { f64::INFINITY };
+        let force = if acceleration > 0.0 {
+            0.25 * (self.smoothing_length / acceleration).sqrt()
+        } else {
+            f64::INFINITY
+        };
         courant.min(force).min(self.fixed)
     }
 }

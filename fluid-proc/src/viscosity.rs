@@ -94,7 +94,8 @@ impl<const D: usize> StressTerm<D> {
         }
         for slot in 0..density.len() {
             let (c, k) = (slot / LANES, slot % LANES);
-            let gradient = |a: usize, b: usize| fluid[c].0[a][b].0[k] + walls.get(c).map_or(0.0, |w| w.0[a][b].0[k]);
+            let gradient =
+                |a: usize, b: usize| fluid[c].0[a][b].0[k] + walls.get(c).map_or(0.0, |w| w.0[a][b].0[k]);
             let divergence: f64 = (0..D).map(|a| gradient(a, a)).sum();
             let scale = viscosity / (density[slot] * density[slot]);
             for a in 0..D {

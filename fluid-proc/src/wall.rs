@@ -14,6 +14,15 @@ use halfstep_shared::neighbours::Rows;
 use halfstep_shared::pair::{PairLaw, distance, dot};
 use halfstep_shared::state_equation::StateEquation;
 
+/// A c0 of the artificial viscosity toward the fluid, m/s.
+#[derive(Clone, Copy, Debug)]
+pub struct Damping {
+    /// Where the wall shows the fluid's own tangential velocity.
+    pub free_slip: f64,
+    /// In corners and along no-slip walls.
+    pub plain: f64,
+}
+
 /// The wall particles, sorted once.
 #[derive(Clone, Debug)]
 pub struct Walls<const D: usize> {
@@ -28,6 +37,8 @@ pub struct Walls<const D: usize> {
     normal: Vectors<D>,
     /// 1 where all components are reversed (corner or no slip), else 0.
     reverse_all: Vec<f64>,
+    /// A c0 of the artificial viscosity toward the fluid, m/s.
+    pub damping: Vec<f64>,
     /// Order of the slots.
     pub rows: Rows<D>,
     non_negative: bool,
@@ -41,6 +52,7 @@ impl<const D: usize> Walls<D> {
         volume: f64,
         height: f64,
         non_negative: bool,
+        damping: Damping,
     ) -> Self {
         let n = points.len();
         let mut walls = Self {
@@ -50,6 +62,7 @@ impl<const D: usize> Walls<D> {
             own_velocity: vectors(n),
             normal: vectors(n),
             reverse_all: vec![0.0; n],
+            damping: Vec::new(),
             rows: Rows::default(),
             non_negative,
         };
@@ -71,6 +84,8 @@ impl<const D: usize> Walls<D> {
         }
         walls.rows.permute(&mut walls.reverse_all);
         walls.rows.permute_ids(&mut walls.id);
+        let of = |&reversed: &f64| if reversed > 0.0 { damping.plain } else { damping.free_slip };
+        walls.damping = walls.reverse_all.iter().map(of).collect();
         let slots = walls.rows.slots();
         walls.shown.density = vec![state.density; slots];
         walls.shown.volume = vec![volume; slots];

@@ -96,7 +96,11 @@ struct Server<S: Transport> {
 
 impl<S: Transport> Server<S> {
     /// All half-steps; returns the header of the state at which the run stopped.
-    fn run(&mut self, role: &mut dyn Role, writer: &mut Option<FrameWriter>) -> Result<StateHeader, RoleError> {
+    fn run(
+        &mut self,
+        role: &mut dyn Role,
+        writer: &mut Option<FrameWriter>,
+    ) -> Result<StateHeader, RoleError> {
         let (mut step, mut time, mut dt) = (0, 0.0, 0.0);
         // The fluid needs the solid's first state to choose what it publishes.
         let mut have_peer = false;
@@ -221,8 +225,7 @@ impl<S: Transport> Server<S> {
     fn report_failure(&mut self, error: &RoleError) {
         let mut header = StateHeader { status: status::FAILED, ..self.header };
         // It takes the place of the next state.
-        (header.step, header.stage) =
-            if header.stage == 0 { (header.step, 1) } else { (header.step + 1, 0) };
+        (header.step, header.stage) = if header.stage == 0 { (header.step, 1) } else { (header.step + 1, 0) };
         match error {
             RoleError::Diverged(d) => {
                 header.status = status::DIVERGED;
@@ -263,11 +266,11 @@ pub fn serve_process(
     let scene = variable(SCENE_VARIABLE).ok_or_else(|| start(format!("{SCENE_VARIABLE} is not set")))?;
     let text = std::fs::read_to_string(&scene)
         .map_err(|e| start(format!("cannot read {}: {e}", PathBuf::from(&scene).display())))?;
-    let scene: Scene = serde_json::from_str(&text).map_err(|e| start(format!("not a resolved scene: {e}")))?;
+    let scene: Scene =
+        serde_json::from_str(&text).map_err(|e| start(format!("not a resolved scene: {e}")))?;
     let threads = variable(THREADS_VARIABLE).and_then(|v| v.to_str()?.parse().ok()).unwrap_or(1);
-    let writer = variable(FOLDER_VARIABLE)
-        .map(|dir| FrameWriter::start(&PathBuf::from(dir), stem))
-        .transpose()?;
+    let writer =
+        variable(FOLDER_VARIABLE).map(|dir| FrameWriter::start(&PathBuf::from(dir), stem)).transpose()?;
     on_threads(threads, move || {
         let mut role = build(&scene).ok_or_else(|| RoleError::Start(format!("the scene has no {stem}")))?;
         serve::<Processes>(role.as_mut(), &config, writer, abort)

@@ -35,8 +35,6 @@ pub fn pass<const D: usize, L: PairLaw<D>>(isa: Isa, law: &L, list: &ClusterList
     });
 }
 
-
-
 fn run_chunk<const D: usize, L: PairLaw<D>>(
     isa: Isa,
     law: &L,
@@ -57,7 +55,12 @@ fn run_chunk<const D: usize, L: PairLaw<D>>(
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512vl,avx2,fma")]
-unsafe fn run_avx512vl<const D: usize, L: PairLaw<D>>(law: &L, slot: usize, chunk: &Chunk, sums: &mut [L::Sum]) {
+unsafe fn run_avx512vl<const D: usize, L: PairLaw<D>>(
+    law: &L,
+    slot: usize,
+    chunk: &Chunk,
+    sums: &mut [L::Sum],
+) {
     run::<D, L, Fused>(law, slot, chunk, sums);
 }
 
@@ -68,7 +71,12 @@ unsafe fn run_avx2<const D: usize, L: PairLaw<D>>(law: &L, slot: usize, chunk: &
 }
 
 #[inline(always)]
-fn run<const D: usize, L: PairLaw<D>, A: Arch>(law: &L, first_slot: usize, chunk: &Chunk, sums: &mut [L::Sum]) {
+fn run<const D: usize, L: PairLaw<D>, A: Arch>(
+    law: &L,
+    first_slot: usize,
+    chunk: &Chunk,
+    sums: &mut [L::Sum],
+) {
     for (k, out) in sums.iter_mut().enumerate() {
         let neighbours = chunk.of(k);
         if neighbours.is_empty() {

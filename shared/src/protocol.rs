@@ -120,7 +120,7 @@ pub struct StateHeader {
     /// Seconds spent computing, waiting, exchanging, writing (last message only).
     pub seconds: [f64; 4],
     /// Sums over all own particles: linear momentum x, y, z (kg m/s), kinetic energy (J), mass (kg), largest relative
-    /// density error, smallest distance to the other phase over dx, pair evaluations so far.
+    /// density error, smallest distance to the other phase over dx, stored energy (J).
     pub audit: [f64; 8],
     /// Number of own particles.
     pub particles: u64,

@@ -16,8 +16,8 @@ pub mod audit {
     pub const DENSITY_ERROR: usize = 5;
     /// Smallest distance to the other phase over dx (infinite where none is near).
     pub const GAP: usize = 6;
-    /// Particles removed because they left the domain.
-    pub const REMOVED: usize = 7;
+    /// Energy stored in the material, J; 0 for a fluid.
+    pub const STORED_ENERGY: usize = 7;
 }
 
 /// Owner of the fluid's or of the solid's particles.

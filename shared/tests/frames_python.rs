@@ -1,7 +1,6 @@
 //! Other programs open the frames: VTK's HDF reader (the one inside ParaView) and h5py, from Python.
 //!
-//! The test keeps a virtual environment with pinned packages in cargo's folder for temporary files; it is
-//! built once and again when the pins change.
+//! `tests/python/setup.sh` keeps the environment with the pinned packages.
 
 use halfstep_shared::output::{Frame, FramePoint, vtkhdf};
 use halfstep_shared::scene::Phase;
@@ -19,22 +18,9 @@ fn run(command: &mut Command) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// The interpreter of the environment, which is made where it is missing or has other packages.
+/// The interpreter of the environment that the tests in Python share.
 fn python() -> PathBuf {
-    let venv = Path::new(env!("CARGO_TARGET_TMPDIR")).join("frames-python");
-    let interpreter = venv.join("bin/python");
-    let pins = std::fs::read_to_string(Path::new(PYTHON).join("requirements.txt")).unwrap();
-    let installed = venv.join("installed.txt");
-    if std::fs::read_to_string(&installed).is_ok_and(|there| there == pins) && interpreter.exists() {
-        return interpreter;
-    }
-    run(Command::new("python3").args(["-m", "venv", "--clear"]).arg(&venv));
-    // Without dependencies: VTK asks for matplotlib, which reading files does not need.
-    run(Command::new(&interpreter)
-        .args(["-m", "pip", "install", "--quiet", "--no-deps", "--requirement"])
-        .arg(Path::new(PYTHON).join("requirements.txt")));
-    std::fs::write(installed, pins).unwrap();
-    interpreter
+    run(Command::new("sh").arg(Path::new(PYTHON).join("setup.sh"))).trim().into()
 }
 
 #[test]

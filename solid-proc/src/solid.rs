@@ -45,8 +45,7 @@ impl<const D: usize> Solid<D> {
     /// With any model.
     pub fn with_model(scene: &Scene, isa: Isa, model: Box<dyn SolidModel<D>>) -> Self {
         let phase_blind = scene.interface.treatment == Treatment::PhaseBlind;
-        let interface =
-            Parameters::<D>::new(scene, isa).filter(|_| phase_blind).map(Interface::new);
+        let interface = Parameters::<D>::new(scene, isa).filter(|_| phase_blind).map(Interface::new);
         let probes = scene
             .probes
             .iter()
@@ -66,6 +65,11 @@ impl<const D: usize> Solid<D> {
         };
         // Alone, the solid has nothing to sub-step under: its own limit is the time step.
         let sub_steps = if scene.fluid.is_none() { SubSteps::Fixed(1) } else { sub_steps };
+        // Half a step must be a whole number of sub-steps.
+        let max_sub_steps = match scene.numerics.max_sub_steps {
+            0 | 1 => 1,
+            most => most & !1,
+        };
         Self {
             load: Load::none(model.particles()),
             limit: model.sub_step_limit(),
@@ -73,7 +77,7 @@ impl<const D: usize> Solid<D> {
             interface,
             probes,
             sub_steps,
-            max_sub_steps: scene.numerics.max_sub_steps,
+            max_sub_steps,
             taken: 1,
             density: scene.solid.as_ref().map_or(1.0, |s| s.density),
         }
@@ -230,6 +234,7 @@ impl<const D: usize> Role for Solid<D> {
             values[audit::DENSITY_ERROR] = values[audit::DENSITY_ERROR].max(error);
         }
         values[audit::KINETIC_ENERGY] = self.kinetic_energy();
+        values[audit::STORED_ENERGY] = self.model.strain_energy();
         values[audit::GAP] = f64::INFINITY;
         values
     }

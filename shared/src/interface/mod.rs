@@ -48,7 +48,6 @@ impl<const D: usize> Parameters<D> {
     /// From a scene with fluid and solid.
     pub fn new(scene: &Scene, isa: Isa) -> Option<Self> {
         let (fluid, solid) = (scene.fluid.as_ref()?, scene.solid.as_ref()?);
-        let switch = scene.effects.get(&EffectName::NonNegativeWallPressure).copied().unwrap_or(Switch::Auto);
         Some(Self {
             treatment: scene.interface.treatment,
             kernel: scene.numerics.kernel,
@@ -57,7 +56,7 @@ impl<const D: usize> Parameters<D> {
             solid_density: solid.density,
             solid_sound_speed: solid.sound_speed(),
             gravity: std::array::from_fn(|d| scene.gravity[d]),
-            non_negative_pressure: switch != Switch::Off,
+            non_negative_pressure: scene.switch(EffectName::NonNegativeWallPressure) != Switch::Off,
             resolution: scene.resolution,
             cross_viscosity: scene.interface.cross_viscosity,
             isa,

@@ -71,8 +71,7 @@ pub(super) fn show_pressure<const D: usize>(interface: &mut Interface<D>) {
             pressure = pressure.max(0.0);
         }
         side.pressure[slot] = pressure;
-        side.density[slot] =
-            if pressure == 0.0 { p.fluid.density } else { p.fluid.density_at(pressure) };
+        side.density[slot] = p.fluid.density_at(pressure);
         side.mass[slot] = side.own_mass[slot] * displaced;
     }
     interface.wall_sums = sums;

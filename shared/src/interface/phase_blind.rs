@@ -120,7 +120,14 @@ macro_rules! pair_law {
                 std::array::from_fn(|d| self.0.sources.position[d][j])
             }
             #[inline(always)]
-            fn add<$arch: Arch>(&self, $i: &Target<D>, $j: usize, $dx: [Lane; D], $r2: Lane, $out: &mut $sum) {
+            fn add<$arch: Arch>(
+                &self,
+                $i: &Target<D>,
+                $j: usize,
+                $dx: [Lane; D],
+                $r2: Lane,
+                $out: &mut $sum,
+            ) {
                 let $s = &self.0;
                 $body
             }

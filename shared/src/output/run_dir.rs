@@ -4,8 +4,16 @@ use super::{OutputError, series};
 use std::path::{Path, PathBuf};
 
 /// Files that a run leaves in its folder, beside the frames.
-pub const FILES: [&str; 7] =
-    ["run.json", "probes.csv", "plot.png", "contact.png", "checkpoint-a.hdf", "checkpoint-b.hdf", "log.txt"];
+pub const FILES: [&str; 8] = [
+    "run.json",
+    "probes.csv",
+    "plot.png",
+    "contact.png",
+    "checkpoint-a.hdf",
+    "checkpoint-b.hdf",
+    "log.txt",
+    "scene.json",
+];
 
 /// A folder that is ready for a run: nothing of an earlier one is in it.
 #[derive(Clone, Debug)]

@@ -63,6 +63,8 @@ pub struct Particles {
     pub solid: u64,
     /// Of the walls.
     pub wall: u64,
+    /// Fluid particles taken out because they left the domain.
+    pub removed: u64,
 }
 
 /// Statistics of the time step, s.
@@ -115,7 +117,7 @@ pub struct Percentiles {
 pub struct Audit {
     /// Largest relative drift of linear momentum that no outer force explains.
     pub momentum_drift: Option<f64>,
-    /// Relative drift of energy.
+    /// Relative drift of kinetic plus stored energy of an isolated solid.
     pub energy_drift: Option<f64>,
     /// Largest relative mismatch of the forces that both phases exert on each other.
     pub action_reaction: Option<f64>,

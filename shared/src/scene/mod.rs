@@ -343,6 +343,15 @@ pub enum EffectName {
     WallContact,
     /// Wall pressure is never negative.
     NonNegativeWallPressure,
+    /// Artificial viscosity of at least A = 1 between fluid and wall.
+    WallGuard,
+}
+
+impl Scene {
+    /// What the user wants of an effect.
+    pub fn switch(&self, effect: EffectName) -> Switch {
+        self.effects.get(&effect).copied().unwrap_or(Switch::Auto)
+    }
 }
 
 /// A forced effect.

@@ -220,12 +220,13 @@ fn output(section: Section<'_>, end_time: f64) -> Output {
 }
 
 fn effects(top: &Section<'_>) -> BTreeMap<EffectName, Switch> {
-    const NAMES: [(&str, EffectName); 5] = [
+    const NAMES: [(&str, EffectName); 6] = [
         ("viscosity", EffectName::Viscosity),
         ("artificial-stress", EffectName::ArtificialStress),
         ("renormalised-gradient", EffectName::RenormalisedGradient),
         ("wall-contact", EffectName::WallContact),
         ("non-negative-wall-pressure", EffectName::NonNegativeWallPressure),
+        ("wall-guard", EffectName::WallGuard),
     ];
     const SWITCHES: [(&str, Switch); 3] = [("auto", Switch::Auto), ("on", Switch::On), ("off", Switch::Off)];
     let mut effects = BTreeMap::new();

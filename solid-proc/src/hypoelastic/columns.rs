@@ -34,8 +34,12 @@ pub(super) struct State<const D: usize> {
 impl<const D: usize> State<D> {
     pub(super) fn new(points: &[SolidPoint<D>], density: f64) -> Self {
         let n = points.len();
-        let mut state =
-            Self { position: vectors(n), velocity: vectors(n), density: vec![density; n], stress: tensors(n) };
+        let mut state = Self {
+            position: vectors(n),
+            velocity: vectors(n),
+            density: vec![density; n],
+            stress: tensors(n),
+        };
         for (i, p) in points.iter().enumerate() {
             for d in 0..D {
                 state.position[d][i] = p.position[d];

@@ -70,10 +70,10 @@ impl<const D: usize> Hypoelastic<D> {
         let layout = geometry::layout::<D>(scene);
         let h = material.smoothing_ratio * scene.resolution;
         let n = layout.solid.len();
-        let forced = |name| scene.effects.get(&name).copied().unwrap_or(Switch::Auto);
         let exponent = material.artificial_stress.exponent.round() as u32;
-        let artificial = material.artificial_stress.strength > 0.0 && forced(EffectName::ArtificialStress) != Switch::Off;
-        let walls = (forced(EffectName::WallContact) != Switch::Off)
+        let artificial = material.artificial_stress.strength > 0.0
+            && scene.switch(EffectName::ArtificialStress) != Switch::Off;
+        let walls = (scene.switch(EffectName::WallContact) != Switch::Off)
             .then(|| Walls::new(&layout.wall, (2.0 + SKIN) * h))
             .flatten();
         let domain = geometry::domain(scene);
@@ -86,11 +86,15 @@ impl<const D: usize> Hypoelastic<D> {
             resolution: scene.resolution,
             gravity: std::array::from_fn(|d| scene.gravity[d]),
             domain: (std::array::from_fn(|d| domain.min[d]), std::array::from_fn(|d| domain.max[d])),
-            renormalised: forced(EffectName::RenormalisedGradient) == Switch::On,
+            renormalised: scene.switch(EffectName::RenormalisedGradient) == Switch::On,
             artificial_stress: artificial.then_some(exponent),
             mass: material.density * scene.resolution.powi(D as i32),
             material,
-            interface_set: surface_set(&layout.solid, 2.0 * scene.smoothing_ratio * scene.resolution, scene.resolution),
+            interface_set: surface_set(
+                &layout.solid,
+                2.0 * scene.smoothing_ratio * scene.resolution,
+                scene.resolution,
+            ),
             points: layout.solid,
             id: (0..n as u32).collect(),
             slot_of: vec![0; n],
@@ -157,7 +161,7 @@ impl<const D: usize> Hypoelastic<D> {
 
     fn moved_too_far(&self) -> bool {
         let limit = 0.25 * self.skin * self.skin;
-        (0..self.id.len()).any(|s| {
+        (0..self.id.len()).filter(|&s| self.id[s] != PADDING).any(|s| {
             let r2: f64 = (0..D).map(|d| (self.now.position[d][s] - self.reference[d][s]).powi(2)).sum();
             r2 > limit
         })
@@ -367,7 +371,7 @@ impl<const D: usize> Hypoelastic<D> {
             let s = slot as usize;
             let rho = self.now.density[s];
             let v2: f64 = (0..D).map(|d| self.now.velocity[d][s].powi(2)).sum();
-            let stress: f64 = (0..D).map(|d| self.now.stress[0][d][s].abs()).sum();
+            let stress: f64 = self.stress_at(s).as_flattened().iter().map(|s| s.abs()).sum();
             let (quantity, value) = if !(rho > rho0 / 3.0 && rho < rho0 * 3.0) {
                 (Quantity::Density, rho)
             } else if v2.is_nan() || v2 > fastest * fastest {
@@ -406,8 +410,8 @@ impl<const D: usize> Hypoelastic<D> {
     }
 }
 
-/// Particles within `reach` of the surface: those whose ball of that radius, less half a spacing, is not full of the
-/// same solid. Every particle for plates thinner than twice the reach.
+/// Numbers of the particles within `reach` of a surface particle, ascending. A surface particle lacks one of its nearest
+/// lattice neighbours (the 3^D - 1 within sqrt(D) dx). Every particle for plates thinner than twice the reach.
 fn surface_set<const D: usize>(points: &[SolidPoint<D>], reach: f64, resolution: f64) -> Vec<u32> {
     let mut x: [Vec<f64>; D] = std::array::from_fn(|d| points.iter().map(|p| p.position[d]).collect());
     let mut id: Vec<u32> = (0..points.len() as u32).collect();
@@ -429,7 +433,6 @@ fn surface_set<const D: usize>(points: &[SolidPoint<D>], reach: f64, resolution:
             }
         });
     };
-    // Surface particles lack one of the nearest lattice neighbours (3^D - 1 within sqrt(D) dx).
     let ring = (D as f64).sqrt() * 1.05 * resolution;
     let full = 3_usize.pow(D as u32);
     let mut surface = vec![false; id.len()];

@@ -89,11 +89,7 @@ pub(super) struct SolidSum<const D: usize> {
 
 impl<const D: usize> Default for SolidSum<D> {
     fn default() -> Self {
-        Self {
-            acceleration: [Lane::ZERO; D],
-            gradient: [[Lane::ZERO; D]; D],
-            moment: [[Lane::ZERO; D]; D],
-        }
+        Self { acceleration: [Lane::ZERO; D], gradient: [[Lane::ZERO; D]; D], moment: [[Lane::ZERO; D]; D] }
     }
 }
 
@@ -138,7 +134,9 @@ pub(super) fn artificial_viscosity<A: Arch>(
     theta * A::mul_add(Lane::splat(quadratic), theta, Lane::splat(-linear)) * Lane::splat(2.0) / density_sum
 }
 
-impl<K: Kernel<D>, T: TensileCorrection<D>, M: Moment, const D: usize> PairLaw<D> for SolidLaw<'_, K, T, M, D> {
+impl<K: Kernel<D>, T: TensileCorrection<D>, M: Moment, const D: usize> PairLaw<D>
+    for SolidLaw<'_, K, T, M, D>
+{
     type Target = Target<T::Own, D>;
     type Sum = SolidSum<D>;
 

@@ -1,0 +1,102 @@
+//! What a scene asks for, before anything is run.
+
+use crate::effects;
+use crate::roles;
+use halfstep_shared::failure::RoleName;
+use halfstep_shared::geometry;
+use halfstep_shared::lane::Isa;
+use halfstep_shared::link::LinkConfig;
+use halfstep_shared::role::Role;
+use halfstep_shared::scene::{self, Scene, TimeStep};
+use std::fmt::Write;
+use std::time::Instant;
+
+/// A text of counts, time steps, memory and an estimate of the run time.
+///
+/// The estimate times the sums of a few half-steps of each phase on one thread; a run whose particles spread out takes
+/// longer.
+pub fn describe(scene: &Scene) -> String {
+    let layout = geometry::layout::<2>(scene);
+    let counts = geometry::Counts {
+        fluid: layout.fluid.len() as u64,
+        solid: layout.solid.len() as u64,
+        wall: layout.wall.len() as u64,
+    };
+    let mut text = String::new();
+    let mut line = |name: &str, value: String| {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{name:<16}{value}");
+    };
+    line("scene", format!("{} ({})", scene.name, scene.path.display()));
+    line("particles", format!("{} fluid, {} solid, {} wall", counts.fluid, counts.solid, counts.wall));
+    let mut limit = f64::INFINITY;
+    let mut seconds: f64 = 0.0;
+    let mut solid_limit = None;
+    for name in [RoleName::Fluid, RoleName::Solid] {
+        let Some(mut role) = roles::build(name, scene) else { continue };
+        let own = role.dt_limit();
+        line(&format!("{name} dt limit"), format!("{own:.3e} s"));
+        limit = limit.min(own);
+        if name == RoleName::Solid {
+            solid_limit = Some(halfstep_solid_limit(scene));
+        }
+        let cost = half_step_cost(role.as_mut());
+        seconds = seconds.max(2.0 * cost);
+    }
+    let dt = match scene.time_step {
+        TimeStep::Auto => limit,
+        TimeStep::Fixed(dt) => dt,
+    };
+    line(
+        "time step",
+        format!("{dt:.3e} s: {:.0} steps to t = {} s", (scene.end_time / dt).ceil(), scene.end_time),
+    );
+    if let (Some(own), true) = (solid_limit, scene.fluid.is_some()) {
+        let k = (dt / own).ceil().max(1.0);
+        line(
+            "solid sub-steps",
+            format!("{} (one is stable to {own:.3e} s)", if k > 1.0 { (k / 2.0).ceil() * 2.0 } else { 1.0 }),
+        );
+        seconds = seconds.max(0.0);
+    }
+    line("memory", format!("about {:.1} MB", scene::memory_needed(&counts) as f64 / 1e6));
+    if scene.fluid.is_some() && scene.solid.is_some() {
+        let (fluid, solid) = crate::run::capacities(scene, counts.fluid, counts.solid, false);
+        let bytes = LinkConfig::new(fluid, solid).shared_memory_bytes();
+        line("shared memory", format!("{:.1} MB", bytes as f64 / 1e6));
+    }
+    line(
+        "expected time",
+        format!("about {:.0} s on one thread ({})", seconds * scene.end_time / dt, Isa::detect().bits_name()),
+    );
+    text.push('\n');
+    for effect in effects::ledger(scene, &counts) {
+        let _ =
+            writeln!(text, "{:<28}{:<5}{}", effect.name, if effect.on { "on" } else { "off" }, effect.why);
+    }
+    text
+}
+
+fn halfstep_solid_limit(scene: &Scene) -> f64 {
+    scene
+        .solid
+        .as_ref()
+        .map_or(f64::INFINITY, |s| scene.numerics.solid_cfl * scene.resolution / s.pressure_wave_speed())
+}
+
+/// Seconds of one half-step's own sums, the fastest of a few.
+fn half_step_cost(role: &mut dyn Role) -> f64 {
+    let mut record = Vec::new();
+    let mut best = f64::INFINITY;
+    let dt = 1e-3 * role.dt_limit();
+    for step in 0..5 {
+        let start = Instant::now();
+        role.publish(&[], &mut record);
+        role.own_sums();
+        if role.advance(step, 0, dt, &[]).is_err() {
+            return f64::NAN;
+        }
+        best = best.min(start.elapsed().as_secs_f64());
+    }
+    best
+}

@@ -1,0 +1,38 @@
+//! Artificial viscosity between fluid and walls, and the wall guard.
+//!
+//! Between fluid and wall the same Pi_ij acts as between fluid particles (Kayaki's eq. 23), with the velocity that the
+//! wall shows. The guard raises its A to 1 along free-slip walls: what the cross-phase f_i is between fluid and solid.
+//! Without it single particles of a thin film sink into the wall by up to 1.7 dx before their pressure stops them (elastic
+//! gate, 2.5 mm); with it 0.25 dx. There the wall shows the particle's own tangential velocity, so nothing drags along
+//! it. No-slip walls and corners reverse the whole velocity and keep the scene's A: a guard would be friction.
+
+use crate::artificial_viscosity::damping;
+use crate::rates::{FluidPair, PairEffect, PairRates};
+use halfstep_shared::lane::{Arch, Lane};
+
+/// A of the guard.
+pub const GUARD: f64 = 1.0;
+
+/// The effect.
+#[derive(Clone, Copy, Debug)]
+pub struct WallViscosity<'a> {
+    /// Smoothing length h, m.
+    pub smoothing_length: f64,
+    /// A c0 of each wall slot, m/s.
+    pub linear: &'a [f64],
+    /// B.
+    pub quadratic: f64,
+}
+
+impl<const D: usize> PairEffect<D> for WallViscosity<'_> {
+    type Own = ();
+    #[inline(always)]
+    fn own(&self, _: usize) {}
+
+    #[inline(always)]
+    fn add<A: Arch>(&self, _: &(), j: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
+        let linear = Lane::splat(self.linear[j]);
+        let quadratic = Lane::splat(self.quadratic);
+        rates.bracket = rates.bracket - damping::<D, A>(self.smoothing_length, linear, quadratic, pair);
+    }
+}
