@@ -5,9 +5,11 @@ use halfstep::run::{RunOptions, SolidSource};
 use halfstep::supervise::abort_flag;
 use halfstep::{roles, run};
 use halfstep_shared::failure::RoleName;
-use halfstep_shared::lockstep;
+use halfstep_shared::link::LinkError;
+use halfstep_shared::lockstep::{self, RoleError};
 use halfstep_shared::output::run_json::RunStatus;
 use halfstep_shared::scene;
+use std::os::unix::process::parent_id;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -151,15 +153,20 @@ fn serve_role(name: &str) -> ExitCode {
             return ExitCode::from(1);
         }
     };
-    let result = abort_flag()
-        .map_err(|e| lockstep::RoleError::Start(format!("cannot watch for signals: {e}")))
-        .and_then(|abort| {
-            lockstep::serve_process(roles::stem(role), abort, |scene| roles::build(role, scene))
-        });
+    let launcher = parent_id();
+    let result =
+        abort_flag().map_err(|e| RoleError::Start(format!("cannot watch for signals: {e}"))).and_then(
+            |abort| lockstep::serve_process(roles::stem(role), abort, |scene| roles::build(role, scene)),
+        );
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            tracing::error!("{role}: {error}");
+            // The system asks a role to end when its launcher does: that is not just any request.
+            if matches!(error, RoleError::Link(LinkError::Aborted)) && parent_id() != launcher {
+                tracing::error!("{role}: the coupler is gone, and its roles go with it");
+            } else {
+                tracing::error!("{role}: {error}");
+            }
             ExitCode::from(2)
         }
     }

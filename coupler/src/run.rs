@@ -357,10 +357,14 @@ impl Session<'_> {
             }
             Err(error) => {
                 children.wait(Duration::from_millis(300));
-                let first = children.first_exit();
+                let missed = match error {
+                    RunError::Link(LinkError::PeerDied { peer }) => Some(peer),
+                    _ => None,
+                };
+                let cause = children.culprit(missed);
                 children.stop(Duration::from_secs(1));
-                Err(match (error, first) {
-                    (RunError::Link(link), Some((role, status))) if !status.success() => {
+                Err(match (error, cause) {
+                    (RunError::Link(link), Some((role, status))) => {
                         RunError::RoleEnded { role, status, link }
                     }
                     (error, _) => error,

@@ -9,7 +9,7 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 use std::ffi::OsStr;
 use std::fs::{File, OpenOptions};
 use std::io;
-use std::os::unix::process::CommandExt;
+use std::os::unix::process::{CommandExt, ExitStatusExt};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::Arc;
@@ -159,6 +159,17 @@ impl Children {
         self.poll();
         let ended = || self.children.iter().filter_map(|c| Some((c.role, c.status?)));
         ended().find(|(_, status)| !status.success()).or_else(|| ended().next())
+    }
+
+    /// The child whose end ended the others: one that a signal ended, else the one that was missed, else any that
+    /// failed. Which of them was noticed first says nothing.
+    pub fn culprit(&mut self, missed: Option<RoleName>) -> Option<(RoleName, ExitStatus)> {
+        let exits = self.exits();
+        let failed = || exits.iter().copied().filter(|(_, status)| !status.success());
+        failed()
+            .find(|(_, status)| status.signal().is_some())
+            .or_else(|| failed().find(|(role, _)| Some(*role) == missed))
+            .or_else(|| failed().next())
     }
 
     /// How each child ended that has.

@@ -1,3 +1,10 @@
-//! Suites that every implementation of a seam must pass, and what they need.
+//! Suites that every implementation of a seam must pass, and what tests need that run whole scenes.
 
+pub mod cluster;
 pub mod conformance;
+pub mod curve;
+pub mod process;
+pub mod run;
+
+pub use curve::Curve;
+pub use run::{Finished, Outcome, RunBuilder, Running, scene};

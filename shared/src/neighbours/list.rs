@@ -21,6 +21,11 @@ pub(crate) struct Chunk {
 }
 
 impl Chunk {
+    fn clear(&mut self) {
+        self.start.clear();
+        self.index.clear();
+    }
+
     /// Neighbours of the chunk's cluster number `k`.
     #[inline(always)]
     pub(crate) fn of(&self, k: usize) -> &[u32] {
@@ -38,9 +43,12 @@ impl ClusterList {
         reach: f64,
     ) {
         self.clusters = targets[0].len() / LANES;
-        self.chunks.resize_with(self.clusters.div_ceil(CHUNK_CLUSTERS), Chunk::default);
         let clusters = self.clusters;
-        self.chunks.par_iter_mut().enumerate().for_each(|(c, chunk)| {
+        let used = clusters.div_ceil(CHUNK_CLUSTERS);
+        // Chunks that are not needed now keep their memory for when they are.
+        self.chunks.resize_with(used.max(self.chunks.len()), Chunk::default);
+        self.chunks[used..].iter_mut().for_each(Chunk::clear);
+        self.chunks[..used].par_iter_mut().enumerate().for_each(|(c, chunk)| {
             let first = c * CHUNK_CLUSTERS;
             let last = (first + CHUNK_CLUSTERS).min(clusters);
             if chunk.index.capacity() == 0 {
@@ -48,8 +56,7 @@ impl ClusterList {
                 chunk.start.reserve(CHUNK_CLUSTERS + 1);
                 chunk.index.reserve(CHUNK_CLUSTERS * 64);
             }
-            chunk.start.clear();
-            chunk.index.clear();
+            chunk.clear();
             chunk.start.push(0);
             for cluster in first..last {
                 push_neighbours(cluster * LANES, targets, sources, rows, reach, &mut chunk.index);
@@ -74,7 +81,7 @@ impl ClusterList {
     }
 
     pub(crate) fn chunks(&self) -> &[Chunk] {
-        &self.chunks
+        &self.chunks[..self.clusters.div_ceil(CHUNK_CLUSTERS)]
     }
 
     /// Neighbours of a cluster.

@@ -24,6 +24,8 @@ pub struct Rows<const D: usize> {
     cursor: Vec<u32>,
     scratch: Vec<f64>,
     id_scratch: Vec<u32>,
+    /// Slots that every column has memory for.
+    room: usize,
 }
 
 impl<const D: usize> Rows<D> {
@@ -82,6 +84,13 @@ impl<const D: usize> Rows<D> {
             }
         }
         self.start[rows] = self.permutation.len() as u32;
+        // Padding comes and goes with the shape of the whole: some ahead, so that a later sort does not allocate.
+        let slots = self.permutation.len();
+        if slots > self.room {
+            self.room = slots + slots / 8 + 64;
+        }
+        reserve(&mut self.permutation, self.room);
+        reserve(&mut self.keys, self.room);
     }
 
     fn lay_out(
@@ -154,6 +163,7 @@ impl<const D: usize> Rows<D> {
     /// Brings a column into the new order.
     pub fn permute(&mut self, column: &mut Vec<f64>) {
         self.scratch.clear();
+        reserve(&mut self.scratch, self.room);
         self.scratch.extend(self.permutation.iter().map(|&old| column[old as usize]));
         std::mem::swap(column, &mut self.scratch);
     }
@@ -161,6 +171,7 @@ impl<const D: usize> Rows<D> {
     /// Brings the particle numbers into the new order; padding slots get [`PADDING`].
     pub fn permute_ids(&mut self, id: &mut Vec<u32>) {
         self.id_scratch.clear();
+        reserve(&mut self.id_scratch, self.room);
         self.id_scratch.extend(self.permutation.iter().map(|&old| id[old as usize]));
         for row in 0..self.filled.len() {
             let (a, b) = (self.start[row] as usize, self.start[row + 1] as usize);
@@ -216,6 +227,11 @@ impl<const D: usize> Rows<D> {
             }
         }
     }
+}
+
+/// Makes room for as many values as `room`, in one go.
+fn reserve<T>(column: &mut Vec<T>, room: usize) {
+    column.reserve_exact(room.saturating_sub(column.len()));
 }
 
 /// Sorts each row by itself, rows in parallel, without allocating.

@@ -1,0 +1,54 @@
+//! Other processes, as the system sees them.
+
+use std::path::Path;
+
+/// Sends a signal.
+///
+/// # Panics
+/// There is no such process.
+pub fn kill(pid: u32, signal: i32) {
+    // SAFETY: no memory is passed.
+    assert_eq!(unsafe { libc::kill(pid as i32, signal) }, 0, "process {pid}");
+}
+
+/// Whether a process runs: it exists and is not just waiting for its parent to ask how it ended.
+pub fn is_alive(pid: u32) -> bool {
+    stat(pid).is_some_and(|(state, _)| state != "Z" && state != "X")
+}
+
+/// State and parent of a process.
+fn stat(pid: u32) -> Option<(String, u32)> {
+    let text = std::fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
+    // The name before the last bracket may hold anything.
+    let mut words = text.rsplit_once(')')?.1.split_whitespace();
+    Some((words.next()?.to_owned(), words.next()?.parse().ok()?))
+}
+
+/// Process number of the role (`fluid`, `solid`) that this launcher has started, once there is one.
+pub fn role_of(launcher: u32, role: &str) -> Option<u32> {
+    let processes = std::fs::read_dir("/proc").ok()?.flatten();
+    processes.filter_map(|entry| entry.file_name().to_str()?.parse().ok()).find(|&pid: &u32| {
+        let arguments = std::fs::read(format!("/proc/{pid}/cmdline")).unwrap_or_default();
+        let words: Vec<&[u8]> = arguments.split(|&byte| byte == 0).collect();
+        stat(pid).is_some_and(|(_, parent)| parent == launcher)
+            && words.len() > 2
+            && words[1] == b"role"
+            && words[2] == role.as_bytes()
+    })
+}
+
+/// What the runs of a launcher have in shared memory and in the folders for temporary files.
+pub fn leftovers(launcher: u32) -> Vec<String> {
+    let prefix = format!("hs{launcher}-");
+    let temporary = std::env::temp_dir();
+    let mut found: Vec<String> = [Path::new("/dev/shm"), Path::new("/tmp"), &temporary]
+        .into_iter()
+        .filter_map(|folder| std::fs::read_dir(folder).ok())
+        .flatten()
+        .flatten()
+        .filter(|entry| entry.file_name().to_string_lossy().starts_with(&prefix))
+        .map(|entry| entry.path().display().to_string())
+        .collect();
+    found.dedup();
+    found
+}

@@ -1,0 +1,289 @@
+//! Runs a shipped scene with the real program, as a user would, and reads what it leaves behind.
+//!
+//! A coupled run has the machine for itself, because its three processes answer each other in lock-step and a stranger
+//! on their cores slows all of them down; runs of a single phase share it.
+
+use crate::curve::Curve;
+use halfstep_shared::output::run_json::RunStatus;
+use halfstep_shared::output::{Frame, RunReport, Table, read_probes, series::Series, vtkhdf};
+use std::ffi::OsString;
+use std::fmt::Display;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::{OnceLock, PoisonError, RwLock, RwLockWriteGuard};
+use std::time::Instant;
+
+/// Who has the machine: coupled runs write, others read.
+static MACHINE: RwLock<()> = RwLock::new(());
+
+/// The `halfstep` program, built by the first who asks.
+pub fn program() -> &'static Path {
+    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+    PROGRAM.get_or_init(|| {
+        // Another package's binary is no dependency of a test: cargo is asked to bring it up to date, and where it is.
+        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+        let output = Command::new(cargo)
+            .args(["build", "--release", "--package", "halfstep", "--bin", "halfstep"])
+            .arg("--message-format=json-render-diagnostics")
+            .arg("--manifest-path")
+            .arg(repository().join("Cargo.toml"))
+            .stderr(Stdio::inherit())
+            .output()
+            .expect("cargo");
+        assert!(output.status.success(), "halfstep does not build");
+        String::from_utf8_lossy(&output.stdout)
+            .lines()
+            .filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok())
+            .filter(|message| message["target"]["name"] == "halfstep")
+            .find_map(|message| message["executable"].as_str().map(PathBuf::from))
+            .expect("cargo names the program")
+    })
+}
+
+/// The repository's top folder.
+pub fn repository() -> PathBuf {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    path.canonicalize().expect("the repository")
+}
+
+/// A run of `scenes/NAME.toml`, to be configured.
+pub fn scene(name: &str) -> RunBuilder {
+    scene_at(&repository().join("scenes").join(name).with_extension("toml"))
+}
+
+/// A run of any scene file.
+pub fn scene_at(path: &Path) -> RunBuilder {
+    let coupled = std::fs::read_to_string(path)
+        .is_ok_and(|text| ["[fluid]", "[solid]"].iter().all(|section| text.contains(section)));
+    RunBuilder { scene: path.into(), arguments: Vec::new(), out: None, coupled }
+}
+
+/// How to run a scene.
+#[derive(Clone, Debug)]
+pub struct RunBuilder {
+    scene: PathBuf,
+    arguments: Vec<OsString>,
+    out: Option<PathBuf>,
+    coupled: bool,
+}
+
+impl RunBuilder {
+    /// Overrides a key of the scene.
+    #[must_use]
+    pub fn set(self, key: &str, value: impl Display) -> Self {
+        self.argument("--set").argument(format!("{key}={value}"))
+    }
+
+    /// Simulated time, s.
+    #[must_use]
+    pub fn until(self, seconds: f64) -> Self {
+        self.argument("--until").argument(seconds.to_string())
+    }
+
+    /// Worker threads of the fluid.
+    #[must_use]
+    pub fn threads(self, count: usize) -> Self {
+        self.argument("--threads").argument(count.to_string())
+    }
+
+    /// The roles as threads of one process instead of three processes.
+    #[must_use]
+    pub fn in_process(self) -> Self {
+        self.argument("--in-process")
+    }
+
+    /// Any other argument of `halfstep run`.
+    #[must_use]
+    pub fn argument(mut self, argument: impl Into<OsString>) -> Self {
+        self.arguments.push(argument.into());
+        self
+    }
+
+    /// The folder of the run; without it a temporary one that goes with the result.
+    #[must_use]
+    pub fn out(mut self, dir: &Path) -> Self {
+        self.out = Some(dir.into());
+        self
+    }
+
+    /// Starts the program and does not wait for it.
+    pub fn start(self) -> Running {
+        let temporary = tempfile::tempdir().expect("a temporary folder");
+        let dir = self.out.unwrap_or_else(|| temporary.path().join("run"));
+        let stream = |name: &str| {
+            let path = temporary.path().join(name);
+            Stdio::from(std::fs::File::create(path).expect("a file for what the program says"))
+        };
+        let mut command = Command::new(program());
+        command.arg("run").arg(&self.scene).arg("--quiet").arg("--out").arg(&dir).args(&self.arguments);
+        command.stdin(Stdio::null()).stdout(stream("stdout")).stderr(stream("stderr"));
+        let child = command.spawn().expect("halfstep starts");
+        Running { child, dir, temporary: Some(temporary), started: Instant::now() }
+    }
+
+    /// Runs the program to its end, however that is.
+    pub fn outcome(self) -> Outcome {
+        let locks = if self.coupled {
+            (Some(whole_machine()), None)
+        } else {
+            (None, Some(MACHINE.read().unwrap_or_else(PoisonError::into_inner)))
+        };
+        let outcome = self.start().wait();
+        drop(locks);
+        outcome
+    }
+
+    /// Runs the program, which must reach the scene's end.
+    pub fn run(self) -> Finished {
+        self.outcome().finished()
+    }
+}
+
+/// Keeps other runs off the machine, for tests that use [`RunBuilder::start`].
+pub fn whole_machine() -> RwLockWriteGuard<'static, ()> {
+    MACHINE.write().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A run that goes on. Dropping it kills the launcher.
+#[derive(Debug)]
+pub struct Running {
+    child: Child,
+    dir: PathBuf,
+    temporary: Option<tempfile::TempDir>,
+    started: Instant,
+}
+
+impl Running {
+    /// Process number of the launcher, which is the coupler.
+    pub fn pid(&self) -> u32 {
+        self.child.id()
+    }
+
+    /// The folder of the run.
+    pub fn dir(&self) -> &Path {
+        &self.dir
+    }
+
+    /// Whether the launcher still runs.
+    pub fn is_alive(&mut self) -> bool {
+        self.child.try_wait().expect("a child").is_none()
+    }
+
+    /// Waits for the launcher's end.
+    pub fn wait(mut self) -> Outcome {
+        let status = self.child.wait().expect("a child");
+        let temporary = self.temporary.take().expect("taken here only");
+        let said = |name: &str| {
+            let text = std::fs::read(temporary.path().join(name)).unwrap_or_default();
+            String::from_utf8_lossy(&text).into_owned()
+        };
+        Outcome {
+            status,
+            stdout: said("stdout"),
+            stderr: said("stderr"),
+            dir: self.dir.clone(),
+            seconds: self.started.elapsed().as_secs_f64(),
+            _temporary: temporary,
+        }
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        if self.is_alive() {
+            let _ = self.child.kill();
+            let _ = self.child.wait();
+        }
+    }
+}
+
+/// How the program ended and where its files are.
+#[derive(Debug)]
+pub struct Outcome {
+    /// How the launcher ended.
+    pub status: ExitStatus,
+    /// What it printed.
+    pub stdout: String,
+    /// What it complained about.
+    pub stderr: String,
+    /// The folder of the run.
+    pub dir: PathBuf,
+    /// Wall time, s.
+    pub seconds: f64,
+    _temporary: tempfile::TempDir,
+}
+
+impl Outcome {
+    /// Exit status, `None` for a signal.
+    pub fn code(&self) -> Option<i32> {
+        self.status.code()
+    }
+
+    /// `run.json`.
+    pub fn report(&self) -> RunReport {
+        RunReport::read(&self.dir.join("run.json")).unwrap_or_else(|e| panic!("{e}\n{}", self.stderr))
+    }
+
+    /// `log.txt`.
+    pub fn log(&self) -> String {
+        std::fs::read_to_string(self.dir.join("log.txt")).unwrap_or_default()
+    }
+
+    /// `probes.csv`.
+    pub fn probes(&self) -> Table {
+        read_probes(&self.dir.join("probes.csv")).unwrap_or_else(|e| panic!("{e}\n{}", self.stderr))
+    }
+
+    /// All announced frames of `fluid` or `solid`, read from their files.
+    pub fn frames(&self, stem: &str) -> Vec<Frame> {
+        let announced = Series::of_run(&self.dir, stem).expect("the index of the frames");
+        announced
+            .into_iter()
+            .map(|(path, time)| {
+                let frame = vtkhdf::read(&path).unwrap_or_else(|e| panic!("{e}"));
+                assert_eq!(frame.time, time, "{}", path.display());
+                assert!(!frame.is_empty(), "{}", path.display());
+                frame
+            })
+            .collect()
+    }
+
+    /// The run, which must have reached its end.
+    pub fn finished(self) -> Finished {
+        let told = || format!("{:?}\n{}\n{}", self.status, self.stderr, self.log());
+        assert!(self.status.success(), "{}", told());
+        let report = self.report();
+        assert_eq!(report.status, Some(RunStatus::Finished), "{}", told());
+        assert_eq!(report.error, None);
+        Finished { report, probes: self.probes(), outcome: self }
+    }
+}
+
+/// A run that reached its end.
+#[derive(Debug)]
+pub struct Finished {
+    /// `run.json`.
+    pub report: RunReport,
+    /// `probes.csv`.
+    pub probes: Table,
+    /// Everything else.
+    pub outcome: Outcome,
+}
+
+impl Finished {
+    /// A column of the probes: `tip.x`.
+    pub fn curve(&self, name: &str) -> Curve {
+        Curve::of(&self.probes, name)
+    }
+
+    /// The hash of the final state, with the instruction set it belongs to.
+    pub fn state_hash(&self) -> (String, Option<String>) {
+        let hash = self.report.audit.state_hash.clone().expect("a finished run has a hash");
+        (hash, self.report.audit.isa.clone())
+    }
+
+    /// The folder of the run.
+    pub fn dir(&self) -> &Path {
+        &self.outcome.dir
+    }
+}

@@ -1,0 +1,152 @@
+//! A warmed-up step allocates nothing: roles driven directly, on one thread, and every allocation of it counted.
+
+use halfstep::roles;
+use halfstep_shared::failure::RoleName;
+use halfstep_shared::interface::{Interface, Parameters};
+use halfstep_shared::lane::Isa;
+use halfstep_shared::lockstep::on_threads;
+use halfstep_shared::protocol::{ForceRecord, StateRecord};
+use halfstep_shared::role::Role;
+use halfstep_shared::scene::{self, Scene};
+use halfstep_tests::run::repository;
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::backtrace::Backtrace;
+use std::cell::Cell;
+
+thread_local! {
+    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
+    static WATCHED: Cell<bool> = const { Cell::new(false) };
+}
+
+struct Counting;
+
+fn count() {
+    let before = ALLOCATIONS.replace(ALLOCATIONS.get() + 1);
+    // Each says where it comes from; taking the trace allocates, too, but that does not count.
+    if WATCHED.replace(false) {
+        eprintln!("allocated during a warmed-up step:\n{}", Backtrace::force_capture());
+        ALLOCATIONS.set(before + 1);
+        WATCHED.set(true);
+    }
+}
+
+// SAFETY: every call goes to the system's allocator unchanged; the counters are plain thread-local numbers.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count();
+        unsafe { System.alloc(layout) }
+    }
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        unsafe { System.dealloc(pointer, layout) }
+    }
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        count();
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+fn shipped(name: &str, overrides: &[&str]) -> Scene {
+    let path = repository().join("scenes").join(name).with_extension("toml");
+    let overrides: Vec<String> = overrides.iter().map(|o| o.to_string()).collect();
+    scene::load(&path, &overrides).unwrap_or_else(|errors| panic!("{name}: {errors:?}"))
+}
+
+/// Allocations of `step` in the steps from 300 to 400, on the thread that computes.
+fn allocations(mut step: impl FnMut(u64) + Send) -> u64 {
+    on_threads(1, || {
+        (0..300).for_each(&mut step);
+        let warm = ALLOCATIONS.get();
+        assert!(warm > 0, "the counter counts: lists grew at first");
+        WATCHED.set(true);
+        (300..400).for_each(&mut step);
+        WATCHED.set(false);
+        ALLOCATIONS.get() - warm
+    })
+    .unwrap()
+}
+
+/// Steps of a role that is alone.
+fn alone(name: RoleName, scene: &Scene) -> u64 {
+    let mut role: Option<Box<dyn Role>> = None;
+    let mut records = Vec::new();
+    allocations(|n| {
+        let role = role.get_or_insert_with(|| roles::build(name, scene).expect("the phase"));
+        let mut dt = 0.0;
+        for stage in 0..2 {
+            role.publish(&[], &mut records);
+            if stage == 0 {
+                dt = role.dt_limit();
+            }
+            role.own_sums();
+            role.advance(n, stage, dt, &[]).unwrap();
+        }
+    })
+}
+
+/// Steps of both roles of a coupled scene, with the forces that the coupler would send but for f_i.
+fn coupled(scene: &Scene) -> u64 {
+    let mut state: Option<[Box<dyn Role>; 2]> = None;
+    let parameters = || Parameters::<2>::new(scene, Isa::detect()).expect("both phases");
+    let mut interface = Interface::new(parameters());
+    let (mut of_fluid, mut of_solid): (Vec<StateRecord>, Vec<StateRecord>) = Default::default();
+    let mut forces = [Vec::new(), Vec::new()];
+    allocations(|n| {
+        let [fluid, solid] = state.get_or_insert_with(|| {
+            [RoleName::Fluid, RoleName::Solid].map(|name| roles::build(name, scene).expect("the phase"))
+        });
+        let mut dt = 0.0;
+        for stage in 0..2 {
+            solid.publish(&of_fluid, &mut of_solid);
+            let epoch = fluid.publish(&of_solid, &mut of_fluid);
+            if stage == 0 {
+                dt = fluid.dt_limit().min(solid.dt_limit());
+            }
+            fluid.own_sums();
+            solid.own_sums();
+            fluid.cross_sums(&of_fluid, &of_solid, epoch).unwrap();
+            solid.cross_sums(&of_solid, &of_fluid, epoch).unwrap();
+            for (forces, records) in forces.iter_mut().zip([&of_fluid, &of_solid]) {
+                forces.clear();
+                forces.extend(records.iter().map(|r| ForceRecord { id: r.id, ..ForceRecord::default() }));
+            }
+            interface.update(&of_fluid, &of_solid, epoch);
+            interface.act_on_solid(|record, [x, y]| forces[1][record].stress_force = [x, y, 0.0]);
+            fluid.advance(n, stage, dt, &forces[0]).unwrap();
+            solid.advance(n, stage, dt, &forces[1]).unwrap();
+        }
+    })
+}
+
+#[test]
+fn fluid_at_rest() {
+    assert_eq!(alone(RoleName::Fluid, &shipped("hydrostatic-tank", &[])), 0);
+}
+
+#[test]
+fn fluid_that_spreads() {
+    assert_eq!(alone(RoleName::Fluid, &shipped("dam-break", &["resolution=0.0028575"])), 0);
+}
+
+#[test]
+fn solid_that_bends() {
+    assert_eq!(alone(RoleName::Solid, &shipped("oscillating-plate", &["resolution=0.004"])), 0);
+}
+
+#[test]
+fn solids_that_collide() {
+    assert_eq!(alone(RoleName::Solid, &shipped("colliding-rings", &["resolution=0.002"])), 0);
+}
+
+#[test]
+fn both_phases_with_a_moving_wall() {
+    assert_eq!(coupled(&shipped("elastic-gate", &["resolution=0.0025"])), 0);
+}
+
+#[test]
+fn both_phases_phase_blind() {
+    let overrides = ["resolution=0.0025", "interface.treatment=phase-blind"];
+    assert_eq!(coupled(&shipped("elastic-gate", &overrides)), 0);
+}

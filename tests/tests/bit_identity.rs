@@ -1,0 +1,39 @@
+//! The same scene gives the same bits: as processes, as threads of one process, and with any number of threads.
+
+use halfstep_tests::{RunBuilder, scene};
+
+fn gate(treatment: &str) -> RunBuilder {
+    scene("elastic-gate").set("resolution", 0.0025).set("interface.treatment", treatment)
+}
+
+fn same_bits(until: f64, treatment: &str) {
+    let run = || gate(treatment).until(until);
+    let reference = run().run();
+    let (hash, tip) = (reference.state_hash(), reference.curve("tip.x"));
+    assert!(tip.at(until) > 1e-4, "something has moved");
+    for (what, other) in [
+        ("threads of one process", run().in_process()),
+        ("one process, two threads", run().in_process().threads(2)),
+        ("two threads", run().threads(2)),
+        ("three threads", run().threads(3)),
+    ] {
+        let other = other.run();
+        assert_eq!(other.state_hash(), hash, "{treatment}: {what}");
+        assert_eq!(other.report.steps, reference.report.steps);
+        // Not only the end: every row in between.
+        assert_eq!(other.probes, reference.probes, "{treatment}: {what}");
+    }
+    // The hash tells states apart.
+    let other = gate(treatment).until(until).set("fluid.density", 1000.0 * (1.0 + 1e-12)).run();
+    assert_ne!(other.state_hash().0, hash.0);
+}
+
+#[test]
+fn moving_wall() {
+    same_bits(0.05, "moving-wall");
+}
+
+#[test]
+fn phase_blind() {
+    same_bits(0.01, "phase-blind");
+}

@@ -1,0 +1,152 @@
+//! Whatever ends a run, it ends soon, says why, and what it has left behind can be used.
+
+use halfstep_shared::output::probes::TIME_COLUMN;
+use halfstep_shared::output::run_json::RunStatus;
+use halfstep_tests::conformance::link::eventually;
+use halfstep_tests::process::{is_alive, kill, leftovers, role_of};
+use halfstep_tests::run::whole_machine;
+use halfstep_tests::{Outcome, Running, scene};
+use std::time::Instant;
+
+/// How long the survivors may take to notice that one of them is gone, and to end, s.
+const PROMISE: f64 = 2.0;
+
+/// A run that would take long, with a handful of frames on disk.
+fn under_way() -> Running {
+    let running = scene("elastic-gate")
+        .set("resolution", 0.0025)
+        .set("output.frame_interval", 0.001)
+        .set("end_time", 60.0)
+        .start();
+    let index = running.dir().join("frames/solid.hdf.series");
+    let lines = || std::fs::read_to_string(&index).map_or(0, |text| text.lines().count());
+    eventually(60.0, "the first frames", || lines() > 5);
+    running
+}
+
+/// What is on disk is whole, and nothing else is left.
+fn usable(outcome: &Outcome, launcher: u32) {
+    for stem in ["fluid", "solid"] {
+        let frames = outcome.frames(stem);
+        assert!(frames.len() >= 4, "{stem}: {} frames", frames.len());
+        assert!(frames.windows(2).all(|f| f[0].time < f[1].time && f[0].len() == f[1].len()), "{stem}");
+    }
+    let text = std::fs::read_to_string(outcome.dir.join("probes.csv")).unwrap();
+    assert!(text.starts_with(TIME_COLUMN) && text.ends_with('\n'), "a row is cut off");
+    let columns = text.lines().next().unwrap().split(',').count();
+    assert!(text.lines().all(|line| line.split(',').count() == columns), "a row is cut off");
+    assert_eq!(outcome.probes().rows.len(), text.lines().count() - 1);
+    assert_eq!(leftovers(launcher), Vec::<String>::new());
+}
+
+#[test]
+fn a_killed_role_ends_the_run_and_is_named() {
+    let _machine = whole_machine();
+    for (victim, survivor) in [("fluid", "solid"), ("solid", "fluid")] {
+        let running = under_way();
+        let launcher = running.pid();
+        let [killed, other] = [victim, survivor].map(|role| role_of(launcher, role).expect("a child"));
+        assert!(!leftovers(launcher).is_empty(), "what is looked for exists meanwhile");
+        kill(killed, libc::SIGKILL);
+        let moment = Instant::now();
+        let outcome = running.wait();
+        assert!(moment.elapsed().as_secs_f64() < PROMISE, "{victim}: {:?}", moment.elapsed());
+        assert!(!is_alive(other), "the {survivor} outlives the run");
+        assert_eq!(outcome.code(), Some(2));
+        let named = format!("the {victim} process ended (signal: 9");
+        assert!(outcome.stderr.contains(&named), "{}", outcome.stderr);
+        assert!(outcome.log().contains(&named), "{}", outcome.log());
+        let report = outcome.report();
+        assert_eq!(report.status, Some(RunStatus::Failed));
+        assert!(report.error.unwrap().contains(&named));
+        usable(&outcome, launcher);
+    }
+}
+
+#[test]
+fn a_killed_launcher_takes_its_roles_along() {
+    let _machine = whole_machine();
+    let running = under_way();
+    let launcher = running.pid();
+    let roles = ["fluid", "solid"].map(|role| role_of(launcher, role).expect("a child"));
+    kill(launcher, libc::SIGKILL);
+    let moment = Instant::now();
+    let outcome = running.wait();
+    let left = PROMISE - moment.elapsed().as_secs_f64();
+    eventually(left, "the end of both roles", || !roles.iter().any(|&pid| is_alive(pid)));
+    assert_eq!(outcome.code(), None);
+    let log = outcome.log();
+    for role in ["fluid", "solid"] {
+        let line = log.lines().find(|line| line.contains(&format!("{role}: ")));
+        assert!(line.is_some_and(|line| line.contains("coupler")), "the {role} names who is gone: {log}");
+    }
+    assert_eq!(outcome.report().status, None, "nobody was left to say how it ended");
+    usable(&outcome, launcher);
+}
+
+#[test]
+fn an_interrupted_run_is_stopped_and_complete() {
+    let _machine = whole_machine();
+    let running = under_way();
+    let launcher = running.pid();
+    let roles = ["fluid", "solid"].map(|role| role_of(launcher, role).expect("a child"));
+    // As a terminal does: everybody in the foreground hears it.
+    for pid in roles.into_iter().chain([launcher]) {
+        kill(pid, libc::SIGINT);
+    }
+    let outcome = running.wait();
+    assert_eq!(outcome.code(), Some(130), "{}", outcome.stderr);
+    let report = outcome.report();
+    assert_eq!((report.status, report.error), (Some(RunStatus::Stopped), None));
+    assert!(report.steps > 0 && report.time > 0.0 && report.audit.state_hash.is_some());
+    usable(&outcome, launcher);
+    // Stopping is a step's end like any other: the last state is written.
+    for stem in ["fluid", "solid"] {
+        assert_eq!(outcome.frames(stem).last().unwrap().time, report.time, "{stem}");
+    }
+    assert!(outcome.dir.join("plot.png").exists());
+}
+
+#[test]
+fn an_earlier_run_is_kept_unless_forced() {
+    let dir = tempfile::tempdir().unwrap();
+    let run = || scene("elastic-gate").set("resolution", 0.005).until(0.001).out(dir.path());
+    let first = run().run();
+    let refused = run().outcome();
+    assert_eq!(refused.code(), Some(1), "{}", refused.stderr);
+    assert!(refused.stderr.contains("--force"), "{}", refused.stderr);
+    assert_eq!(refused.report(), first.report, "it was not touched");
+    let forced = run().argument("--force").run();
+    assert_eq!(forced.state_hash(), first.state_hash());
+}
+
+#[test]
+fn a_wrong_scene_starts_nothing() {
+    let outcome = scene("elastic-gate").set("solid.youngs_modulus", -1).outcome();
+    assert_eq!(outcome.code(), Some(1));
+    assert!(outcome.stderr.contains("youngs_modulus"), "{}", outcome.stderr);
+    assert!(!outcome.dir.exists(), "nothing was started");
+    let missing = scene("no-such-scene").outcome();
+    assert_eq!(missing.code(), Some(1));
+    assert!(missing.stderr.contains("no-such-scene"), "{}", missing.stderr);
+}
+
+#[test]
+fn a_divergence_names_role_particle_and_quantity() {
+    for in_process in [false, true] {
+        let run = scene("elastic-gate").set("resolution", 0.0025).set("time_step", 1e-3);
+        let outcome = if in_process { run.in_process() } else { run }.outcome();
+        assert_eq!(outcome.code(), Some(2), "{}", outcome.stderr);
+        let report = outcome.report();
+        assert_eq!(report.status, Some(RunStatus::Diverged), "{:?}", report.error);
+        let error = report.error.unwrap();
+        assert!(
+            error.starts_with("the fluid diverged") || error.starts_with("the solid diverged"),
+            "{error}"
+        );
+        assert!(["density", "speed", "stress", "position"].iter().any(|q| error.contains(q)), "{error}");
+        assert!(error.contains("of particle ") && error.contains("step"), "{error}");
+        assert!(outcome.stderr.contains(&error), "{}", outcome.stderr);
+        assert!(outcome.log().contains(&error));
+    }
+}
