@@ -14,6 +14,8 @@ pub struct Clock {
     time: f64,
     step: u64,
     last_dt: Option<f64>,
+    /// Smallest limit seen.
+    limit: f64,
     frames: Periodic,
     rows: Periodic,
 }
@@ -65,6 +67,7 @@ impl Clock {
             time: 0.0,
             step: 0,
             last_dt: None,
+            limit: f64::INFINITY,
             frames: Periodic { interval: scene.output.frame_interval, count: 0 },
             rows: Periodic { interval: scene.output.probe_interval, count: 0 },
         }
@@ -82,6 +85,7 @@ impl Clock {
         if last {
             return Ok(tick(None, self.time, true, true));
         }
+        self.limit = self.limit.min(limit);
         let frame = self.frames.due(self.time).is_some();
         let row = self.rows.due(self.time).is_some();
         let mut dt = match self.fixed {
@@ -111,6 +115,11 @@ impl Clock {
         Ok(Tick { step: self.step, time: self.time, dt: Some(dt), next_time, frame, row })
     }
 
+    /// The fixed time step and the smallest stability limit seen, where the step exceeds it.
+    pub fn exceeded(&self) -> Option<(f64, f64)> {
+        self.fixed.filter(|&dt| dt > self.limit * (1.0 + 1e-9)).map(|dt| (dt, self.limit))
+    }
+
     /// The step was done.
     pub fn advance(&mut self, tick: &Tick) {
         self.time = tick.next_time;
@@ -129,6 +138,7 @@ mod tests {
             time: 0.0,
             step: 0,
             last_dt: None,
+            limit: f64::INFINITY,
             frames: Periodic { interval: 0.25, count: 0 },
             rows: Periodic { interval: 0.1, count: 0 },
         }

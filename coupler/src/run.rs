@@ -112,6 +112,9 @@ pub struct RunOptions {
 /// # Errors
 /// Nothing could be started or written. A run that failed is a report with its error.
 pub fn run(scene: &Scene, options: &RunOptions) -> Result<(RunReport, Option<RunError>), RunError> {
+    if options.solid != SolidSource::BuiltIn && (scene.fluid.is_none() || scene.solid.is_none()) {
+        return Err(RunError::System("--solid needs a scene with [fluid] and [solid]".into()));
+    }
     let directory = RunDirectory::create(&options.out, options.force)?;
     let stop = stop_flag().map_err(|e| RunError::System(format!("cannot watch for signals: {e}")))?;
     let layout = geometry::layout::<2>(scene);
@@ -146,6 +149,14 @@ pub fn run(scene: &Scene, options: &RunOptions) -> Result<(RunReport, Option<Run
         solo(scene, options, &directory, &stop, &mut clock, &mut recorder, &mut report)
     };
     recorder.finish(&mut report);
+    if let Some((dt, limit)) = clock.exceeded() {
+        tracing::warn!(
+            "time_step = {dt:e} s is above the stability limit of {limit:e} s: look at the result with care"
+        );
+        eprintln!(
+            "note: time_step = {dt:e} s is above the stability limit of {limit:e} s (time_step = \"auto\" keeps to it)"
+        );
+    }
     let error = match result {
         Ok(stopped) => {
             report.status = Some(if stopped { RunStatus::Stopped } else { RunStatus::Finished });

@@ -161,7 +161,11 @@ fn solid(section: Section<'_>, defaults: &Defaults, max_sub_steps: u32) -> Solid
         artificial_viscosity: viscosity(&section, defaults.solid_viscosity),
         artificial_stress: ArtificialStress {
             strength: stress.number("strength", Some(defaults.artificial_stress.strength), COEFFICIENT),
-            exponent: stress.number("exponent", Some(defaults.artificial_stress.exponent), COEFFICIENT),
+            exponent: stress.number(
+                "exponent",
+                Some(defaults.artificial_stress.exponent),
+                Range::at_least(1.0).up_to(16.0).why("it is a whole power of a ratio of kernels"),
+            ),
         },
         sub_steps: sub_steps(&section, max_sub_steps),
     };
