@@ -107,7 +107,7 @@ struct Pressure<'a, K, const D: usize> {
 
 impl<K: Kernel<D>, const D: usize> Pressure<'_, K, D> {
     #[inline(always)]
-    fn coefficient<A: Arch>(&self, i: &Target<D>, j: usize, f: Lane) -> Lane {
+    fn coefficient(&self, i: &Target<D>, j: usize, f: Lane) -> Lane {
         let rho = self.sources.density[j];
         let term = self.sources.pressure[j] / (rho * rho);
         Lane::splat(self.sources.mass[j]) * (i.pressure_term + Lane::splat(term)) * f
@@ -136,7 +136,7 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for OnFluid<'_, K, D> {
     fn add<A: Arch>(&self, i: &Target<D>, j: usize, dx: [Lane; D], r2: Lane, sum: &mut FluidSum<D>) {
         let kernel = &self.0.kernel;
         let f = kernel.gradient_over_r::<A>(distance(r2, kernel.smoothing_length()));
-        let coefficient = self.0.coefficient::<A>(i, j, f);
+        let coefficient = self.0.coefficient(i, j, f);
         let s = self.0.sources;
         let dv = std::array::from_fn(|d| i.velocity[d] - Lane::splat(s.velocity[d][j]));
         let volume = Lane::splat(s.mass[j] / s.density[j]);
@@ -169,7 +169,7 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for OnSolid<'_, K, D> {
     fn add<A: Arch>(&self, i: &Target<D>, j: usize, dx: [Lane; D], r2: Lane, sum: &mut SolidForce<D>) {
         let kernel = &self.0.kernel;
         let f = kernel.gradient_over_r::<A>(distance(r2, kernel.smoothing_length()));
-        let coefficient = i.mass * self.0.coefficient::<A>(i, j, f);
+        let coefficient = i.mass * self.0.coefficient(i, j, f);
         for d in 0..D {
             sum.0[d] = A::mul_add(-coefficient, dx[d], sum.0[d]);
         }

@@ -1,5 +1,5 @@
 //! Artificial stress against the tensile instability (Gray, Monaghan and Swift 2001; Kayaki's eqs. 25 and 26):
-//! + (R_i + R_j) (W(r) / W(d0))^n in the momentum bracket. In the principal axes of sigma,
+//! the term (R_i + R_j) (W(r) / W(d0))^n is added in the momentum bracket. In the principal axes of sigma,
 //! R = -epsilon sigma_aa / rho² where sigma_aa > 0 (tension), else 0; rotated back. d0 is the initial spacing.
 
 use nalgebra::{SMatrix, SymmetricEigen};
