@@ -16,27 +16,16 @@ use std::time::Instant;
 /// Who has the machine: coupled runs write, others read.
 static MACHINE: RwLock<()> = RwLock::new(());
 
-/// The `halfstep` program, built by the first who asks.
+/// The program: `coupler/src/main.rs`, which this package builds as well, so that it is up to date when a test runs.
 pub fn program() -> &'static Path {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
     PROGRAM.get_or_init(|| {
-        // Another package's binary is no dependency of a test: cargo is asked to bring it up to date, and where it is.
-        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-        let output = Command::new(cargo)
-            .args(["build", "--release", "--package", "halfstep", "--bin", "halfstep"])
-            .arg("--message-format=json-render-diagnostics")
-            .arg("--manifest-path")
-            .arg(repository().join("Cargo.toml"))
-            .stderr(Stdio::inherit())
-            .output()
-            .expect("cargo");
-        assert!(output.status.success(), "halfstep does not build");
-        String::from_utf8_lossy(&output.stdout)
-            .lines()
-            .filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok())
-            .filter(|message| message["target"]["name"] == "halfstep")
-            .find_map(|message| message["executable"].as_str().map(PathBuf::from))
-            .expect("cargo names the program")
+        // target/PROFILE/deps/TEST-HASH: binaries lie one folder above.
+        let test = std::env::current_exe().expect("a test has a path");
+        let folder = test.parent().and_then(Path::parent).expect("a test lies in a folder");
+        let program = folder.join("halfstep-under-test");
+        assert!(program.exists(), "{} is missing: cargo test builds it", program.display());
+        program
     })
 }
 
