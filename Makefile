@@ -1,6 +1,6 @@
 # What people run. Every target first installs what is missing (setup.sh) and then calls cargo.
 
-.PHONY: gate test validate bench docs setup
+.PHONY: gate test validate docs setup
 
 # Where rustup puts cargo, for shells that were open before.
 export PATH := $(PATH):$(HOME)/.cargo/bin
@@ -19,10 +19,6 @@ test: setup
 # The benchmarks of the literature at full resolution: long.
 validate: setup
 	cargo test --release -p halfstep-tests -- --ignored --nocapture
-
-# How fast it is.
-bench: setup
-	cargo bench -p halfstep-tests
 
 # The documentation of the crates, in target/doc.
 docs: setup
