@@ -4,7 +4,7 @@
 //! - simple (Molteni and Colagrossi 2009): 2 (rho_i - rho_j);
 //! - hydrostatic (Fourtakas et al. 2019, linearised): 2 (rho_i - rho_j - rho0 g . x_ij / c0²);
 //! - delta-SPH (Antuono et al. 2010; Marrone et al. 2011, Kayaki's eqs. 18 to 21):
-//!   2 (rho_i - rho_j) - (<grad rho>_i + <grad rho>_j) . x_ij, with the renormalised gradient of
+//!   2 (rho_i - rho_j) - ({grad rho}_i + {grad rho}_j) . x_ij, with the renormalised gradient of
 //!   [`crate::density_gradient`]. (Printed with a difference of the gradients in Kayaki's eq. (19); only the sum cancels a
 //!   linear field.)
 
