@@ -2,8 +2,9 @@
 //!
 //! Beam theory: a jet of 2 m/s over the whole height of the 12 mm plate (4 kPa) moves its tip by q L^4 / (8 D), which
 //! is 0.6 mm for E = 0.22 GPa, 1.0 mm for a plate of 10 mm, and 10 mm for E = 12 MPa. The plate with E = 1 MPa of the
-//! literature goes 41-49 mm at 0.23-0.26 s (`tests/reference/dam-break-plate`); a hypoelastic plate of three
-//! particles across is far too soft for that (72 mm and rising at 0.3 s), so it is compared at full resolution only.
+//! literature goes 41-49 mm at 0.23-0.26 s (`tests/reference/dam-break-plate`). The hypoelastic plate does not: it is
+//! too soft, 72 mm and rising at 0.3 s with three particles across and 85 mm @ 0.28 s with six. The figure is printed
+//! beside the published ones and nothing is asserted about it.
 
 use halfstep_tests::{Curve, Finished, RunBuilder, scene};
 
@@ -62,6 +63,7 @@ fn plates_at_full_resolution() {
     let (curve, _) = tip("E 1 MPa, 2 mm", &run);
     let published = Curve::reference("dam-break-plate/published-peaks.csv", "x [mm]");
     let least = published.values.iter().copied().fold(f64::INFINITY, f64::min);
-    let (first, most) = (curve.first_peak(0.5), published.peak().1);
+    // After the impact the tip first dips toward the jet.
+    let (first, most) = (curve.between(0.17, 1.0).first_peak(0.5), published.peak().1);
     println!("E 1 MPa, 2 mm: first peak (s, mm) {first:.3?}; published {least}-{most} mm at 0.23-0.26 s");
 }
