@@ -7,7 +7,7 @@
 
 use super::memory::SHM;
 use super::{LinkConfig, LinkError};
-use std::fs::{DirBuilder, File, OpenOptions};
+use std::fs::{DirBuilder, DirEntry, File, OpenOptions};
 use std::io::ErrorKind;
 use std::os::fd::AsRawFd;
 use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt};
@@ -137,13 +137,22 @@ fn flock(file: &File, operation: i32) -> std::io::Result<()> {
     }
 }
 
+/// The lock goes last: whoever is killed in the middle of this leaves a run that the next one recognises.
 fn remove_files(prefix: &str, root: &Path) {
-    if let Ok(entries) = std::fs::read_dir(SHM) {
-        for entry in entries.flatten().filter(|e| e.file_name().to_string_lossy().starts_with(prefix)) {
-            let _ = std::fs::remove_file(entry.path());
+    let carries_prefix = |entry: &DirEntry| entry.file_name().to_string_lossy().starts_with(prefix);
+    for entry in std::fs::read_dir(SHM).into_iter().flatten().flatten().filter(carries_prefix) {
+        let _ = std::fs::remove_file(entry.path());
+    }
+    for entry in std::fs::read_dir(root).into_iter().flatten().flatten() {
+        let path = entry.path();
+        if entry.file_type().is_ok_and(|kind| kind.is_dir()) {
+            let _ = std::fs::remove_dir_all(path);
+        } else if entry.file_name() != LOCK {
+            let _ = std::fs::remove_file(path);
         }
     }
-    let _ = std::fs::remove_dir_all(root);
+    let _ = std::fs::remove_file(root.join(LOCK));
+    let _ = std::fs::remove_dir(root);
 }
 
 #[cfg(test)]
@@ -173,7 +182,8 @@ mod tests {
         std::fs::write(&object, "x").unwrap();
         // As if the process had been killed: the lock goes, nobody removes anything.
         flock(&claim.lock, libc::LOCK_UN).unwrap();
-        assert!(cleanup_stale() >= 1);
+        // Another run on this machine may be faster: only the result counts.
+        cleanup_stale();
         assert!(!object.exists() && !abandoned.root.exists());
         assert!(alive.root.join(LOCK).exists());
         drop(claim);

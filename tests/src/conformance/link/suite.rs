@@ -12,6 +12,8 @@ use std::thread::{scope, sleep};
 use std::time::{Duration, Instant};
 
 const ROLES: [RoleName; 3] = [Fluid, Solid, Coupler];
+/// Well below a run's patience of 20 s, and enough for a machine with other work.
+const SOON: Duration = Duration::from_secs(5);
 
 /// Roles may start in any order.
 pub fn any_start_order<S: Transport>() {
@@ -117,7 +119,7 @@ pub fn with_links<S: Transport>(
 pub fn peer_leaves<S: Transport>() {
     let run = Run::new(100, 100);
     let expect = Expect::new(0, 0);
-    let soon = |start: Instant| assert!(start.elapsed() < Duration::from_secs(1), "{:?}", start.elapsed());
+    let soon = |start: Instant| assert!(start.elapsed() < SOON, "{:?}", start.elapsed());
     with_links::<S>(
         &run,
         None,
@@ -206,8 +208,7 @@ pub fn abort<S: Transport>() {
         assert_eq!(result, Err(LinkError::Aborted));
     };
     let set = AtomicBool::new(false);
-    let ended =
-        |start: Instant| assert!(start.elapsed() < Duration::from_millis(600), "{:?}", start.elapsed());
+    let ended = |start: Instant| assert!(start.elapsed() < SOON, "{:?}", start.elapsed());
     with_links::<S>(
         &run,
         Some(Arc::clone(&flag)),
