@@ -11,7 +11,7 @@ use crate::supervise::{Children, SuperviseError, stop_flag};
 use halfstep_shared::failure::{Diverged, RoleName};
 use halfstep_shared::geometry;
 use halfstep_shared::lane::Isa;
-use halfstep_shared::link::{self, CouplerLink, LinkConfig, LinkError, Processes, Threads};
+use halfstep_shared::link::{self, Claim, CouplerLink, LinkConfig, LinkError, Processes, Threads};
 use halfstep_shared::lockstep::{self, FOLDER_VARIABLE, RoleError, SCENE_VARIABLE, THREADS_VARIABLE};
 use halfstep_shared::output::run_json::{Particles, RoleSeconds, RunStatus};
 use halfstep_shared::output::{self, FrameWriter, OutputError, RunDirectory, RunReport};
@@ -269,6 +269,8 @@ impl Session<'_> {
         if self.options.solid == SolidSource::ByHand {
             config.handshake_seconds = self.options.solid_wait;
         }
+        // Held while children may live: what is the run's in shared memory goes with the last who holds it.
+        let claim = Claim::new(&config)?;
         // The coupler's sums are short: one thread, and no worker to wake.
         let outcome = lockstep::on_threads(1, || {
             if self.options.in_process && self.options.solid == SolidSource::BuiltIn {
@@ -277,6 +279,7 @@ impl Session<'_> {
                 self.as_processes(&config, clock, recorder)
             }
         });
+        drop(claim);
         link::cleanup(&config);
         let outcome = outcome??;
         let hash = outcome.fluid.state_hash ^ outcome.solid.state_hash.rotate_left(1);
