@@ -2,9 +2,9 @@
 
 use crate::clock::{Clock, Tick};
 use crate::cross_viscosity::CrossViscosity;
+use crate::error::RunError;
 use crate::foreign::ForeignSolid;
 use crate::recorder::{Measured, Recorder};
-use crate::run::RunError;
 use halfstep_shared::failure::{Diverged, Quantity, RoleName};
 use halfstep_shared::interface::{Interface, Parameters};
 use halfstep_shared::lane::Isa;

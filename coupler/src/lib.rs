@@ -5,6 +5,7 @@ pub mod clock;
 pub mod couple;
 pub mod cross_viscosity;
 pub mod effects;
+pub mod error;
 pub mod foreign;
 pub mod recorder;
 pub mod roles;

@@ -3,18 +3,19 @@
 use crate::clock::Clock;
 use crate::couple::{CoupledOutcome, Coupler};
 use crate::effects;
+use crate::error::RunError;
 use crate::foreign::ForeignSolid;
 use crate::recorder::Recorder;
 use crate::roles;
 use crate::solo::run_solo;
-use crate::supervise::{Children, SuperviseError, stop_flag};
-use halfstep_shared::failure::{Diverged, RoleName};
+use crate::supervise::{Children, stop_flag};
+use halfstep_shared::failure::RoleName;
 use halfstep_shared::geometry;
 use halfstep_shared::lane::Isa;
 use halfstep_shared::link::{self, Claim, CouplerLink, LinkConfig, LinkError, Processes, Threads};
 use halfstep_shared::lockstep::{self, FOLDER_VARIABLE, RoleError, SCENE_VARIABLE, THREADS_VARIABLE};
 use halfstep_shared::output::run_json::{Particles, RoleSeconds, RunStatus};
-use halfstep_shared::output::{self, FrameWriter, OutputError, RunDirectory, RunReport};
+use halfstep_shared::output::{self, FrameWriter, RunDirectory, RunReport};
 use halfstep_shared::protocol::StateHeader;
 use halfstep_shared::scene::Scene;
 use std::path::PathBuf;
@@ -22,59 +23,6 @@ use std::process::{Command, ExitStatus};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
-
-/// Why a run failed.
-#[derive(Debug, thiserror::Error)]
-pub enum RunError {
-    /// A quantity left its bounds.
-    #[error(transparent)]
-    Diverged(#[from] Diverged),
-    /// A role gave up.
-    #[error("the {role} failed at step {step}; log.txt says why")]
-    RoleFailed {
-        /// Which.
-        role: RoleName,
-        /// Step n.
-        step: u64,
-    },
-    /// A role's process ended.
-    #[error("the {role} process ended ({status}) while the run was going on: {link}")]
-    RoleEnded {
-        /// Which.
-        role: RoleName,
-        /// How.
-        status: ExitStatus,
-        /// What the coupler saw.
-        link: LinkError,
-    },
-    /// The solid changed the size of its interface set.
-    #[error(
-        "the solid published {now} interface particles at step {step} and {first} before; the number is fixed"
-    )]
-    SolidCount {
-        /// At first.
-        first: usize,
-        /// Now.
-        now: usize,
-        /// Step n.
-        step: u64,
-    },
-    /// The exchange failed.
-    #[error(transparent)]
-    Link(#[from] LinkError),
-    /// A file could not be written.
-    #[error(transparent)]
-    Output(#[from] OutputError),
-    /// A process could not be started.
-    #[error(transparent)]
-    Supervise(#[from] SuperviseError),
-    /// A role in this process failed.
-    #[error(transparent)]
-    Role(#[from] RoleError),
-    /// The operating system refused.
-    #[error("{0}")]
-    System(String),
-}
 
 /// Where the solid process comes from.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]

@@ -1,8 +1,8 @@
 //! A scene with one phase: the same role, clock and writer in one process, no exchange.
 
 use crate::clock::Clock;
+use crate::error::RunError;
 use crate::recorder::{Measured, Recorder};
-use crate::run::RunError;
 use halfstep_shared::output::FrameWriter;
 use halfstep_shared::output::run_json::RoleSeconds;
 use halfstep_shared::protocol::MAX_PROBE_VALUES;

@@ -1,0 +1,61 @@
+//! Why a run failed.
+
+use crate::supervise::SuperviseError;
+use halfstep_shared::failure::{Diverged, RoleName};
+use halfstep_shared::link::LinkError;
+use halfstep_shared::lockstep::RoleError;
+use halfstep_shared::output::OutputError;
+use std::process::ExitStatus;
+
+/// Why a run failed.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// A quantity left its bounds.
+    #[error(transparent)]
+    Diverged(#[from] Diverged),
+    /// A role gave up.
+    #[error("the {role} failed at step {step}; log.txt says why")]
+    RoleFailed {
+        /// Which.
+        role: RoleName,
+        /// Step n.
+        step: u64,
+    },
+    /// A role's process ended.
+    #[error("the {role} process ended ({status}) while the run was going on: {link}")]
+    RoleEnded {
+        /// Which.
+        role: RoleName,
+        /// How.
+        status: ExitStatus,
+        /// What the coupler saw.
+        link: LinkError,
+    },
+    /// The solid changed the size of its interface set.
+    #[error(
+        "the solid published {now} interface particles at step {step} and {first} before; the number is fixed"
+    )]
+    SolidCount {
+        /// At first.
+        first: usize,
+        /// Now.
+        now: usize,
+        /// Step n.
+        step: u64,
+    },
+    /// The exchange failed.
+    #[error(transparent)]
+    Link(#[from] LinkError),
+    /// A file could not be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// A process could not be started.
+    #[error(transparent)]
+    Supervise(#[from] SuperviseError),
+    /// A role in this process failed.
+    #[error(transparent)]
+    Role(#[from] RoleError),
+    /// The operating system refused.
+    #[error("{0}")]
+    System(String),
+}
