@@ -5,7 +5,6 @@ use halfstep::run::{RunOptions, SolidSource};
 use halfstep::supervise::abort_flag;
 use halfstep::{roles, run};
 use halfstep_shared::failure::RoleName;
-use halfstep_shared::link::LinkError;
 use halfstep_shared::lockstep::{self, RoleError};
 use halfstep_shared::output::run_json::RunStatus;
 use halfstep_shared::scene;
@@ -161,9 +160,10 @@ fn serve_role(name: &str) -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            // The system asks a role to end when its launcher does: that is not just any request.
-            if matches!(error, RoleError::Link(LinkError::Aborted)) && parent_id() != launcher {
-                tracing::error!("{role}: the coupler is gone, and its roles go with it");
+            // Without its launcher a role hears of the end from the system, or from the other role that was faster.
+            let of_others = matches!(error, RoleError::Link(_) | RoleError::PeerEnded { .. });
+            if of_others && parent_id() != launcher {
+                tracing::error!("{role}: the coupler is gone, and its roles go with it ({error})");
             } else {
                 tracing::error!("{role}: {error}");
             }

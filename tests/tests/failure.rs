@@ -18,9 +18,12 @@ fn under_way() -> Running {
         .set("output.frame_interval", 0.001)
         .set("end_time", 60.0)
         .start();
-    let index = running.dir().join("frames/solid.hdf.series");
-    let lines = || std::fs::read_to_string(&index).map_or(0, |text| text.lines().count());
-    eventually(60.0, "the first frames", || lines() > 5);
+    // Each role writes at its own pace.
+    for stem in ["fluid", "solid"] {
+        let index = running.dir().join(format!("frames/{stem}.hdf.series"));
+        let lines = || std::fs::read_to_string(&index).map_or(0, |text| text.lines().count());
+        eventually(60.0, "the first frames", || lines() > 5);
+    }
     running
 }
 
