@@ -5,6 +5,7 @@ use halfstep::supervise::{Children, abort_flag};
 use halfstep_shared::failure::RoleName;
 use halfstep_shared::link::{Claim, LinkConfig, Processes};
 use halfstep_tests::conformance::link::play;
+use std::io::Write;
 use std::path::Path;
 use std::process::{Command, ExitCode};
 use std::time::Duration;
@@ -22,7 +23,8 @@ fn main() -> ExitCode {
     match play::role::<Processes>(&config, role, arguments[1].parse().expect("steps"), Some(flag)) {
         Ok(_) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("{role}: {error}");
+            // In one piece: several roles write to one log.
+            let _ = std::io::stderr().write_all(format!("{role}: {error}\n").as_bytes());
             ExitCode::from(2)
         }
     }
