@@ -25,7 +25,6 @@ struct Law<'a, K, const D: usize> {
 
 #[derive(Clone, Copy)]
 struct Target<const D: usize> {
-    position: [Lane; D],
     velocity: [Lane; D],
     density: Lane,
 }
@@ -45,20 +44,19 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for Law<'_, K, D> {
     type Sum = Sum<D>;
 
     #[inline(always)]
+    fn target_positions(&self) -> &[Vec<f64>; D] {
+        &self.targets.position
+    }
+    #[inline(always)]
     fn target(&self, slot: usize) -> Target<D> {
         Target {
-            position: std::array::from_fn(|d| Lane::load(&self.targets.position[d], slot)),
             velocity: std::array::from_fn(|d| Lane::load(&self.targets.velocity[d], slot)),
             density: Lane::load(&self.targets.density, slot),
         }
     }
     #[inline(always)]
-    fn target_position(&self, target: &Target<D>) -> [Lane; D] {
-        target.position
-    }
-    #[inline(always)]
-    fn source_position(&self, j: usize) -> [f64; D] {
-        std::array::from_fn(|d| self.sources.position[d][j])
+    fn source_positions(&self) -> &[Vec<f64>; D] {
+        &self.sources.position
     }
     #[inline(always)]
     fn add<A: Arch>(&self, i: &Target<D>, j: usize, dx: [Lane; D], r2: Lane, sum: &mut Sum<D>) {

@@ -36,29 +36,27 @@ pub struct GradientLaw<'a, K, const D: usize> {
 }
 
 impl<K: Kernel<D>, const D: usize> PairLaw<D> for GradientLaw<'_, K, D> {
-    type Target = ([Lane; D], Lane);
+    /// Density.
+    type Target = Lane;
     type Sum = GradientSum<D>;
 
     #[inline(always)]
+    fn target_positions(&self) -> &[Vec<f64>; D] {
+        &self.fluid.position
+    }
+    #[inline(always)]
     fn target(&self, slot: usize) -> Self::Target {
-        (
-            std::array::from_fn(|d| Lane::load(&self.fluid.position[d], slot)),
-            Lane::load(&self.fluid.density, slot),
-        )
+        Lane::load(&self.fluid.density, slot)
     }
     #[inline(always)]
-    fn target_position(&self, target: &Self::Target) -> [Lane; D] {
-        target.0
-    }
-    #[inline(always)]
-    fn source_position(&self, j: usize) -> [f64; D] {
-        std::array::from_fn(|d| self.fluid.position[d][j])
+    fn source_positions(&self) -> &[Vec<f64>; D] {
+        &self.fluid.position
     }
     #[inline(always)]
     fn add<A: Arch>(&self, i: &Self::Target, j: usize, dx: [Lane; D], r2: Lane, sum: &mut GradientSum<D>) {
         let f = self.kernel.gradient_over_r::<A>(distance(r2, self.kernel.smoothing_length()));
         let vf = Lane::splat(self.fluid.volume[j]) * f;
-        let difference = vf * (Lane::splat(self.fluid.density[j]) - i.1);
+        let difference = vf * (Lane::splat(self.fluid.density[j]) - *i);
         for a in 0..D {
             sum.raw[a] = A::mul_add(difference, dx[a], sum.raw[a]);
             let row = -(vf * dx[a]);

@@ -237,7 +237,7 @@ impl<const D: usize> Fluid<D> {
     fn sums<K: Kernel<D>>(&mut self, kernel: K) {
         let isa = self.isa;
         if let Some(walls) = &mut self.walls {
-            let law = WallLaw { kernel, gravity: self.gravity, walls, fluid: &self.columns };
+            let law = WallLaw::new(kernel, self.gravity, walls, &self.columns);
             pair::pass(isa, &law, &self.list_of_walls, &mut self.extrapolations);
             walls.show(&self.extrapolations, &self.state);
         }

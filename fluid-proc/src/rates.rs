@@ -105,7 +105,6 @@ pub struct RateLaw<'a, K, E, const D: usize> {
 /// What the law loads of four targets.
 #[derive(Clone, Copy)]
 pub struct Target<O, const D: usize> {
-    position: [Lane; D],
     velocity: [Lane; D],
     density: Lane,
     pressure_term: Lane,
@@ -117,9 +116,12 @@ impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for RateLaw<'_, 
     type Sum = RateSum<D>;
 
     #[inline(always)]
+    fn target_positions(&self) -> &[Vec<f64>; D] {
+        &self.targets.position
+    }
+    #[inline(always)]
     fn target(&self, slot: usize) -> Self::Target {
         Target {
-            position: std::array::from_fn(|d| Lane::load(&self.targets.position[d], slot)),
             velocity: std::array::from_fn(|d| Lane::load(&self.targets.velocity[d], slot)),
             density: Lane::load(&self.targets.density, slot),
             pressure_term: Lane::load(&self.targets.pressure_term, slot),
@@ -128,13 +130,8 @@ impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for RateLaw<'_, 
     }
 
     #[inline(always)]
-    fn target_position(&self, target: &Self::Target) -> [Lane; D] {
-        target.position
-    }
-
-    #[inline(always)]
-    fn source_position(&self, j: usize) -> [f64; D] {
-        std::array::from_fn(|d| self.sources.position[d][j])
+    fn source_positions(&self) -> &[Vec<f64>; D] {
+        &self.sources.position
     }
 
     #[inline(always)]

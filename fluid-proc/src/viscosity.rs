@@ -40,23 +40,21 @@ pub struct GradientLaw<'a, K, const D: usize> {
 }
 
 impl<K: Kernel<D>, const D: usize> PairLaw<D> for GradientLaw<'_, K, D> {
-    type Target = ([Lane; D], [Lane; D]);
+    /// Velocity.
+    type Target = [Lane; D];
     type Sum = VelocityGradient<D>;
 
     #[inline(always)]
+    fn target_positions(&self) -> &[Vec<f64>; D] {
+        &self.targets.position
+    }
+    #[inline(always)]
     fn target(&self, slot: usize) -> Self::Target {
-        (
-            std::array::from_fn(|d| Lane::load(&self.targets.position[d], slot)),
-            std::array::from_fn(|d| Lane::load(&self.targets.velocity[d], slot)),
-        )
+        std::array::from_fn(|d| Lane::load(&self.targets.velocity[d], slot))
     }
     #[inline(always)]
-    fn target_position(&self, target: &Self::Target) -> [Lane; D] {
-        target.0
-    }
-    #[inline(always)]
-    fn source_position(&self, j: usize) -> [f64; D] {
-        std::array::from_fn(|d| self.sources.position[d][j])
+    fn source_positions(&self) -> &[Vec<f64>; D] {
+        &self.sources.position
     }
     #[inline(always)]
     fn add<A: Arch>(
@@ -70,7 +68,7 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for GradientLaw<'_, K, D> {
         let f = self.kernel.gradient_over_r::<A>(distance(r2, self.kernel.smoothing_length()));
         let vf = Lane::splat(self.sources.volume[j]) * f;
         for a in 0..D {
-            let row = vf * (Lane::splat(self.sources.velocity[a][j]) - i.1[a]);
+            let row = vf * (Lane::splat(self.sources.velocity[a][j]) - i[a]);
             for b in 0..D {
                 sum.0[a][b] = A::mul_add(row, dx[b], sum.0[a][b]);
             }

@@ -7,11 +7,12 @@
 //! state's at p_w, the mass rho0 V. Without fluid around: p_w = 0, rho0, u_w.
 
 use crate::columns::{Columns, Shown, Vectors, vectors};
+use halfstep_shared::extrapolation::{Extrapolation, ExtrapolationSum};
 use halfstep_shared::geometry::WallPoint;
 use halfstep_shared::kernel::Kernel;
 use halfstep_shared::lane::{Arch, LANES, Lane};
 use halfstep_shared::neighbours::Rows;
-use halfstep_shared::pair::{PairLaw, distance, dot};
+use halfstep_shared::pair::PairLaw;
 use halfstep_shared::state_equation::StateEquation;
 
 /// A c0 of the artificial viscosity toward the fluid, m/s.
@@ -105,11 +106,11 @@ impl<const D: usize> Walls<D> {
         for (c, sum) in sums.iter().enumerate() {
             for k in 0..LANES {
                 let slot = c * LANES + k;
-                let weight = sum.weight.0[k];
-                if weight <= 0.0 {
+                let Some(mut pressure) = sum.extrapolated.pressure(k) else {
                     self.show_nothing(slot, state);
                     continue;
-                }
+                };
+                let weight = sum.extrapolated.weight(k);
                 let u: [f64; D] = std::array::from_fn(|d| self.own_velocity[d][slot]);
                 let v: [f64; D] = std::array::from_fn(|d| sum.velocity[d].0[k] / weight);
                 let mut along_normal = 0.0;
@@ -123,7 +124,6 @@ impl<const D: usize> Walls<D> {
                         v[d] - 2.0 * along_normal * self.normal[d][slot]
                     };
                 }
-                let mut pressure = sum.pressure.0[k] / weight;
                 if self.non_negative {
                     pressure = pressure.max(0.0);
                 }
@@ -163,54 +163,56 @@ pub fn bounds<const D: usize>(x: &Vectors<D>) -> ([f64; D], [f64; D]) {
 /// Sums over the fluid for four wall particles.
 #[derive(Clone, Copy, Debug)]
 pub struct WallSum<const D: usize> {
-    weight: Lane,
-    pressure: Lane,
+    extrapolated: ExtrapolationSum,
     velocity: [Lane; D],
 }
 
 impl<const D: usize> Default for WallSum<D> {
     fn default() -> Self {
-        Self { weight: Lane::ZERO, pressure: Lane::ZERO, velocity: [Lane::ZERO; D] }
+        Self { extrapolated: ExtrapolationSum::default(), velocity: [Lane::ZERO; D] }
     }
 }
 
-/// The law of the pass over wall particles.
+/// The law of the pass over wall particles: the pressure's extrapolation, and the fluid's velocity with the same weights.
 pub struct WallLaw<'a, K, const D: usize> {
-    /// Kernel.
-    pub kernel: K,
-    /// Gravity, m/s².
-    pub gravity: [f64; D],
-    /// Targets.
-    pub walls: &'a Walls<D>,
-    /// Sources.
-    pub fluid: &'a Columns<D>,
+    pressure: Extrapolation<'a, K, D>,
+    velocity: &'a Vectors<D>,
+}
+
+impl<'a, K: Kernel<D>, const D: usize> WallLaw<'a, K, D> {
+    /// From the fluid to the walls.
+    pub fn new(kernel: K, gravity: [f64; D], walls: &'a Walls<D>, fluid: &'a Columns<D>) -> Self {
+        let pressure = Extrapolation {
+            kernel,
+            gravity,
+            targets: &walls.shown.position,
+            sources: &fluid.now.position,
+            density: &fluid.now.density,
+            pressure: &fluid.pressure,
+        };
+        Self { pressure, velocity: &fluid.now.velocity }
+    }
 }
 
 impl<K: Kernel<D>, const D: usize> PairLaw<D> for WallLaw<'_, K, D> {
-    type Target = [Lane; D];
+    type Target = ();
     type Sum = WallSum<D>;
 
     #[inline(always)]
-    fn target(&self, slot: usize) -> [Lane; D] {
-        std::array::from_fn(|d| Lane::load(&self.walls.shown.position[d], slot))
+    fn target_positions(&self) -> &[Vec<f64>; D] {
+        self.pressure.targets
     }
     #[inline(always)]
-    fn target_position(&self, target: &[Lane; D]) -> [Lane; D] {
-        *target
+    fn source_positions(&self) -> &[Vec<f64>; D] {
+        self.pressure.sources
     }
     #[inline(always)]
-    fn source_position(&self, j: usize) -> [f64; D] {
-        std::array::from_fn(|d| self.fluid.now.position[d][j])
-    }
+    fn target(&self, _: usize) {}
     #[inline(always)]
-    fn add<A: Arch>(&self, _: &[Lane; D], j: usize, dx: [Lane; D], r2: Lane, sum: &mut WallSum<D>) {
-        let w = self.kernel.value::<A>(distance(r2, self.kernel.smoothing_length()));
-        let head = dot::<D, A>(self.gravity.map(Lane::splat), dx);
-        let p = A::mul_add(Lane::splat(self.fluid.now.density[j]), head, Lane::splat(self.fluid.pressure[j]));
-        sum.weight += w;
-        sum.pressure = A::mul_add(p, w, sum.pressure);
+    fn add<A: Arch>(&self, _: &(), j: usize, dx: [Lane; D], r2: Lane, sum: &mut WallSum<D>) {
+        let w = self.pressure.add_source::<A>(j, dx, r2, &mut sum.extrapolated);
         for d in 0..D {
-            sum.velocity[d] = A::mul_add(Lane::splat(self.fluid.now.velocity[d][j]), w, sum.velocity[d]);
+            sum.velocity[d] = A::mul_add(Lane::splat(self.velocity[d][j]), w, sum.velocity[d]);
         }
     }
 }

@@ -14,12 +14,12 @@ pub trait PairLaw<const D: usize>: Sync {
     /// What is summed up for four targets.
     type Sum: Copy + Default + Send;
 
-    /// Loads the targets at `slot..slot + 4`.
+    /// Positions of the targets.
+    fn target_positions(&self) -> &[Vec<f64>; D];
+    /// Positions of the sources.
+    fn source_positions(&self) -> &[Vec<f64>; D];
+    /// Loads what else is needed of the targets at `slot..slot + 4`.
     fn target(&self, slot: usize) -> Self::Target;
-    /// Their positions.
-    fn target_position(&self, target: &Self::Target) -> [Lane; D];
-    /// Position of source `j`.
-    fn source_position(&self, j: usize) -> [f64; D];
     /// Adds the contribution of source `j`: `dx` = x_i - x_j, `r2` = |dx|².
     fn add<A: Arch>(&self, target: &Self::Target, j: usize, dx: [Lane; D], r2: Lane, sum: &mut Self::Sum);
 }
@@ -77,22 +77,23 @@ fn run<const D: usize, L: PairLaw<D>, A: Arch>(
     chunk: &Chunk,
     sums: &mut [L::Sum],
 ) {
+    let (positions, sources) = (law.target_positions(), law.source_positions());
     for (k, out) in sums.iter_mut().enumerate() {
         let neighbours = chunk.of(k);
         if neighbours.is_empty() {
             *out = L::Sum::default();
             continue;
         }
-        let target = law.target(first_slot + k * LANES);
-        let xi = law.target_position(&target);
+        let slot = first_slot + k * LANES;
+        let target = law.target(slot);
+        let xi: [Lane; D] = std::array::from_fn(|d| Lane::load(&positions[d], slot));
         let mut sum = L::Sum::default();
         for &j in neighbours {
             let j = j as usize;
-            let xj = law.source_position(j);
             let mut dx = [Lane::ZERO; D];
             let mut r2 = Lane::ZERO;
             for d in 0..D {
-                dx[d] = xi[d] - Lane::splat(xj[d]);
+                dx[d] = xi[d] - Lane::splat(sources[d][j]);
                 r2 = A::mul_add(dx[d], dx[d], r2);
             }
             law.add::<A>(&target, j, dx, r2, &mut sum);

@@ -11,6 +11,7 @@ mod side;
 pub use phase_blind::SolidRates;
 pub use side::{Side, wire_component};
 
+use crate::extrapolation::ExtrapolationSum;
 use crate::lane::{Isa, LANES, Lane};
 use crate::neighbours::{ClusterList, PADDING};
 use crate::protocol::StateRecord;
@@ -97,7 +98,7 @@ pub struct Interface<const D: usize> {
     epoch: Option<u64>,
     fluid_sums: Vec<FluidSum<D>>,
     solid_forces: Vec<SolidForce<D>>,
-    wall_sums: Vec<moving_wall::WallSum>,
+    wall_sums: Vec<ExtrapolationSum>,
     solid_rates: Vec<SolidRates<D>>,
 }
 

@@ -8,65 +8,32 @@
 //! and the solid receives the opposite of each pair force. Its density and strain do not see the fluid.
 
 use super::{FluidSum, Interface, Side, SolidForce};
+use crate::extrapolation::{Extrapolation, ExtrapolationSum};
 use crate::kernel::Kernel;
 use crate::lane::{Arch, LANES, Lane};
 use crate::neighbours::ClusterList;
 use crate::pair::{self, PairLaw, distance, dot};
 use crate::with_kernel;
 
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct WallSum {
-    weight: Lane,
-    pressure: Lane,
-}
-
-struct Extrapolation<'a, K, const D: usize> {
-    kernel: K,
-    gravity: [f64; D],
-    solid: &'a Side<D>,
-    fluid: &'a Side<D>,
-}
-
-impl<K: Kernel<D>, const D: usize> PairLaw<D> for Extrapolation<'_, K, D> {
-    type Target = [Lane; D];
-    type Sum = WallSum;
-
-    #[inline(always)]
-    fn target(&self, slot: usize) -> Self::Target {
-        std::array::from_fn(|d| Lane::load(&self.solid.position[d], slot))
-    }
-    #[inline(always)]
-    fn target_position(&self, target: &Self::Target) -> [Lane; D] {
-        *target
-    }
-    #[inline(always)]
-    fn source_position(&self, j: usize) -> [f64; D] {
-        std::array::from_fn(|d| self.fluid.position[d][j])
-    }
-    #[inline(always)]
-    fn add<A: Arch>(&self, _: &Self::Target, j: usize, dx: [Lane; D], r2: Lane, sum: &mut WallSum) {
-        let w = self.kernel.value::<A>(distance(r2, self.kernel.smoothing_length()));
-        let depth = dot::<D, A>(self.gravity.map(Lane::splat), dx);
-        let p = A::mul_add(Lane::splat(self.fluid.density[j]), depth, Lane::splat(self.fluid.pressure[j]));
-        sum.weight += w;
-        sum.pressure = A::mul_add(p, w, sum.pressure);
-    }
-}
-
 pub(super) fn show_pressure<const D: usize>(interface: &mut Interface<D>) {
     let mut sums = std::mem::take(&mut interface.wall_sums);
-    sums.resize(interface.solid_list.clusters(), WallSum::default());
+    sums.resize(interface.solid_list.clusters(), ExtrapolationSum::default());
     let p = &interface.parameters;
     with_kernel!(p.kernel, p.smoothing_length, D, |kernel| {
-        let law =
-            Extrapolation { kernel, gravity: p.gravity, solid: &interface.solid, fluid: &interface.fluid };
+        let law = Extrapolation {
+            kernel,
+            gravity: p.gravity,
+            targets: &interface.solid.position,
+            sources: &interface.fluid.position,
+            density: &interface.fluid.density,
+            pressure: &interface.fluid.pressure,
+        };
         pair::pass(p.isa, &law, &interface.solid_list, &mut sums);
     });
     let displaced = p.fluid.density / p.solid_density;
     let side = &mut interface.solid;
     for slot in 0..side.density.len() {
-        let (sum, k) = (&sums[slot / LANES], slot % LANES);
-        let mut pressure = if sum.weight.0[k] > 0.0 { sum.pressure.0[k] / sum.weight.0[k] } else { 0.0 };
+        let mut pressure = sums[slot / LANES].pressure(slot % LANES).unwrap_or(0.0);
         if p.non_negative_pressure {
             pressure = pressure.max(0.0);
         }
@@ -79,7 +46,6 @@ pub(super) fn show_pressure<const D: usize>(interface: &mut Interface<D>) {
 
 #[derive(Clone, Copy)]
 struct Target<const D: usize> {
-    position: [Lane; D],
     velocity: [Lane; D],
     density: Lane,
     /// p / rho².
@@ -90,7 +56,6 @@ struct Target<const D: usize> {
 fn load<const D: usize>(side: &Side<D>, slot: usize) -> Target<D> {
     let density = Lane::load(&side.density, slot);
     Target {
-        position: std::array::from_fn(|d| Lane::load(&side.position[d], slot)),
         velocity: std::array::from_fn(|d| Lane::load(&side.velocity[d], slot)),
         density,
         pressure_term: Lane::load(&side.pressure, slot) / (density * density),
@@ -121,16 +86,16 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for OnFluid<'_, K, D> {
     type Sum = FluidSum<D>;
 
     #[inline(always)]
+    fn target_positions(&self) -> &[Vec<f64>; D] {
+        &self.0.targets.position
+    }
+    #[inline(always)]
     fn target(&self, slot: usize) -> Target<D> {
         load(self.0.targets, slot)
     }
     #[inline(always)]
-    fn target_position(&self, target: &Target<D>) -> [Lane; D] {
-        target.position
-    }
-    #[inline(always)]
-    fn source_position(&self, j: usize) -> [f64; D] {
-        std::array::from_fn(|d| self.0.sources.position[d][j])
+    fn source_positions(&self) -> &[Vec<f64>; D] {
+        &self.0.sources.position
     }
     #[inline(always)]
     fn add<A: Arch>(&self, i: &Target<D>, j: usize, dx: [Lane; D], r2: Lane, sum: &mut FluidSum<D>) {
@@ -154,16 +119,16 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for OnSolid<'_, K, D> {
     type Sum = SolidForce<D>;
 
     #[inline(always)]
+    fn target_positions(&self) -> &[Vec<f64>; D] {
+        &self.0.targets.position
+    }
+    #[inline(always)]
     fn target(&self, slot: usize) -> Target<D> {
         load(self.0.targets, slot)
     }
     #[inline(always)]
-    fn target_position(&self, target: &Target<D>) -> [Lane; D] {
-        target.position
-    }
-    #[inline(always)]
-    fn source_position(&self, j: usize) -> [f64; D] {
-        std::array::from_fn(|d| self.0.sources.position[d][j])
+    fn source_positions(&self) -> &[Vec<f64>; D] {
+        &self.0.sources.position
     }
     #[inline(always)]
     fn add<A: Arch>(&self, i: &Target<D>, j: usize, dx: [Lane; D], r2: Lane, sum: &mut SolidForce<D>) {

@@ -43,7 +43,6 @@ pub(super) fn show_stress<const D: usize>(_: &mut Interface<D>) {}
 
 #[derive(Clone, Copy)]
 struct Target<const D: usize> {
-    position: [Lane; D],
     velocity: [Lane; D],
     density: Lane,
     mass: Lane,
@@ -61,7 +60,6 @@ impl<K: Kernel<D>, const D: usize> Blind<'_, K, D> {
     fn load(&self, slot: usize) -> Target<D> {
         let t = self.targets;
         Target {
-            position: std::array::from_fn(|d| Lane::load(&t.position[d], slot)),
             velocity: std::array::from_fn(|d| Lane::load(&t.velocity[d], slot)),
             density: Lane::load(&t.density, slot),
             mass: Lane::load(&t.mass, slot),
@@ -108,16 +106,16 @@ macro_rules! pair_law {
             type Target = Target<D>;
             type Sum = $sum;
             #[inline(always)]
+            fn target_positions(&self) -> &[Vec<f64>; D] {
+                &self.0.targets.position
+            }
+            #[inline(always)]
             fn target(&self, slot: usize) -> Target<D> {
                 self.0.load(slot)
             }
             #[inline(always)]
-            fn target_position(&self, target: &Target<D>) -> [Lane; D] {
-                target.position
-            }
-            #[inline(always)]
-            fn source_position(&self, j: usize) -> [f64; D] {
-                std::array::from_fn(|d| self.0.sources.position[d][j])
+            fn source_positions(&self) -> &[Vec<f64>; D] {
+                &self.0.sources.position
             }
             #[inline(always)]
             fn add<$arch: Arch>(

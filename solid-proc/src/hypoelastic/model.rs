@@ -5,8 +5,9 @@ use super::columns::{Rates, State, Tensors, tensors};
 use super::gradient::renormalise;
 use super::rates::{ArtificialStress, Moment, Plain, Renormalised, SolidLaw, SolidSum, TensileCorrection};
 use super::stress_rate::jaumann;
-use super::wall::{Extrapolation, Push, WallForce, WallSum, Walls};
+use super::wall::{Push, WallForce, Walls};
 use crate::model::{Load, OutOfBounds, SolidModel};
+use halfstep_shared::extrapolation::{Extrapolation, ExtrapolationSum};
 use halfstep_shared::failure::Quantity;
 use halfstep_shared::geometry::{self, SolidPoint};
 use halfstep_shared::interface::wire_component;
@@ -154,7 +155,7 @@ impl<const D: usize> Hypoelastic<D> {
         if let Some(walls) = &mut self.walls {
             walls.neighbours.build(&self.now.position, &walls.position, &walls.rows, reach);
             walls.sources.build(&walls.position, &self.now.position, &self.rows, reach);
-            walls.sums.resize(walls.sources.clusters(), WallSum::default());
+            walls.sums.resize(walls.sources.clusters(), ExtrapolationSum::default());
             walls.forces.resize(walls.neighbours.clusters(), WallForce::default());
         }
     }
@@ -240,8 +241,9 @@ impl<const D: usize> Hypoelastic<D> {
             let law = Extrapolation {
                 kernel,
                 gravity: self.gravity,
-                walls: &walls.position,
-                solid: &self.now,
+                targets: &walls.position,
+                sources: &self.now.position,
+                density: &self.now.density,
                 pressure: &self.pressure,
             };
             pair::pass(self.isa, &law, &walls.sources, &mut walls.sums);

@@ -113,7 +113,6 @@ pub(super) struct SolidLaw<'a, K, T, M, const D: usize> {
 
 #[derive(Clone, Copy)]
 pub(super) struct Target<O, const D: usize> {
-    position: [Lane; D],
     velocity: [Lane; D],
     density: Lane,
     stress_term: [[Lane; D]; D],
@@ -141,9 +140,12 @@ impl<K: Kernel<D>, T: TensileCorrection<D>, M: Moment, const D: usize> PairLaw<D
     type Sum = SolidSum<D>;
 
     #[inline(always)]
+    fn target_positions(&self) -> &[Vec<f64>; D] {
+        &self.state.position
+    }
+    #[inline(always)]
     fn target(&self, slot: usize) -> Self::Target {
         Target {
-            position: std::array::from_fn(|d| Lane::load(&self.state.position[d], slot)),
             velocity: std::array::from_fn(|d| Lane::load(&self.state.velocity[d], slot)),
             density: Lane::load(&self.state.density, slot),
             stress_term: load(self.stress_term, slot),
@@ -151,12 +153,8 @@ impl<K: Kernel<D>, T: TensileCorrection<D>, M: Moment, const D: usize> PairLaw<D
         }
     }
     #[inline(always)]
-    fn target_position(&self, target: &Self::Target) -> [Lane; D] {
-        target.position
-    }
-    #[inline(always)]
-    fn source_position(&self, j: usize) -> [f64; D] {
-        std::array::from_fn(|d| self.state.position[d][j])
+    fn source_positions(&self) -> &[Vec<f64>; D] {
+        &self.state.position
     }
     #[inline(always)]
     fn add<A: Arch>(&self, i: &Self::Target, j: usize, dx: [Lane; D], r2: Lane, sum: &mut SolidSum<D>) {

@@ -4,6 +4,7 @@
 
 use super::columns::{State, Vectors, vectors};
 use super::rates::artificial_viscosity;
+use halfstep_shared::extrapolation::ExtrapolationSum;
 use halfstep_shared::geometry::WallPoint;
 use halfstep_shared::kernel::Kernel;
 use halfstep_shared::lane::{Arch, LANES, Lane};
@@ -21,7 +22,7 @@ pub(super) struct Walls<const D: usize> {
     pub sources: ClusterList,
     /// The solid's wall neighbours.
     pub neighbours: ClusterList,
-    pub sums: Vec<WallSum>,
+    pub sums: Vec<ExtrapolationSum>,
     pub forces: Vec<WallForce<D>>,
 }
 
@@ -66,53 +67,11 @@ impl<const D: usize> Walls<D> {
     pub(super) fn show(&mut self, density: f64, bulk_modulus: f64) {
         for (c, sum) in self.sums.iter().enumerate() {
             for k in 0..LANES {
-                let weight = sum.weight.0[k];
-                let p = if weight > 0.0 { (sum.pressure.0[k] / weight).max(0.0) } else { 0.0 };
+                let p = sum.pressure(k).unwrap_or(0.0).max(0.0);
                 self.pressure[c * LANES + k] = p;
                 self.density[c * LANES + k] = density * (1.0 + p / bulk_modulus);
             }
         }
-    }
-}
-
-/// Sums over the solid for four wall particles.
-#[derive(Clone, Copy, Default)]
-pub(super) struct WallSum {
-    weight: Lane,
-    pressure: Lane,
-}
-
-/// Extrapolates the solid's pressure to the walls.
-pub(super) struct Extrapolation<'a, K, const D: usize> {
-    pub kernel: K,
-    pub gravity: [f64; D],
-    pub walls: &'a Vectors<D>,
-    pub solid: &'a State<D>,
-    pub pressure: &'a [f64],
-}
-
-impl<K: Kernel<D>, const D: usize> PairLaw<D> for Extrapolation<'_, K, D> {
-    type Target = [Lane; D];
-    type Sum = WallSum;
-    #[inline(always)]
-    fn target(&self, slot: usize) -> [Lane; D] {
-        std::array::from_fn(|d| Lane::load(&self.walls[d], slot))
-    }
-    #[inline(always)]
-    fn target_position(&self, target: &[Lane; D]) -> [Lane; D] {
-        *target
-    }
-    #[inline(always)]
-    fn source_position(&self, j: usize) -> [f64; D] {
-        std::array::from_fn(|d| self.solid.position[d][j])
-    }
-    #[inline(always)]
-    fn add<A: Arch>(&self, _: &[Lane; D], j: usize, dx: [Lane; D], r2: Lane, sum: &mut WallSum) {
-        let w = self.kernel.value::<A>(distance(r2, self.kernel.smoothing_length()));
-        let head = dot::<D, A>(self.gravity.map(Lane::splat), dx);
-        let p = A::mul_add(Lane::splat(self.solid.density[j]), head, Lane::splat(self.pressure[j]));
-        sum.weight += w;
-        sum.pressure = A::mul_add(p, w, sum.pressure);
     }
 }
 
@@ -140,7 +99,6 @@ pub(super) struct Push<'a, K, const D: usize> {
 
 #[derive(Clone, Copy)]
 pub(super) struct Target<const D: usize> {
-    position: [Lane; D],
     velocity: [Lane; D],
     density: Lane,
     pressure_term: Lane,
@@ -150,23 +108,22 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for Push<'_, K, D> {
     type Target = Target<D>;
     type Sum = WallForce<D>;
     #[inline(always)]
+    fn target_positions(&self) -> &[Vec<f64>; D] {
+        &self.solid.position
+    }
+    #[inline(always)]
     fn target(&self, slot: usize) -> Target<D> {
         let density = Lane::load(&self.solid.density, slot);
         let pressure = Lane::load(self.pressure, slot).max(Lane::ZERO);
         Target {
-            position: std::array::from_fn(|d| Lane::load(&self.solid.position[d], slot)),
             velocity: std::array::from_fn(|d| Lane::load(&self.solid.velocity[d], slot)),
             density,
             pressure_term: pressure / (density * density),
         }
     }
     #[inline(always)]
-    fn target_position(&self, target: &Target<D>) -> [Lane; D] {
-        target.position
-    }
-    #[inline(always)]
-    fn source_position(&self, j: usize) -> [f64; D] {
-        std::array::from_fn(|d| self.walls.position[d][j])
+    fn source_positions(&self) -> &[Vec<f64>; D] {
+        &self.walls.position
     }
     #[inline(always)]
     fn add<A: Arch>(&self, i: &Target<D>, j: usize, dx: [Lane; D], r2: Lane, sum: &mut WallForce<D>) {

@@ -1,0 +1,74 @@
+//! Pressure extrapolated to a boundary particle (Adami, Hu and Adams 2012, eq. 27; Kayaki's eq. 28):
+//!   p_w = sum_j [ p_j + rho_j g . (x_w - x_j) ] W_wj / sum_j W_wj.
+
+use crate::kernel::Kernel;
+use crate::lane::{Arch, Lane};
+use crate::pair::{PairLaw, distance, dot};
+
+/// The law of the pass over boundary particles.
+pub struct Extrapolation<'a, K, const D: usize> {
+    /// Kernel.
+    pub kernel: K,
+    /// Gravity, m/s².
+    pub gravity: [f64; D],
+    /// Positions of the boundary particles, m.
+    pub targets: &'a [Vec<f64>; D],
+    /// Positions of the particles around, m.
+    pub sources: &'a [Vec<f64>; D],
+    /// Their densities, kg/m³.
+    pub density: &'a [f64],
+    /// Their pressures, Pa.
+    pub pressure: &'a [f64],
+}
+
+/// Sums for four boundary particles.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ExtrapolationSum {
+    weight: Lane,
+    pressure: Lane,
+}
+
+impl ExtrapolationSum {
+    /// Pressure of the k-th, Pa; `None` where nothing is around.
+    pub fn pressure(&self, k: usize) -> Option<f64> {
+        (self.weight.0[k] > 0.0).then(|| self.pressure.0[k] / self.weight.0[k])
+    }
+
+    /// sum W of the k-th.
+    pub fn weight(&self, k: usize) -> f64 {
+        self.weight.0[k]
+    }
+}
+
+impl<K: Kernel<D>, const D: usize> Extrapolation<'_, K, D> {
+    /// Adds source `j`; returns its weight W.
+    #[inline(always)]
+    pub fn add_source<A: Arch>(&self, j: usize, dx: [Lane; D], r2: Lane, sum: &mut ExtrapolationSum) -> Lane {
+        let w = self.kernel.value::<A>(distance(r2, self.kernel.smoothing_length()));
+        let head = dot::<D, A>(self.gravity.map(Lane::splat), dx);
+        let p = A::mul_add(Lane::splat(self.density[j]), head, Lane::splat(self.pressure[j]));
+        sum.weight += w;
+        sum.pressure = A::mul_add(p, w, sum.pressure);
+        w
+    }
+}
+
+impl<K: Kernel<D>, const D: usize> PairLaw<D> for Extrapolation<'_, K, D> {
+    type Target = ();
+    type Sum = ExtrapolationSum;
+
+    #[inline(always)]
+    fn target_positions(&self) -> &[Vec<f64>; D] {
+        self.targets
+    }
+    #[inline(always)]
+    fn source_positions(&self) -> &[Vec<f64>; D] {
+        self.sources
+    }
+    #[inline(always)]
+    fn target(&self, _: usize) {}
+    #[inline(always)]
+    fn add<A: Arch>(&self, _: &(), j: usize, dx: [Lane; D], r2: Lane, sum: &mut ExtrapolationSum) {
+        self.add_source::<A>(j, dx, r2, sum);
+    }
+}
