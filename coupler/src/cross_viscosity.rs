@@ -7,6 +7,7 @@
 //! (c_f + c_s) / 2 with phase-blind coupling; with the moving wall, where the solid shows the fluid the mass and
 //! density of the fluid that it displaces, c_ij = c_f.
 
+use halfstep_shared::artificial_viscosity::damping;
 use halfstep_shared::interface::{Interface, Side};
 use halfstep_shared::kernel::Kernel;
 use halfstep_shared::lane::{Arch, LANES, Lane};
@@ -55,18 +56,17 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for Law<'_, K, D> {
         }
     }
     #[inline(always)]
-    fn source_positions(&self) -> &[Vec<f64>; D] {
-        &self.sources.position
+    fn source_position(&self, j: usize) -> [f64; D] {
+        std::array::from_fn(|d| self.sources.position[d][j])
     }
     #[inline(always)]
     fn add<A: Arch>(&self, i: &Target<D>, j: usize, dx: [Lane; D], r2: Lane, sum: &mut Sum<D>) {
         let h = self.kernel.smoothing_length();
         let f = self.kernel.gradient_over_r::<A>(distance(r2, h));
         let dv = std::array::from_fn(|d| i.velocity[d] - Lane::splat(self.sources.velocity[d][j]));
-        let approach = dot::<D, A>(dv, dx).min(Lane::ZERO);
-        let theta = approach * Lane::splat(h) / (r2 + Lane::splat(0.01 * h * h));
-        let mean = Lane::splat(0.5) * (i.density + Lane::splat(self.sources.density[j]));
-        let pi = Lane::splat(-self.strength) * theta / mean;
+        let density_sum = i.density + Lane::splat(self.sources.density[j]);
+        let strength = Lane::splat(self.strength);
+        let pi = damping::<A>(h, strength, Lane::ZERO, dot::<D, A>(dv, dx), r2, density_sum);
         let coefficient = Lane::splat(-self.sources.mass[j]) * pi * f;
         for d in 0..D {
             sum.0[d] = A::mul_add(coefficient, dx[d], sum.0[d]);

@@ -1,9 +1,8 @@
-//! Monaghan's artificial viscosity, Kayaki's eqs. (23) and (24):
-//!   Pi_ij = (-A c theta + B theta²) / rho_ij where v_ij . x_ij < 0, else 0,
-//!   theta = h v_ij . x_ij / (r² + 0.01 h²), rho_ij = (rho_i + rho_j) / 2;
-//! -Pi_ij stands in the bracket of the momentum equation.
+//! Monaghan's artificial viscosity between fluid particles: -Pi_ij of [`halfstep_shared::artificial_viscosity`] in the
+//! bracket of the momentum equation, Kayaki's eq. (22).
 
 use crate::rates::{FluidPair, PairEffect, PairRates};
+use halfstep_shared::artificial_viscosity::damping;
 use halfstep_shared::lane::{Arch, Lane};
 use halfstep_shared::scene::ArtificialViscosity as Coefficients;
 
@@ -36,21 +35,14 @@ impl<const D: usize> PairEffect<D> for ArtificialViscosity {
     fn add<A: Arch>(&self, _: &(), _: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
         let linear = Lane::splat(self.linear);
         let quadratic = Lane::splat(self.quadratic);
-        rates.bracket = rates.bracket - damping::<D, A>(self.smoothing_length, linear, quadratic, pair);
+        rates.bracket = rates.bracket
+            - damping::<A>(
+                self.smoothing_length,
+                linear,
+                quadratic,
+                pair.approach,
+                pair.r2,
+                pair.density_i + pair.density_j,
+            );
     }
-}
-
-/// Pi_ij with `linear` = A c and `quadratic` = B.
-#[inline(always)]
-pub(crate) fn damping<const D: usize, A: Arch>(
-    h: f64,
-    linear: Lane,
-    quadratic: Lane,
-    pair: &FluidPair<D>,
-) -> Lane {
-    let closing = pair.approach.min(Lane::ZERO) * Lane::splat(h);
-    let softened = pair.r2 + Lane::splat(0.01 * h * h);
-    let theta = closing / softened;
-    let numerator = theta * A::mul_add(quadratic, theta, -linear);
-    numerator * Lane::splat(2.0) / (pair.density_i + pair.density_j)
 }

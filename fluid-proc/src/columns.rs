@@ -1,13 +1,9 @@
 //! Columns of the fluid particles and what the pair pass reads of any source set.
 
 use halfstep_shared::geometry::FluidPoint;
-use halfstep_shared::lane::LANES;
+use halfstep_shared::lane::{LANES, Lane};
 use halfstep_shared::neighbours::{PADDING, Rows};
 use halfstep_shared::state_equation::StateEquation;
-use rayon::prelude::*;
-
-/// Slots that one task updates.
-pub const CHUNK: usize = 2048;
 
 /// D columns.
 pub type Vectors<const D: usize> = [Vec<f64>; D];
@@ -17,7 +13,29 @@ pub fn vectors<const D: usize>(n: usize) -> Vectors<D> {
     std::array::from_fn(|_| vec![0.0; n])
 }
 
-/// What a neighbour shows in the pair pass: fluid and wall particles alike.
+/// What the pair pass reads of one neighbour, side by side: one cache line in two dimensions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(64))]
+pub struct Source<const D: usize> {
+    /// Position, m.
+    pub position: [f64; D],
+    /// Velocity, m/s (a wall's: the extrapolated one).
+    pub velocity: [f64; D],
+    /// Density rho, kg/m³.
+    pub density: f64,
+    /// p / rho², m⁵/(kg s²).
+    pub pressure_term: f64,
+    /// Volume m / rho, m³ (2D: m²).
+    pub volume: f64,
+}
+
+impl<const D: usize> Source<D> {
+    /// At rest at the origin.
+    pub const ZERO: Self =
+        Self { position: [0.0; D], velocity: [0.0; D], density: 0.0, pressure_term: 0.0, volume: 0.0 };
+}
+
+/// The particles of a pair pass: fluid and walls alike.
 #[derive(Clone, Debug)]
 pub struct Shown<const D: usize> {
     /// Position, m.
@@ -26,10 +44,8 @@ pub struct Shown<const D: usize> {
     pub velocity: Vectors<D>,
     /// Density rho, kg/m³.
     pub density: Vec<f64>,
-    /// p / rho², m⁵/(kg s²).
-    pub pressure_term: Vec<f64>,
-    /// Volume m / rho, m³ (2D: m²).
-    pub volume: Vec<f64>,
+    /// The same and what follows from it, as neighbours read it.
+    pub sources: Vec<Source<D>>,
     /// Mass of each particle, kg (2D: kg/m).
     pub mass: f64,
 }
@@ -41,10 +57,47 @@ impl<const D: usize> Shown<D> {
             position: vectors(n),
             velocity: vectors(n),
             density: vec![0.0; n],
-            pressure_term: vec![0.0; n],
-            volume: vec![0.0; n],
+            sources: vec![Source::ZERO; n],
             mass,
         }
+    }
+
+    /// Makes a slot's source from its columns and its pressure.
+    #[inline]
+    pub fn show(&mut self, slot: usize, pressure: f64) {
+        let density = self.density[slot];
+        self.sources[slot] = source(
+            std::array::from_fn(|d| self.position[d][slot]),
+            std::array::from_fn(|d| self.velocity[d][slot]),
+            density,
+            pressure,
+            self.mass,
+        );
+    }
+
+    /// p / rho² of four slots.
+    #[inline(always)]
+    pub fn pressure_terms(&self, slot: usize) -> Lane {
+        Lane(std::array::from_fn(|k| self.sources[slot + k].pressure_term))
+    }
+}
+
+/// A source from a particle's state.
+#[inline(always)]
+pub(crate) fn source<const D: usize>(
+    position: [f64; D],
+    velocity: [f64; D],
+    density: f64,
+    pressure: f64,
+    mass: f64,
+) -> Source<D> {
+    let inverse = 1.0 / density;
+    Source {
+        position,
+        velocity,
+        density,
+        pressure_term: pressure * inverse * inverse,
+        volume: mass * inverse,
     }
 }
 
@@ -65,10 +118,6 @@ pub struct Columns<const D: usize> {
     pub density_n: Vec<f64>,
     /// Position at the last sort, m.
     pub reference: Vectors<D>,
-    /// Acceleration, m/s².
-    pub acceleration: Vectors<D>,
-    /// Rate of density, kg/(m³ s).
-    pub density_rate: Vec<f64>,
     /// Number of particles.
     pub particles: usize,
 }
@@ -93,8 +142,6 @@ impl<const D: usize> Columns<D> {
             reference: now.position.clone(),
             now,
             pressure: vec![0.0; n],
-            acceleration: vectors(n),
-            density_rate: vec![0.0; n],
             particles: n,
         }
     }
@@ -105,13 +152,12 @@ impl<const D: usize> Columns<D> {
     }
 
     /// Brings all columns into a new order.
-    pub fn permute(&mut self, rows: &mut Rows<D>) {
+    pub fn permute(&mut self, rows: &mut Rows<D>, state: &StateEquation) {
         for d in 0..D {
             rows.permute(&mut self.now.position[d]);
             rows.permute(&mut self.now.velocity[d]);
             rows.permute(&mut self.position_n[d]);
             rows.permute(&mut self.velocity_n[d]);
-            rows.permute(&mut self.acceleration[d]);
         }
         rows.permute(&mut self.now.density);
         rows.permute(&mut self.density_n);
@@ -122,54 +168,12 @@ impl<const D: usize> Columns<D> {
         for d in 0..D {
             self.reference[d].clone_from(&self.now.position[d]);
         }
-        for column in
-            [&mut self.now.pressure_term, &mut self.now.volume, &mut self.pressure, &mut self.density_rate]
-        {
-            column.resize(slots, 0.0);
+        self.pressure.resize(slots, 0.0);
+        self.now.sources.resize(slots, Source::ZERO);
+        for slot in 0..slots {
+            let pressure = state.pressure(self.now.density[slot]);
+            self.pressure[slot] = pressure;
+            self.now.show(slot, pressure);
         }
-    }
-
-    /// Pressure and what follows from it, from the density.
-    pub fn apply_state_equation(&mut self, state: &StateEquation) {
-        let mass = self.now.mass;
-        (&mut self.pressure, &mut self.now.pressure_term, &mut self.now.volume, &self.now.density)
-            .into_par_iter()
-            .with_min_len(CHUNK)
-            .for_each(|(p, term, volume, &rho)| {
-                *p = state.pressure(rho);
-                let inverse = 1.0 / rho;
-                *term = *p * inverse * inverse;
-                *volume = mass * inverse;
-            });
-    }
-
-    /// Remembers the present state as the state at n.
-    pub fn save(&mut self) {
-        for d in 0..D {
-            self.position_n[d].clone_from(&self.now.position[d]);
-            self.velocity_n[d].clone_from(&self.now.velocity[d]);
-        }
-        self.density_n.clone_from(&self.now.density);
-    }
-
-    /// state = state at n + dt * present rates.
-    pub fn advance(&mut self, dt: f64) {
-        for d in 0..D {
-            let columns = (
-                &mut self.now.position[d],
-                &self.position_n[d],
-                &mut self.now.velocity[d],
-                &self.velocity_n[d],
-                &self.acceleration[d],
-            );
-            columns.into_par_iter().with_min_len(CHUNK).for_each(|(x, &xn, v, &vn, &a)| {
-                *x = xn + dt * *v;
-                *v = vn + dt * a;
-            });
-        }
-        (&mut self.now.density, &self.density_n, &self.density_rate)
-            .into_par_iter()
-            .with_min_len(CHUNK)
-            .for_each(|(rho, &rho_n, &rate)| *rho = rho_n + dt * rate);
     }
 }

@@ -35,7 +35,7 @@ pub struct DeltaSph<'a, const D: usize> {
     /// delta h c0.
     pub strength: Strength,
     /// Renormalised density gradient of each slot, kg/m⁴.
-    pub gradient: &'a [Vec<f64>; D],
+    pub gradient: &'a [[f64; D]],
 }
 
 #[inline(always)]
@@ -73,11 +73,12 @@ impl<const D: usize> PairEffect<D> for DeltaSph<'_, D> {
     type Own = [Lane; D];
     #[inline(always)]
     fn own(&self, slot: usize) -> [Lane; D] {
-        std::array::from_fn(|d| Lane::load(&self.gradient[d], slot))
+        std::array::from_fn(|d| Lane(std::array::from_fn(|k| self.gradient[slot + k][d])))
     }
     #[inline(always)]
     fn add<A: Arch>(&self, own: &[Lane; D], j: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
-        let sum: [Lane; D] = std::array::from_fn(|d| own[d] + Lane::splat(self.gradient[d][j]));
+        let gradient = &self.gradient[j];
+        let sum: [Lane; D] = std::array::from_fn(|d| own[d] + Lane::splat(gradient[d]));
         diffuse::<D, A>(self.strength, twice_difference(pair) - dot::<D, A>(sum, pair.dx), rates);
     }
 }

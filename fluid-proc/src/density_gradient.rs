@@ -8,8 +8,19 @@ use crate::columns::Shown;
 use halfstep_shared::kernel::Kernel;
 use halfstep_shared::lane::{Arch, LANES, Lane};
 use halfstep_shared::pair::{PairLaw, distance};
+use halfstep_shared::scene::{EffectName, Preset, Scene, Switch};
 use nalgebra::{SMatrix, SVector};
-use rayon::prelude::*;
+
+/// Whether the gradient is computed at stage 0 only and used at both stages: as the user says, else unless the scene asks
+/// for Kayaki's scheme, which evaluates everything at both. The diffusion itself is evaluated at both in any case.
+/// (Antuono, Colagrossi and Marrone 2012 freeze the whole diffusive term over a step.)
+pub fn is_frozen(scene: &Scene) -> bool {
+    match scene.switch(EffectName::FrozenDiffusion) {
+        Switch::On => true,
+        Switch::Off => false,
+        Switch::Auto => scene.preset != Some(Preset::Kayaki),
+    }
+}
 
 /// Determinant of M below which the gradient is left out.
 pub const SMALLEST_DETERMINANT: f64 = 0.05;
@@ -49,14 +60,15 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for GradientLaw<'_, K, D> {
         Lane::load(&self.fluid.density, slot)
     }
     #[inline(always)]
-    fn source_positions(&self) -> &[Vec<f64>; D] {
-        &self.fluid.position
+    fn source_position(&self, j: usize) -> [f64; D] {
+        self.fluid.sources[j].position
     }
     #[inline(always)]
     fn add<A: Arch>(&self, i: &Self::Target, j: usize, dx: [Lane; D], r2: Lane, sum: &mut GradientSum<D>) {
         let f = self.kernel.gradient_over_r::<A>(distance(r2, self.kernel.smoothing_length()));
-        let vf = Lane::splat(self.fluid.volume[j]) * f;
-        let difference = vf * (Lane::splat(self.fluid.density[j]) - *i);
+        let source = &self.fluid.sources[j];
+        let vf = Lane::splat(source.volume) * f;
+        let difference = vf * (Lane::splat(source.density) - *i);
         for a in 0..D {
             sum.raw[a] = A::mul_add(difference, dx[a], sum.raw[a]);
             let row = -(vf * dx[a]);
@@ -67,18 +79,17 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for GradientLaw<'_, K, D> {
     }
 }
 
-/// Solves for the gradients of all slots.
-pub fn solve<const D: usize>(sums: &[GradientSum<D>], gradient: &mut [Vec<f64>; D]) {
-    for (d, column) in gradient.iter_mut().enumerate() {
-        column.par_chunks_mut(LANES).zip(sums).with_min_len(128).for_each(|(values, sum)| {
-            for (k, value) in values.iter_mut().enumerate() {
-                let g: [f64; D] = renormalised(
-                    std::array::from_fn(|a| sum.raw[a].0[k]),
-                    std::array::from_fn(|a| std::array::from_fn(|b| sum.moment[a.min(b)][a.max(b)].0[k])),
-                );
-                *value = g[d];
-            }
-        });
+impl<const D: usize> GradientSum<D> {
+    /// The renormalised gradients of the four particles, kg/m⁴.
+    // Inlined, its scalar arithmetic would break up the vectors of the loop before it.
+    #[inline(never)]
+    pub fn solve(&self) -> [[f64; D]; LANES] {
+        std::array::from_fn(|k| {
+            renormalised(
+                self.raw.map(|raw| raw.0[k]),
+                std::array::from_fn(|a| std::array::from_fn(|b| self.moment[a.min(b)][a.max(b)].0[k])),
+            )
+        })
     }
 }
 

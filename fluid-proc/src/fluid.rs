@@ -1,11 +1,12 @@
 //! The fluid as a [`Role`]: what happens in a half-step, and which effects take part.
 
 use crate::artificial_viscosity::ArtificialViscosity;
-use crate::columns::{Columns, Shown, Vectors, vectors};
+use crate::columns::{Columns, Shown};
 use crate::density_diffusion::{DeltaSph, Hydrostatic, Simple, Strength};
-use crate::density_gradient::{self, GradientSum};
+use crate::density_gradient::{GradientLaw, GradientSum};
 use crate::interface::Coupling;
-use crate::rates::{PairEffect, RateLaw, RateSum, collect};
+use crate::midpoint::{self, Extremes, Stage};
+use crate::rates::{PairEffect, RateLaw, RateSum};
 use crate::time_step::Limits;
 use crate::viscosity::{self, StressTerm, VelocityGradient, Viscosity, ViscosityAtWall};
 use crate::wall::{Damping, WallLaw, WallSum, Walls};
@@ -52,13 +53,16 @@ pub struct Fluid<const D: usize> {
     fluid_list: ClusterList,
     wall_list: ClusterList,
     list_of_walls: ClusterList,
-    fluid_sums: Vec<RateSum<D>>,
-    wall_sums: Vec<RateSum<D>>,
+    sums: Vec<RateSum<D>>,
     extrapolations: Vec<WallSum<D>>,
-    gradient_sums: Vec<GradientSum<D>>,
-    gradient: Vectors<D>,
+    /// Renormalised density gradient of each cluster's particles.
+    gradient: Vec<[[f64; D]; LANES]>,
+    /// Computed once a step.
+    frozen: bool,
+    /// The gradient belongs to this step and order.
+    gradient_known: bool,
     stress: StressTerm<D>,
-    velocity_gradients: [Vec<VelocityGradient<D>>; 2],
+    velocity_gradients: Vec<VelocityGradient<D>>,
     displacement: f64,
     largest_speed: f64,
     largest_acceleration: f64,
@@ -114,13 +118,13 @@ impl<const D: usize> Fluid<D> {
                 fluid_list: ClusterList::default(),
                 wall_list: ClusterList::default(),
                 list_of_walls: ClusterList::default(),
-                fluid_sums: Vec::new(),
-                wall_sums: Vec::new(),
+                sums: Vec::new(),
                 extrapolations: Vec::new(),
-                gradient_sums: Vec::new(),
-                gradient: vectors(0),
+                gradient: Vec::new(),
+                frozen: crate::density_gradient::is_frozen(scene),
+                gradient_known: false,
                 stress: StressTerm::default(),
-                velocity_gradients: [Vec::new(), Vec::new()],
+                velocity_gradients: Vec::new(),
                 displacement: 0.0,
                 largest_speed: 0.0,
                 largest_acceleration: 0.0,
@@ -133,9 +137,9 @@ impl<const D: usize> Fluid<D> {
 
     fn prepared(mut self) -> Self {
         self.sort();
-        self.columns.apply_state_equation(&self.state);
         self.largest_acceleration = self.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
-        self.scan();
+        let speed = |slot: usize| (0..D).map(|d| self.columns.now.velocity[d][slot].powi(2)).sum::<f64>();
+        self.largest_speed = (0..self.columns.slots()).map(speed).fold(0.0, f64::max).sqrt();
         self
     }
 
@@ -152,8 +156,8 @@ impl<const D: usize> Fluid<D> {
             }
         }
         let reach = 2.0 * self.smoothing_length + self.skin;
-        self.rows.sort(&self.columns.now.position, &self.columns.id, reach, low, high);
-        self.columns.permute(&mut self.rows);
+        self.rows.sort(&self.columns.now.position, &self.columns.id, 2.0 * self.resolution, low, high);
+        self.columns.permute(&mut self.rows, &self.state);
         let x = &self.columns.now.position;
         self.fluid_list.build(x, x, &self.rows, reach);
         if let Some(walls) = &self.walls {
@@ -162,55 +166,36 @@ impl<const D: usize> Fluid<D> {
             self.extrapolations.resize(self.list_of_walls.clusters(), WallSum::default());
         }
         let clusters = self.fluid_list.clusters();
-        self.fluid_sums.resize(clusters, RateSum::default());
-        if self.walls.is_some() {
-            self.wall_sums.resize(clusters, RateSum::default());
-        }
+        self.sums.resize(clusters, RateSum::default());
         if self.diffusion == DensityDiffusion::DeltaSph {
-            self.gradient_sums.resize(clusters, GradientSum::default());
-            for column in &mut self.gradient {
-                column.resize(self.columns.slots(), 0.0);
-            }
+            self.gradient.resize(clusters, [[0.0; D]; LANES]);
+            self.gradient_known = false;
         }
         if self.viscosity.is_some() {
-            self.velocity_gradients[0].resize(clusters, VelocityGradient::default());
-            if self.walls.is_some() {
-                self.velocity_gradients[1].resize(clusters, VelocityGradient::default());
-            }
+            self.velocity_gradients.resize(clusters, VelocityGradient::default());
         }
         self.displacement = 0.0;
         self.sorted = true;
     }
 
-    /// Largest displacement, speed and acceleration.
-    fn scan(&mut self) {
-        let c = &self.columns;
-        let (mut moved, mut fast, mut pushed) = (0.0_f64, 0.0_f64, 0.0_f64);
-        // Padding repeats particles without the solid's forces; what becomes of it must not steer the run.
-        for slot in (0..c.slots()).filter(|&s| c.id[s] != PADDING) {
-            let (mut m, mut v2, mut a2) = (0.0, 0.0, 0.0);
-            for d in 0..D {
-                let dx = c.now.position[d][slot] - c.reference[d][slot];
-                m += dx * dx;
-                v2 += c.now.velocity[d][slot] * c.now.velocity[d][slot];
-                a2 += c.acceleration[d][slot] * c.acceleration[d][slot];
-            }
-            moved = moved.max(m);
-            fast = fast.max(v2);
-            pushed = pushed.max(a2);
-        }
-        self.displacement = moved.sqrt();
-        self.largest_speed = fast.sqrt();
-        if pushed > 0.0 {
-            self.largest_acceleration = pushed.sqrt();
+    /// What the next step depends on.
+    fn remember(&mut self, extremes: &Extremes) {
+        self.displacement = extremes.displacement.sqrt();
+        self.largest_speed = extremes.speed.sqrt();
+        if extremes.acceleration > 0.0 {
+            self.largest_acceleration = extremes.acceleration.sqrt();
         }
     }
 
-    /// The first particle out of bounds: density within a factor of 3 of rho0, speed below 3 c0.
+    /// Bounds of density and speed: within a factor of 3 of rho0, below 3 c0.
+    fn bounds(&self) -> ((f64, f64), f64) {
+        ((self.state.density / 3.0, self.state.density * 3.0), 3.0 * self.state.sound_speed)
+    }
+
+    /// The first particle out of bounds.
     fn find_divergence(&self, step: u64, stage: u32) -> Option<Diverged> {
         let c = &self.columns;
-        let (low, high) = (self.state.density / 3.0, self.state.density * 3.0);
-        let fastest = 3.0 * self.state.sound_speed;
+        let ((low, high), fastest) = self.bounds();
         (0..c.slots()).filter(|&s| c.id[s] != PADDING).find_map(|s| {
             let rho = c.now.density[s];
             let v2: f64 = (0..D).map(|d| c.now.velocity[d][s].powi(2)).sum();
@@ -241,67 +226,58 @@ impl<const D: usize> Fluid<D> {
             pair::pass(isa, &law, &self.list_of_walls, &mut self.extrapolations);
             walls.show(&self.extrapolations, &self.state);
         }
-        if self.diffusion == DensityDiffusion::DeltaSph {
-            let law = density_gradient::GradientLaw { kernel, fluid: &self.columns.now };
-            pair::pass(isa, &law, &self.fluid_list, &mut self.gradient_sums);
-            density_gradient::solve(&self.gradient_sums, &mut self.gradient);
+        if self.diffusion == DensityDiffusion::DeltaSph && !(self.frozen && self.gradient_known) {
+            self.gradient_known = true;
+            let law = GradientLaw { kernel, fluid: &self.columns.now };
+            pair::pass_into(isa, &law, &self.fluid_list, GradientSum::solve, &mut self.gradient);
         }
         if let Some(mu) = self.viscosity {
             self.viscous_stress(kernel, mu);
         }
-        let mut fluid_sums = std::mem::take(&mut self.fluid_sums);
-        let mut wall_sums = std::mem::take(&mut self.wall_sums);
+        let mut sums = std::mem::take(&mut self.sums);
         match self.diffusion {
-            DensityDiffusion::None => self.rates(kernel, (), &mut fluid_sums, &mut wall_sums),
+            DensityDiffusion::None => self.rates(kernel, (), &mut sums),
             DensityDiffusion::Simple => {
-                self.rates(kernel, Simple(self.strength), &mut fluid_sums, &mut wall_sums);
+                self.rates(kernel, Simple(self.strength), &mut sums);
             }
             DensityDiffusion::Hydrostatic => {
                 let scale = self.state.density / self.state.sound_speed.powi(2);
                 let effect =
                     Hydrostatic { strength: self.strength, gradient: self.gravity.map(|g| scale * g) };
-                self.rates(kernel, effect, &mut fluid_sums, &mut wall_sums);
+                self.rates(kernel, effect, &mut sums);
             }
             DensityDiffusion::DeltaSph => {
-                let effect = DeltaSph { strength: self.strength, gradient: &self.gradient };
-                self.rates(kernel, effect, &mut fluid_sums, &mut wall_sums);
+                let effect = DeltaSph { strength: self.strength, gradient: self.gradient.as_flattened() };
+                self.rates(kernel, effect, &mut sums);
             }
         }
-        let columns = &mut self.columns;
-        collect(self.gravity, &fluid_sums, &wall_sums, &mut columns.acceleration, &mut columns.density_rate);
-        self.fluid_sums = fluid_sums;
-        self.wall_sums = wall_sums;
+        self.sums = sums;
     }
 
     fn viscous_stress<K: Kernel<D>>(&mut self, kernel: K, viscosity: f64) {
         let fluid = &self.columns.now;
         let law = viscosity::GradientLaw { kernel, targets: fluid, sources: fluid };
-        let [of_fluid, of_walls] = &mut self.velocity_gradients;
-        pair::pass(self.isa, &law, &self.fluid_list, of_fluid);
+        pair::pass(self.isa, &law, &self.fluid_list, &mut self.velocity_gradients);
         if let Some(walls) = &self.walls {
             let law = viscosity::GradientLaw { kernel, targets: fluid, sources: &walls.shown };
-            pair::pass(self.isa, &law, &self.wall_list, of_walls);
+            pair::pass_adding(self.isa, &law, &self.wall_list, &mut self.velocity_gradients);
         }
-        self.stress.set(viscosity, of_fluid, of_walls, &fluid.density);
+        self.stress.set(viscosity, &self.velocity_gradients, &fluid.density);
     }
 
     /// The rate pass over fluid and walls with a density diffusion; viscosity as the scene has it.
-    fn rates<K: Kernel<D>, E: PairEffect<D>>(
-        &self,
-        kernel: K,
-        diffusion: E,
-        fluid_sums: &mut [RateSum<D>],
-        wall_sums: &mut [RateSum<D>],
-    ) {
+    fn rates<K: Kernel<D>, E: PairEffect<D>>(&self, kernel: K, diffusion: E, sums: &mut [RateSum<D>]) {
         let damping = self.artificial_viscosity;
         let stress = &self.stress;
+        let fluid = &self.columns.now;
+        let isa = self.isa;
         match self.viscosity {
             None => {
-                self.pass(kernel, (damping, diffusion, ()), &self.fluid_list, &self.columns.now, fluid_sums)
+                pair::pass(isa, &law(kernel, (damping, diffusion, ()), fluid, fluid), &self.fluid_list, sums)
             }
             Some(_) => {
                 let effects = (damping, diffusion, Viscosity(stress));
-                self.pass(kernel, effects, &self.fluid_list, &self.columns.now, fluid_sums);
+                pair::pass(isa, &law(kernel, effects, fluid, fluid), &self.fluid_list, sums);
             }
         }
         let Some(walls) = &self.walls else { return };
@@ -310,25 +286,16 @@ impl<const D: usize> Fluid<D> {
             linear: &walls.damping,
             quadratic: self.quadratic,
         };
+        let shown = &walls.shown;
         match self.viscosity {
-            None => self.pass(kernel, (at_walls, (), ()), &self.wall_list, &walls.shown, wall_sums),
+            None => {
+                pair::pass_adding(isa, &law(kernel, (at_walls, (), ()), fluid, shown), &self.wall_list, sums);
+            }
             Some(_) => {
                 let effects = (at_walls, (), ViscosityAtWall(stress));
-                self.pass(kernel, effects, &self.wall_list, &walls.shown, wall_sums);
+                pair::pass_adding(isa, &law(kernel, effects, fluid, shown), &self.wall_list, sums);
             }
         }
-    }
-
-    fn pass<K: Kernel<D>, E: PairEffect<D>>(
-        &self,
-        kernel: K,
-        effects: E,
-        list: &ClusterList,
-        sources: &Shown<D>,
-        sums: &mut [RateSum<D>],
-    ) {
-        let law = RateLaw { kernel, effects, targets: &self.columns.now, sources };
-        pair::pass(self.isa, &law, list, sums);
     }
 
     fn passes_over_fluid(&self) -> u64 {
@@ -339,6 +306,15 @@ impl<const D: usize> Fluid<D> {
     pub fn wall_particles(&self) -> usize {
         self.walls.as_ref().map_or(0, |w| w.id.iter().filter(|&&i| i != PADDING).count())
     }
+}
+
+fn law<'a, K, E, const D: usize>(
+    kernel: K,
+    effects: E,
+    targets: &'a Shown<D>,
+    sources: &'a Shown<D>,
+) -> RateLaw<'a, K, E, D> {
+    RateLaw { kernel, effects, targets, sources }
 }
 
 impl<const D: usize> Role for Fluid<D> {
@@ -358,7 +334,6 @@ impl<const D: usize> Role for Fluid<D> {
         out.clear();
         if 2.0 * self.displacement > self.skin || self.coupling.as_ref().is_some_and(|c| c.is_stale(peer)) {
             self.sort();
-            self.columns.apply_state_equation(&self.state);
         }
         let Some(coupling) = &mut self.coupling else { return 0 };
         if self.sorted {
@@ -387,7 +362,7 @@ impl<const D: usize> Role for Fluid<D> {
         _epoch: u64,
     ) -> Result<(), CoverageError> {
         let Some(coupling) = &mut self.coupling else { return Ok(()) };
-        coupling.add_rates(&mut self.columns, own, peer, self.displacement)?;
+        coupling.add_rates(&mut self.sums, own, peer, self.displacement)?;
         self.pair_evaluations += coupling.pairs() as u64;
         Ok(())
     }
@@ -395,20 +370,22 @@ impl<const D: usize> Role for Fluid<D> {
     fn advance(&mut self, step: u64, stage: u32, dt: f64, forces: &[ForceRecord]) -> Result<(), Diverged> {
         if let Some(coupling) = &self.coupling {
             for (&slot, force) in coupling.slots().iter().zip(forces) {
-                for d in 0..D {
-                    self.columns.acceleration[d][slot as usize] += force.cross_viscosity[d];
-                }
+                self.sums[slot as usize / LANES].add(
+                    slot as usize % LANES,
+                    std::array::from_fn(|d| force.cross_viscosity[d]),
+                    0.0,
+                );
             }
         }
-        if stage == 0 {
-            self.columns.save();
-            self.columns.advance(0.5 * dt);
-        } else {
-            self.columns.advance(dt);
+        if stage == 1 {
+            self.gradient_known = false;
         }
-        self.columns.apply_state_equation(&self.state);
-        self.scan();
-        match self.find_divergence(step, stage) {
+        let dt = if stage == 0 { 0.5 * dt } else { dt };
+        let (density, fastest) = self.bounds();
+        let stage_ = Stage::new(stage, dt, self.gravity, &self.state, density, fastest * fastest);
+        let extremes = midpoint::advance(&mut self.columns, &self.sums, stage_);
+        self.remember(&extremes);
+        match extremes.out_of_bounds.then(|| self.find_divergence(step, stage)).flatten() {
             Some(diverged) => Err(diverged),
             None => Ok(()),
         }

@@ -1,7 +1,9 @@
 //! The fluid's side of the interface: which particles it publishes, and what the solid does to them.
 
 use crate::columns::Columns;
+use crate::rates::RateSum;
 use halfstep_shared::interface::{Interface, Parameters};
+use halfstep_shared::lane::LANES;
 use halfstep_shared::neighbours::{PADDING, Rows};
 use halfstep_shared::protocol::StateRecord;
 use halfstep_shared::role::CoverageError;
@@ -140,7 +142,7 @@ impl<const D: usize> Coupling<D> {
     /// The set may lack a particle within reach of the solid.
     pub fn add_rates(
         &mut self,
-        fluid: &mut Columns<D>,
+        sums: &mut [RateSum<D>],
         own: &[StateRecord],
         peer: &[StateRecord],
         fluid_displacement: f64,
@@ -153,10 +155,7 @@ impl<const D: usize> Coupling<D> {
         let slots = &self.slots;
         self.interface.act_on_fluid(|record, acceleration, density_rate| {
             let slot = slots[record] as usize;
-            for d in 0..D {
-                fluid.acceleration[d][slot] += acceleration[d];
-            }
-            fluid.density_rate[slot] += density_rate;
+            sums[slot / LANES].add(slot % LANES, acceleration, density_rate);
         });
         self.gap = self.interface.smallest_distance();
         Ok(())

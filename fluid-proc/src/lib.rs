@@ -12,6 +12,7 @@ pub mod fluid;
 mod fluid_tests;
 pub mod interface;
 pub mod measure;
+pub mod midpoint;
 pub mod momentum;
 pub mod rates;
 #[cfg(test)]

@@ -3,9 +3,8 @@
 use crate::columns::Shown;
 use crate::momentum::pressure_and_continuity;
 use halfstep_shared::kernel::Kernel;
-use halfstep_shared::lane::{Arch, LANES, Lane};
+use halfstep_shared::lane::{Arch, Lane};
 use halfstep_shared::pair::{PairLaw, distance, dot};
-use rayon::prelude::*;
 
 /// One particle with one of its neighbours, four times.
 #[derive(Clone, Copy, Debug)]
@@ -90,6 +89,16 @@ impl<const D: usize> Default for RateSum<D> {
     }
 }
 
+impl<const D: usize> RateSum<D> {
+    /// Adds to the k-th particle's rates.
+    pub fn add(&mut self, k: usize, acceleration: [f64; D], density_rate: f64) {
+        for d in 0..D {
+            self.acceleration[d].0[k] += acceleration[d];
+        }
+        self.density_rate.0[k] += density_rate;
+    }
+}
+
 /// The law of the pass: targets and sources may be the same set, or fluid and walls.
 pub struct RateLaw<'a, K, E, const D: usize> {
     /// Kernel.
@@ -124,34 +133,34 @@ impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for RateLaw<'_, 
         Target {
             velocity: std::array::from_fn(|d| Lane::load(&self.targets.velocity[d], slot)),
             density: Lane::load(&self.targets.density, slot),
-            pressure_term: Lane::load(&self.targets.pressure_term, slot),
+            pressure_term: self.targets.pressure_terms(slot),
             own: self.effects.own(slot),
         }
     }
 
     #[inline(always)]
-    fn source_positions(&self) -> &[Vec<f64>; D] {
-        &self.sources.position
+    fn source_position(&self, j: usize) -> [f64; D] {
+        self.sources.sources[j].position
     }
 
     #[inline(always)]
     fn add<A: Arch>(&self, i: &Self::Target, j: usize, dx: [Lane; D], r2: Lane, sum: &mut RateSum<D>) {
-        let s = self.sources;
+        let s = &self.sources.sources[j];
         let f = self.kernel.gradient_over_r::<A>(distance(r2, self.kernel.smoothing_length()));
-        let dv = std::array::from_fn(|d| i.velocity[d] - Lane::splat(s.velocity[d][j]));
+        let dv = std::array::from_fn(|d| i.velocity[d] - Lane::splat(s.velocity[d]));
         let pair = FluidPair {
             dx,
             r2,
             dv,
             approach: dot::<D, A>(dv, dx),
             density_i: i.density,
-            density_j: Lane::splat(s.density[j]),
+            density_j: Lane::splat(s.density),
             pressure_term_i: i.pressure_term,
-            pressure_term_j: Lane::splat(s.pressure_term[j]),
+            pressure_term_j: Lane::splat(s.pressure_term),
         };
         let mut rates = pressure_and_continuity(&pair);
         self.effects.add::<A>(&i.own, j, &pair, &mut rates);
-        let mf = Lane::splat(s.mass) * f;
+        let mf = Lane::splat(self.sources.mass) * f;
         let bracket = mf * rates.bracket;
         for d in 0..D {
             sum.acceleration[d] = A::mul_add(bracket, dx[d], sum.acceleration[d]);
@@ -159,42 +168,6 @@ impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for RateLaw<'_, 
                 sum.acceleration[d] = A::mul_add(mf, rates.vector[d], sum.acceleration[d]);
             }
         }
-        sum.density_rate = A::mul_add(Lane::splat(s.volume[j]) * f, rates.density, sum.density_rate);
+        sum.density_rate = A::mul_add(Lane::splat(s.volume) * f, rates.density, sum.density_rate);
     }
-}
-
-/// Slots that one task collects.
-const TASK: usize = 512;
-
-/// Acceleration and density rate of each slot: a constant acceleration plus the sums over fluid and walls (none: empty).
-pub fn collect<const D: usize>(
-    constant: [f64; D],
-    fluid: &[RateSum<D>],
-    walls: &[RateSum<D>],
-    acceleration: &mut [Vec<f64>; D],
-    density_rate: &mut [f64],
-) {
-    for d in 0..D {
-        gather(&mut acceleration[d], constant[d], fluid, walls, |sum| sum.acceleration[d]);
-    }
-    gather(density_rate, 0.0, fluid, walls, |sum| sum.density_rate);
-}
-
-fn gather<const D: usize>(
-    column: &mut [f64],
-    constant: f64,
-    fluid: &[RateSum<D>],
-    walls: &[RateSum<D>],
-    of: impl Fn(&RateSum<D>) -> Lane + Sync,
-) {
-    column.par_chunks_mut(TASK).enumerate().for_each(|(task, part)| {
-        for (c, values) in part.chunks_exact_mut(LANES).enumerate() {
-            let cluster = task * (TASK / LANES) + c;
-            let mut sum = Lane::splat(constant) + of(&fluid[cluster]);
-            if let Some(wall) = walls.get(cluster) {
-                sum += of(wall);
-            }
-            values.copy_from_slice(&sum.0);
-        }
-    });
 }

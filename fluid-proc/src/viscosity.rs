@@ -53,8 +53,8 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for GradientLaw<'_, K, D> {
         std::array::from_fn(|d| Lane::load(&self.targets.velocity[d], slot))
     }
     #[inline(always)]
-    fn source_positions(&self) -> &[Vec<f64>; D] {
-        &self.sources.position
+    fn source_position(&self, j: usize) -> [f64; D] {
+        self.sources.sources[j].position
     }
     #[inline(always)]
     fn add<A: Arch>(
@@ -66,9 +66,10 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for GradientLaw<'_, K, D> {
         sum: &mut VelocityGradient<D>,
     ) {
         let f = self.kernel.gradient_over_r::<A>(distance(r2, self.kernel.smoothing_length()));
-        let vf = Lane::splat(self.sources.volume[j]) * f;
+        let source = &self.sources.sources[j];
+        let vf = Lane::splat(source.volume) * f;
         for a in 0..D {
-            let row = vf * (Lane::splat(self.sources.velocity[a][j]) - i[a]);
+            let row = vf * (Lane::splat(source.velocity[a]) - i[a]);
             for b in 0..D {
                 sum.0[a][b] = A::mul_add(row, dx[b], sum.0[a][b]);
             }
@@ -77,14 +78,8 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for GradientLaw<'_, K, D> {
 }
 
 impl<const D: usize> StressTerm<D> {
-    /// tau / rho² from the gradients summed over fluid and walls.
-    pub fn set(
-        &mut self,
-        viscosity: f64,
-        fluid: &[VelocityGradient<D>],
-        walls: &[VelocityGradient<D>],
-        density: &[f64],
-    ) {
+    /// tau / rho² from the velocity gradients.
+    pub fn set(&mut self, viscosity: f64, gradients: &[VelocityGradient<D>], density: &[f64]) {
         for a in 0..D {
             for b in a..D {
                 self.0[a][b].resize(density.len(), 0.0);
@@ -92,8 +87,7 @@ impl<const D: usize> StressTerm<D> {
         }
         for slot in 0..density.len() {
             let (c, k) = (slot / LANES, slot % LANES);
-            let gradient =
-                |a: usize, b: usize| fluid[c].0[a][b].0[k] + walls.get(c).map_or(0.0, |w| w.0[a][b].0[k]);
+            let gradient = |a: usize, b: usize| gradients[c].0[a][b].0[k];
             let divergence: f64 = (0..D).map(|a| gradient(a, a)).sum();
             let scale = viscosity / (density[slot] * density[slot]);
             for a in 0..D {

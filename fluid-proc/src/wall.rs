@@ -6,7 +6,7 @@
 //! wall, u_w its own velocity; in a corner all components are reversed. The density shown is the equation of
 //! state's at p_w, the mass rho0 V. Without fluid around: p_w = 0, rho0, u_w.
 
-use crate::columns::{Columns, Shown, Vectors, vectors};
+use crate::columns::{Columns, Shown, Source, Vectors, vectors};
 use halfstep_shared::extrapolation::{Extrapolation, ExtrapolationSum};
 use halfstep_shared::geometry::WallPoint;
 use halfstep_shared::kernel::Kernel;
@@ -89,9 +89,9 @@ impl<const D: usize> Walls<D> {
         walls.damping = walls.reverse_all.iter().map(of).collect();
         let slots = walls.rows.slots();
         walls.shown.density = vec![state.density; slots];
-        walls.shown.volume = vec![volume; slots];
-        walls.shown.pressure_term = vec![0.0; slots];
+        walls.shown.sources = vec![Source::ZERO; slots];
         walls.pressure = vec![0.0; slots];
+        (0..slots).for_each(|slot| walls.show_nothing(slot, state));
         walls
     }
 
@@ -102,7 +102,6 @@ impl<const D: usize> Walls<D> {
 
     /// What the walls show, from the sums over the fluid.
     pub fn show(&mut self, sums: &[WallSum<D>], state: &StateEquation) {
-        let mass = self.shown.mass;
         for (c, sum) in sums.iter().enumerate() {
             for k in 0..LANES {
                 let slot = c * LANES + k;
@@ -130,22 +129,18 @@ impl<const D: usize> Walls<D> {
                 let density = state.density_at(pressure);
                 self.pressure[slot] = pressure;
                 self.shown.density[slot] = density;
-                self.shown.volume[slot] = mass / density;
-                self.shown.pressure_term[slot] = pressure / (density * density);
+                self.shown.show(slot, pressure);
             }
         }
     }
 
     fn show_nothing(&mut self, slot: usize, state: &StateEquation) {
-        if self.pressure[slot] != 0.0 {
-            self.pressure[slot] = 0.0;
-            self.shown.density[slot] = state.density;
-            self.shown.volume[slot] = self.shown.mass / state.density;
-            self.shown.pressure_term[slot] = 0.0;
-        }
+        self.pressure[slot] = 0.0;
+        self.shown.density[slot] = state.density;
         for d in 0..D {
             self.shown.velocity[d][slot] = self.own_velocity[d][slot];
         }
+        self.shown.show(slot, 0.0);
     }
 }
 
@@ -203,8 +198,8 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for WallLaw<'_, K, D> {
         self.pressure.targets
     }
     #[inline(always)]
-    fn source_positions(&self) -> &[Vec<f64>; D] {
-        self.pressure.sources
+    fn source_position(&self, j: usize) -> [f64; D] {
+        std::array::from_fn(|d| self.pressure.sources[d][j])
     }
     #[inline(always)]
     fn target(&self, _: usize) {}

@@ -6,8 +6,8 @@
 //! gate, 2.5 mm); with it 0.25 dx. There the wall shows the particle's own tangential velocity, so nothing drags along
 //! it. No-slip walls and corners reverse the whole velocity and keep the scene's A: a guard would be friction.
 
-use crate::artificial_viscosity::damping;
 use crate::rates::{FluidPair, PairEffect, PairRates};
+use halfstep_shared::artificial_viscosity::damping;
 use halfstep_shared::lane::{Arch, Lane};
 
 /// A of the guard.
@@ -33,6 +33,14 @@ impl<const D: usize> PairEffect<D> for WallViscosity<'_> {
     fn add<A: Arch>(&self, _: &(), j: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
         let linear = Lane::splat(self.linear[j]);
         let quadratic = Lane::splat(self.quadratic);
-        rates.bracket = rates.bracket - damping::<D, A>(self.smoothing_length, linear, quadratic, pair);
+        rates.bracket = rates.bracket
+            - damping::<A>(
+                self.smoothing_length,
+                linear,
+                quadratic,
+                pair.approach,
+                pair.r2,
+                pair.density_i + pair.density_j,
+            );
     }
 }

@@ -62,8 +62,8 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for Extrapolation<'_, K, D> {
         self.targets
     }
     #[inline(always)]
-    fn source_positions(&self) -> &[Vec<f64>; D] {
-        self.sources
+    fn source_position(&self, j: usize) -> [f64; D] {
+        std::array::from_fn(|d| self.sources[d][j])
     }
     #[inline(always)]
     fn target(&self, _: usize) {}

@@ -16,89 +16,172 @@ pub trait PairLaw<const D: usize>: Sync {
 
     /// Positions of the targets.
     fn target_positions(&self) -> &[Vec<f64>; D];
-    /// Positions of the sources.
-    fn source_positions(&self) -> &[Vec<f64>; D];
+    /// Position of source `j`.
+    fn source_position(&self, j: usize) -> [f64; D];
     /// Loads what else is needed of the targets at `slot..slot + 4`.
     fn target(&self, slot: usize) -> Self::Target;
     /// Adds the contribution of source `j`: `dx` = x_i - x_j, `r2` = |dx|².
     fn add<A: Arch>(&self, target: &Self::Target, j: usize, dx: [Lane; D], r2: Lane, sum: &mut Self::Sum);
 }
 
+/// What becomes of the sum over a cluster's neighbours.
+trait Sink<S>: Copy + Sync {
+    /// Where it goes.
+    type Out: Send;
+    /// What the sum begins with.
+    fn begin(self, out: &Self::Out) -> S;
+    /// Takes the sum.
+    fn end(self, sum: S, out: &mut Self::Out);
+}
+
+/// The sum takes the place of what was there.
+#[derive(Clone, Copy)]
+struct Replace<F>(F);
+
+impl<S: Default, T: Send, F: Fn(&S) -> T + Copy + Sync> Sink<S> for Replace<F> {
+    type Out = T;
+    #[inline(always)]
+    fn begin(self, _: &T) -> S {
+        S::default()
+    }
+    #[inline(always)]
+    fn end(self, sum: S, out: &mut T) {
+        *out = (self.0)(&sum);
+    }
+}
+
+/// The sum goes on from what was there.
+#[derive(Clone, Copy)]
+struct Add;
+
+impl<S: Copy + Send> Sink<S> for Add {
+    type Out = S;
+    #[inline(always)]
+    fn begin(self, out: &S) -> S {
+        *out
+    }
+    #[inline(always)]
+    fn end(self, sum: S, out: &mut S) {
+        *out = sum;
+    }
+}
+
 /// Runs a law over all targets of a list; `sums` has one entry for each cluster.
 pub fn pass<const D: usize, L: PairLaw<D>>(isa: Isa, law: &L, list: &ClusterList, sums: &mut [L::Sum]) {
-    assert_eq!(sums.len(), list.clusters(), "one sum for each cluster");
-    if let ([chunk], true) = (list.chunks(), sums.len() <= CHUNK_CLUSTERS) {
-        return run_chunk(isa, law, 0, chunk, sums);
+    run_chunks(isa, law, list, Replace(|sum: &L::Sum| *sum), sums);
+}
+
+/// The same; the sums go on from what `sums` holds.
+pub fn pass_adding<const D: usize, L: PairLaw<D>>(
+    isa: Isa,
+    law: &L,
+    list: &ClusterList,
+    sums: &mut [L::Sum],
+) {
+    run_chunks(isa, law, list, Add, sums);
+}
+
+/// The same; each sum goes through `finish` before it is stored.
+pub fn pass_into<const D: usize, L: PairLaw<D>, T: Send>(
+    isa: Isa,
+    law: &L,
+    list: &ClusterList,
+    finish: impl Fn(&L::Sum) -> T + Copy + Sync,
+    out: &mut [T],
+) {
+    run_chunks(isa, law, list, Replace(finish), out);
+}
+
+fn run_chunks<const D: usize, L: PairLaw<D>, S: Sink<L::Sum>>(
+    isa: Isa,
+    law: &L,
+    list: &ClusterList,
+    sink: S,
+    out: &mut [S::Out],
+) {
+    assert_eq!(out.len(), list.clusters(), "one sum for each cluster");
+    if let [chunk] = list.chunks() {
+        return run_chunk(isa, law, 0, chunk, sink, out);
     }
-    sums.par_chunks_mut(CHUNK_CLUSTERS).zip(list.chunks()).enumerate().for_each(|(c, (sums, chunk))| {
-        run_chunk(isa, law, c * CHUNK_CLUSTERS * LANES, chunk, sums);
+    out.par_chunks_mut(CHUNK_CLUSTERS).zip(list.chunks()).enumerate().for_each(|(c, (out, chunk))| {
+        run_chunk(isa, law, c * CHUNK_CLUSTERS * LANES, chunk, sink, out);
     });
 }
 
-fn run_chunk<const D: usize, L: PairLaw<D>>(
+fn run_chunk<const D: usize, L: PairLaw<D>, S: Sink<L::Sum>>(
     isa: Isa,
     law: &L,
     first_slot: usize,
     chunk: &Chunk,
-    sums: &mut [L::Sum],
+    sink: S,
+    out: &mut [S::Out],
 ) {
     match isa {
         // SAFETY: `Isa::detect` is the only source of these values in a run and asked the processor.
         #[cfg(target_arch = "x86_64")]
-        Isa::Avx512vl => unsafe { run_avx512vl(law, first_slot, chunk, sums) },
+        Isa::Avx512vl => unsafe { run_avx512vl(law, first_slot, chunk, sink, out) },
         // SAFETY: as above.
         #[cfg(target_arch = "x86_64")]
-        Isa::Avx2 => unsafe { run_avx2(law, first_slot, chunk, sums) },
-        _ => run::<D, L, Unfused>(law, first_slot, chunk, sums),
+        Isa::Avx2 => unsafe { run_avx2(law, first_slot, chunk, sink, out) },
+        _ => run::<D, L, S, Unfused>(law, first_slot, chunk, sink, out),
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512vl,avx2,fma")]
-unsafe fn run_avx512vl<const D: usize, L: PairLaw<D>>(
+unsafe fn run_avx512vl<const D: usize, L: PairLaw<D>, S: Sink<L::Sum>>(
     law: &L,
     slot: usize,
     chunk: &Chunk,
-    sums: &mut [L::Sum],
+    sink: S,
+    out: &mut [S::Out],
 ) {
-    run::<D, L, Fused>(law, slot, chunk, sums);
+    run::<D, L, S, Fused>(law, slot, chunk, sink, out);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-unsafe fn run_avx2<const D: usize, L: PairLaw<D>>(law: &L, slot: usize, chunk: &Chunk, sums: &mut [L::Sum]) {
-    run::<D, L, Fused>(law, slot, chunk, sums);
+unsafe fn run_avx2<const D: usize, L: PairLaw<D>, S: Sink<L::Sum>>(
+    law: &L,
+    slot: usize,
+    chunk: &Chunk,
+    sink: S,
+    out: &mut [S::Out],
+) {
+    run::<D, L, S, Fused>(law, slot, chunk, sink, out);
 }
 
 #[inline(always)]
-fn run<const D: usize, L: PairLaw<D>, A: Arch>(
+fn run<const D: usize, L: PairLaw<D>, S: Sink<L::Sum>, A: Arch>(
     law: &L,
     first_slot: usize,
     chunk: &Chunk,
-    sums: &mut [L::Sum],
+    sink: S,
+    out: &mut [S::Out],
 ) {
-    let (positions, sources) = (law.target_positions(), law.source_positions());
-    for (k, out) in sums.iter_mut().enumerate() {
+    let positions = law.target_positions();
+    for (k, out) in out.iter_mut().enumerate() {
         let neighbours = chunk.of(k);
+        let mut sum = sink.begin(out);
         if neighbours.is_empty() {
-            *out = L::Sum::default();
+            sink.end(sum, out);
             continue;
         }
         let slot = first_slot + k * LANES;
         let target = law.target(slot);
         let xi: [Lane; D] = std::array::from_fn(|d| Lane::load(&positions[d], slot));
-        let mut sum = L::Sum::default();
         for &j in neighbours {
             let j = j as usize;
+            let xj = law.source_position(j);
             let mut dx = [Lane::ZERO; D];
             let mut r2 = Lane::ZERO;
             for d in 0..D {
-                dx[d] = xi[d] - Lane::splat(sources[d][j]);
+                dx[d] = xi[d] - Lane::splat(xj[d]);
                 r2 = A::mul_add(dx[d], dx[d], r2);
             }
             law.add::<A>(&target, j, dx, r2, &mut sum);
         }
-        *out = sum;
+        sink.end(sum, out);
     }
 }
 

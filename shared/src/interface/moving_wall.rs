@@ -94,8 +94,8 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for OnFluid<'_, K, D> {
         load(self.0.targets, slot)
     }
     #[inline(always)]
-    fn source_positions(&self) -> &[Vec<f64>; D] {
-        &self.0.sources.position
+    fn source_position(&self, j: usize) -> [f64; D] {
+        std::array::from_fn(|d| self.0.sources.position[d][j])
     }
     #[inline(always)]
     fn add<A: Arch>(&self, i: &Target<D>, j: usize, dx: [Lane; D], r2: Lane, sum: &mut FluidSum<D>) {
@@ -127,8 +127,8 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for OnSolid<'_, K, D> {
         load(self.0.targets, slot)
     }
     #[inline(always)]
-    fn source_positions(&self) -> &[Vec<f64>; D] {
-        &self.0.sources.position
+    fn source_position(&self, j: usize) -> [f64; D] {
+        std::array::from_fn(|d| self.0.sources.position[d][j])
     }
     #[inline(always)]
     fn add<A: Arch>(&self, i: &Target<D>, j: usize, dx: [Lane; D], r2: Lane, sum: &mut SolidForce<D>) {

@@ -114,8 +114,8 @@ macro_rules! pair_law {
                 self.0.load(slot)
             }
             #[inline(always)]
-            fn source_positions(&self) -> &[Vec<f64>; D] {
-                &self.0.sources.position
+            fn source_position(&self, j: usize) -> [f64; D] {
+                std::array::from_fn(|d| self.0.sources.position[d][j])
             }
             #[inline(always)]
             fn add<$arch: Arch>(

@@ -345,6 +345,8 @@ pub enum EffectName {
     NonNegativeWallPressure,
     /// Artificial viscosity of at least A = 1 between fluid and wall.
     WallGuard,
+    /// The renormalised density gradient of delta-SPH is computed once a step.
+    FrozenDiffusion,
 }
 
 impl Scene {

@@ -224,13 +224,14 @@ fn output(section: Section<'_>, end_time: f64) -> Output {
 }
 
 fn effects(top: &Section<'_>) -> BTreeMap<EffectName, Switch> {
-    const NAMES: [(&str, EffectName); 6] = [
+    const NAMES: [(&str, EffectName); 7] = [
         ("viscosity", EffectName::Viscosity),
         ("artificial-stress", EffectName::ArtificialStress),
         ("renormalised-gradient", EffectName::RenormalisedGradient),
         ("wall-contact", EffectName::WallContact),
         ("non-negative-wall-pressure", EffectName::NonNegativeWallPressure),
         ("wall-guard", EffectName::WallGuard),
+        ("frozen-diffusion", EffectName::FrozenDiffusion),
     ];
     const SWITCHES: [(&str, Switch); 3] = [("auto", Switch::Auto), ("on", Switch::On), ("off", Switch::Off)];
     let mut effects = BTreeMap::new();
@@ -269,7 +270,7 @@ fn numerics(section: Section<'_>, dimension: usize, defaults: &Defaults) -> Nume
             .unwrap_or(defaults.kernel),
         cfl: section.number(
             "cfl",
-            Some(0.25),
+            Some(0.4),
             Range::positive()
                 .up_to(1.0)
                 .why("a sound wave must not cross more than a smoothing length a step"),

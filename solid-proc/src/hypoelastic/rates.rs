@@ -153,8 +153,8 @@ impl<K: Kernel<D>, T: TensileCorrection<D>, M: Moment, const D: usize> PairLaw<D
         }
     }
     #[inline(always)]
-    fn source_positions(&self) -> &[Vec<f64>; D] {
-        &self.state.position
+    fn source_position(&self, j: usize) -> [f64; D] {
+        std::array::from_fn(|d| self.state.position[d][j])
     }
     #[inline(always)]
     fn add<A: Arch>(&self, i: &Self::Target, j: usize, dx: [Lane; D], r2: Lane, sum: &mut SolidSum<D>) {

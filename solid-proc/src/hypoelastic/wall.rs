@@ -122,8 +122,8 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for Push<'_, K, D> {
         }
     }
     #[inline(always)]
-    fn source_positions(&self) -> &[Vec<f64>; D] {
-        &self.walls.position
+    fn source_position(&self, j: usize) -> [f64; D] {
+        std::array::from_fn(|d| self.walls.position[d][j])
     }
     #[inline(always)]
     fn add<A: Arch>(&self, i: &Target<D>, j: usize, dx: [Lane; D], r2: Lane, sum: &mut WallForce<D>) {

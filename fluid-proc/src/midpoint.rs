@@ -1,0 +1,219 @@
+//! The midpoint step, Kayaki's eqs. (30) and (31): to n + 1/2 with the rates at n, then from n to n + 1 with the rates
+//! at n + 1/2. One walk over the particles also applies the state equation and finds what the next step depends on.
+
+use crate::columns::{Columns, Source, source};
+use crate::rates::RateSum;
+use halfstep_shared::lane::LANES;
+use halfstep_shared::neighbours::PADDING;
+use halfstep_shared::state_equation::StateEquation;
+
+/// Slots that one task walks over; a whole number of clusters.
+const TASK: usize = 1024;
+
+/// The extremes over all particles after a stage.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Extremes {
+    /// Square of the largest displacement since the last sort, m².
+    pub displacement: f64,
+    /// Square of the largest speed, m²/s².
+    pub speed: f64,
+    /// Square of the largest acceleration, m²/s⁴.
+    pub acceleration: f64,
+    /// Some particle is out of bounds.
+    pub out_of_bounds: bool,
+}
+
+impl Extremes {
+    fn join(self, other: Self) -> Self {
+        Self {
+            displacement: self.displacement.max(other.displacement),
+            speed: self.speed.max(other.speed),
+            acceleration: self.acceleration.max(other.acceleration),
+            out_of_bounds: self.out_of_bounds || other.out_of_bounds,
+        }
+    }
+}
+
+/// What holds for all particles during a stage.
+#[derive(Clone, Copy)]
+pub struct Stage<'a, const D: usize> {
+    /// The state equation.
+    pub state: &'a StateEquation,
+    /// Gravity, m/s².
+    pub gravity: [f64; D],
+    /// Time from n, s.
+    pub dt: f64,
+    /// Bounds of the density, kg/m³.
+    pub density: (f64, f64),
+    /// Square of the largest speed allowed, m²/s².
+    pub fastest: f64,
+    mass: f64,
+    first: bool,
+}
+
+impl<'a, const D: usize> Stage<'a, D> {
+    /// Stage 0 or 1 of a step.
+    pub fn new(
+        stage: u32,
+        dt: f64,
+        gravity: [f64; D],
+        state: &'a StateEquation,
+        density: (f64, f64),
+        fastest: f64,
+    ) -> Self {
+        Self { state, gravity, dt, density, fastest, mass: 0.0, first: stage == 0 }
+    }
+}
+
+/// Advances all particles by the sums of their rates.
+pub fn advance<const D: usize>(
+    columns: &mut Columns<D>,
+    sums: &[RateSum<D>],
+    mut stage: Stage<'_, D>,
+) -> Extremes {
+    stage.mass = columns.now.mass;
+    if stage.first {
+        // The present state becomes that at n; what it takes the place of is overwritten.
+        std::mem::swap(&mut columns.position_n, &mut columns.now.position);
+        std::mem::swap(&mut columns.velocity_n, &mut columns.now.velocity);
+        std::mem::swap(&mut columns.density_n, &mut columns.now.density);
+    }
+    let part = Part {
+        id: &columns.id,
+        sums,
+        position_n: columns.position_n.each_ref().map(Vec::as_slice),
+        velocity_n: columns.velocity_n.each_ref().map(Vec::as_slice),
+        density_n: &columns.density_n,
+        reference: columns.reference.each_ref().map(Vec::as_slice),
+        position: columns.now.position.each_mut().map(Vec::as_mut_slice),
+        velocity: columns.now.velocity.each_mut().map(Vec::as_mut_slice),
+        density: &mut columns.now.density,
+        pressure: &mut columns.pressure,
+        sources: &mut columns.now.sources,
+    };
+    walk(part, &stage)
+}
+
+/// The columns of consecutive slots.
+struct Part<'a, const D: usize> {
+    id: &'a [u32],
+    sums: &'a [RateSum<D>],
+    position_n: [&'a [f64]; D],
+    velocity_n: [&'a [f64]; D],
+    density_n: &'a [f64],
+    reference: [&'a [f64]; D],
+    position: [&'a mut [f64]; D],
+    velocity: [&'a mut [f64]; D],
+    density: &'a mut [f64],
+    pressure: &'a mut [f64],
+    sources: &'a mut [Source<D>],
+}
+
+fn split<'a, const D: usize>(columns: [&'a [f64]; D], at: usize) -> ([&'a [f64]; D], [&'a [f64]; D]) {
+    (columns.map(|c| &c[..at]), columns.map(|c| &c[at..]))
+}
+
+fn split_mut<const D: usize>(columns: [&mut [f64]; D], at: usize) -> ([&mut [f64]; D], [&mut [f64]; D]) {
+    let mut right: [&mut [f64]; D] = std::array::from_fn(|_| Default::default());
+    let mut d = 0;
+    let left = columns.map(|c| {
+        let (a, b) = c.split_at_mut(at);
+        right[d] = b;
+        d += 1;
+        a
+    });
+    (left, right)
+}
+
+impl<'a, const D: usize> Part<'a, D> {
+    fn split_at(self, at: usize) -> (Self, Self) {
+        let (position, position_) = split_mut(self.position, at);
+        let (velocity, velocity_) = split_mut(self.velocity, at);
+        let (density, density_) = self.density.split_at_mut(at);
+        let (pressure, pressure_) = self.pressure.split_at_mut(at);
+        let (sources, sources_) = self.sources.split_at_mut(at);
+        let (position_n, position_n_) = split(self.position_n, at);
+        let (velocity_n, velocity_n_) = split(self.velocity_n, at);
+        let (reference, reference_) = split(self.reference, at);
+        let (density_n, density_n_) = self.density_n.split_at(at);
+        let (id, id_) = self.id.split_at(at);
+        let (sums, sums_) = self.sums.split_at(at / LANES);
+        (
+            Self {
+                id,
+                sums,
+                position_n,
+                velocity_n,
+                density_n,
+                reference,
+                position,
+                velocity,
+                density,
+                pressure,
+                sources,
+            },
+            Self {
+                id: id_,
+                sums: sums_,
+                position_n: position_n_,
+                velocity_n: velocity_n_,
+                density_n: density_n_,
+                reference: reference_,
+                position: position_,
+                velocity: velocity_,
+                density: density_,
+                pressure: pressure_,
+                sources: sources_,
+            },
+        )
+    }
+}
+
+fn walk<const D: usize>(part: Part<'_, D>, stage: &Stage<'_, D>) -> Extremes {
+    let slots = part.id.len();
+    if slots <= TASK {
+        return update(part, stage);
+    }
+    let (a, b) = part.split_at((slots / 2).next_multiple_of(TASK));
+    let (a, b) = rayon::join(|| walk(a, stage), || walk(b, stage));
+    a.join(b)
+}
+
+fn update<const D: usize>(part: Part<'_, D>, stage: &Stage<'_, D>) -> Extremes {
+    let Stage { state, gravity, dt, density: (low, high), fastest, mass, first } = *stage;
+    let mut extremes = Extremes::default();
+    for slot in 0..part.id.len() {
+        let sum = &part.sums[slot / LANES];
+        let k = slot % LANES;
+        let (mut x, mut v) = ([0.0; D], [0.0; D]);
+        let (mut moved, mut speed, mut pushed) = (0.0, 0.0, 0.0);
+        for d in 0..D {
+            let a = gravity[d] + sum.acceleration[d].0[k];
+            let vn = part.velocity_n[d][slot];
+            let at_stage = if first { vn } else { part.velocity[d][slot] };
+            x[d] = part.position_n[d][slot] + dt * at_stage;
+            v[d] = vn + dt * a;
+            part.position[d][slot] = x[d];
+            part.velocity[d][slot] = v[d];
+            let dx = x[d] - part.reference[d][slot];
+            moved += dx * dx;
+            speed += v[d] * v[d];
+            pushed += a * a;
+        }
+        let rho = part.density_n[slot] + dt * sum.density_rate.0[k];
+        let pressure = state.pressure(rho);
+        part.density[slot] = rho;
+        part.pressure[slot] = pressure;
+        part.sources[slot] = source(x, v, rho, pressure, mass);
+        // Padding repeats particles without the solid's forces; what becomes of it must not steer the run.
+        if part.id[slot] != PADDING {
+            extremes = extremes.join(Extremes {
+                displacement: moved,
+                speed,
+                acceleration: pushed,
+                out_of_bounds: !(rho > low && rho < high && speed <= fastest),
+            });
+        }
+    }
+    extremes
+}
