@@ -7,6 +7,7 @@ pub mod model;
 pub mod solid;
 mod sub_steps;
 mod surface;
+pub mod total_lagrangian;
 mod wall;
 
 pub use model::{Load, SolidModel};

@@ -3,6 +3,7 @@
 use crate::hypoelastic::Hypoelastic;
 use crate::model::{Load, SolidModel};
 use crate::sub_steps::SubStepping;
+use crate::total_lagrangian::TotalLagrangian;
 use halfstep_shared::failure::{Diverged, RoleName};
 use halfstep_shared::geometry::nearest;
 use halfstep_shared::interface::{Interface, Parameters};
@@ -39,6 +40,7 @@ impl<const D: usize> Solid<D> {
         let solid = scene.solid.as_ref()?;
         let model: Box<dyn SolidModel<D>> = match solid.model {
             SolidModelName::Hypoelastic => Box::new(Hypoelastic::<D>::new(scene, isa)?),
+            SolidModelName::TotalLagrangian => Box::new(TotalLagrangian::<D>::new(scene, isa)?),
         };
         Some(Self::with_model(scene, isa, model))
     }
