@@ -8,6 +8,7 @@ use halfstep_shared::lane::Isa;
 use halfstep_shared::link::LinkConfig;
 use halfstep_shared::role::Role;
 use halfstep_shared::scene::{self, Scene, TimeStep};
+use halfstep_solid::SubStepping;
 use std::fmt::Write;
 use std::time::Instant;
 
@@ -38,7 +39,7 @@ pub fn describe(scene: &Scene) -> String {
         line(&format!("{name} dt limit"), format!("{own:.3e} s"));
         limit = limit.min(own);
         if name == RoleName::Solid {
-            solid_limit = Some(halfstep_solid_limit(scene));
+            solid_limit = Some(own);
         }
         let cost = half_step_cost(role.as_mut());
         seconds = seconds.max(2.0 * cost);
@@ -51,13 +52,10 @@ pub fn describe(scene: &Scene) -> String {
         "time step",
         format!("{dt:.3e} s: {:.0} steps to t = {} s", (scene.end_time / dt).ceil(), scene.end_time),
     );
-    if let (Some(own), true) = (solid_limit, scene.fluid.is_some()) {
-        let k = (dt / own).ceil().max(1.0);
-        line(
-            "solid sub-steps",
-            format!("{} (one is stable to {own:.3e} s)", if k > 1.0 { (k / 2.0).ceil() * 2.0 } else { 1.0 }),
-        );
-        seconds = seconds.max(0.0);
+    if let (Some(limit), true) = (solid_limit, scene.fluid.is_some()) {
+        let stepping = SubStepping::of(scene);
+        let own = limit / f64::from(stepping.most());
+        line("solid sub-steps", format!("{} (one is stable to {own:.3e} s)", stepping.choose(dt, own)));
     }
     line("memory", format!("about {:.1} MB", scene::memory_needed(&counts) as f64 / 1e6));
     if scene.fluid.is_some() && scene.solid.is_some() {
@@ -75,13 +73,6 @@ pub fn describe(scene: &Scene) -> String {
             writeln!(text, "{:<28}{:<5}{}", effect.name, if effect.on { "on" } else { "off" }, effect.why);
     }
     text
-}
-
-fn halfstep_solid_limit(scene: &Scene) -> f64 {
-    scene
-        .solid
-        .as_ref()
-        .map_or(f64::INFINITY, |s| scene.numerics.solid_cfl * scene.resolution / s.pressure_wave_speed())
 }
 
 /// Seconds of one half-step's own sums, the fastest of a few.

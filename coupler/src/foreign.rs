@@ -1,5 +1,6 @@
 //! What the coupler does for a solid process that only exchanges states: its frames and probes, from its records.
 
+use halfstep_shared::geometry::nearest;
 use halfstep_shared::output::{Frame, FramePoint, FrameWriter, OutputError};
 use halfstep_shared::protocol::StateRecord;
 use halfstep_shared::scene::{Phase, ProbeKind, Scene};
@@ -66,9 +67,7 @@ impl ForeignSolid {
 
     fn nearest_to(&self, kind: &ProbeKind) -> Vec<usize> {
         let ProbeKind::Displacement { at } = kind else { return Vec::new() };
-        let distance = |x: &[f64; 3]| (0..3).map(|d| (x[d] - at[d]).powi(2)).sum::<f64>().sqrt();
-        let least = self.first.iter().map(distance).fold(f64::INFINITY, f64::min);
-        (0..self.first.len()).filter(|&i| distance(&self.first[i]) <= least * (1.0 + 1e-6) + 1e-12).collect()
+        nearest(self.first.iter().copied(), *at)
     }
 
     /// Writes the records as a frame.
@@ -80,19 +79,7 @@ impl ForeignSolid {
             frame.clear();
             frame.time = time;
             for r in records {
-                let mut stress = r.deviatoric_stress;
-                for d in 0..3 {
-                    stress[d] -= r.pressure;
-                }
-                frame.push(FramePoint {
-                    position: r.position,
-                    velocity: r.velocity,
-                    density: r.density,
-                    pressure: r.pressure,
-                    stress,
-                    phase: Phase::Solid,
-                    id: r.id,
-                });
+                frame.push(FramePoint::solid(r));
             }
         })
     }

@@ -7,12 +7,14 @@
 //! Where shapes overlap, the solid wins over the wall, the wall over the fluid, and in one phase the shape that comes
 //! first in the file. The loser has no particle inside the winner nor closer than dx / 2 to one of its particles.
 
+mod nearest;
 mod occupied;
 mod points;
 #[cfg(test)]
 mod tests;
 
 use crate::scene::{Block, CantileverMode, Geometry, Lattice, Phase, Scene, Shape};
+pub use nearest::nearest;
 use occupied::Occupied;
 use points::Spacing;
 

@@ -1,8 +1,15 @@
 //! The solid process: any [`SolidModel`] behind the half-step protocol.
 
+mod artificial_viscosity;
+mod columns;
 pub mod hypoelastic;
 pub mod model;
 pub mod solid;
+mod sub_steps;
+mod surface;
+pub mod total_lagrangian;
+mod wall;
 
 pub use model::{Load, SolidModel};
 pub use solid::Solid;
+pub use sub_steps::SubStepping;

@@ -1,7 +1,7 @@
 //! The seam: what a solid model is to the rest of the program.
 
 use halfstep_shared::failure::Quantity;
-use halfstep_shared::output::Frame;
+use halfstep_shared::output::{Frame, FramePoint};
 use halfstep_shared::protocol::StateRecord;
 
 /// What the fluid does to the solid during one stage. One entry for each of the model's particles, by particle number;
@@ -63,7 +63,11 @@ pub trait SolidModel<const D: usize>: Send {
     /// Energy stored in the material, J (2D: J/m).
     fn strain_energy(&self) -> f64;
     /// Copies the particles for output.
-    fn fill_frame(&self, frame: &mut Frame);
+    fn fill_frame(&self, frame: &mut Frame) {
+        for p in 0..self.particles() as u32 {
+            frame.push(FramePoint::solid(&self.record(p)));
+        }
+    }
     /// Pair evaluations so far.
     fn pair_evaluations(&self) -> u64;
 }

@@ -2,13 +2,16 @@
 
 use crate::hypoelastic::Hypoelastic;
 use crate::model::{Load, SolidModel};
+use crate::sub_steps::SubStepping;
+use crate::total_lagrangian::TotalLagrangian;
 use halfstep_shared::failure::{Diverged, RoleName};
+use halfstep_shared::geometry::nearest;
 use halfstep_shared::interface::{Interface, Parameters};
 use halfstep_shared::lane::Isa;
 use halfstep_shared::output::Frame;
 use halfstep_shared::protocol::{ForceRecord, MAX_PROBE_VALUES, StateRecord};
 use halfstep_shared::role::{CoverageError, Role, audit};
-use halfstep_shared::scene::{Phase, ProbeKind, Scene, SolidModelName, SubSteps, Treatment};
+use halfstep_shared::scene::{Phase, ProbeKind, Scene, SolidModelName, Treatment};
 use xxhash_rust::xxh3::Xxh3;
 
 /// A solid model with what the lock-step asks of it.
@@ -18,8 +21,7 @@ pub struct Solid<const D: usize> {
     interface: Option<Interface<D>>,
     load: Load<D>,
     probes: Vec<Measurement>,
-    sub_steps: SubSteps,
-    max_sub_steps: u32,
+    sub_steps: SubStepping,
     taken: u32,
     density: f64,
     limit: f64,
@@ -38,6 +40,7 @@ impl<const D: usize> Solid<D> {
         let solid = scene.solid.as_ref()?;
         let model: Box<dyn SolidModel<D>> = match solid.model {
             SolidModelName::Hypoelastic => Box::new(Hypoelastic::<D>::new(scene, isa)?),
+            SolidModelName::TotalLagrangian => Box::new(TotalLagrangian::<D>::new(scene, isa)?),
         };
         Some(Self::with_model(scene, isa, model))
     }
@@ -51,46 +54,24 @@ impl<const D: usize> Solid<D> {
             .iter()
             .filter_map(|p| match p.kind {
                 ProbeKind::Displacement { at } => {
-                    Some(Measurement::Displacement(nearest(model.as_ref(), std::array::from_fn(|d| at[d]))))
+                    let references = (0..model.particles() as u32).map(|p| model.reference(p));
+                    let near = nearest(references, std::array::from_fn(|d| at[d]));
+                    Some(Measurement::Displacement(near.into_iter().map(|p| p as u32).collect()))
                 }
                 ProbeKind::KineticEnergy { phase: Phase::Solid } => Some(Measurement::KineticEnergy),
                 ProbeKind::Centroid { phase: Phase::Solid } => Some(Measurement::Centroid),
                 _ => None,
             })
             .collect();
-        let sub_steps = if phase_blind || scene.solid.is_none() {
-            SubSteps::Fixed(1)
-        } else {
-            scene.solid.as_ref().map_or(SubSteps::Auto, |s| s.sub_steps)
-        };
-        // Alone, the solid has nothing to sub-step under: its own limit is the time step.
-        let sub_steps = if scene.fluid.is_none() { SubSteps::Fixed(1) } else { sub_steps };
-        // Half a step must be a whole number of sub-steps.
-        let max_sub_steps = match scene.numerics.max_sub_steps {
-            0 | 1 => 1,
-            most => most & !1,
-        };
         Self {
             load: Load::none(model.particles()),
             limit: model.sub_step_limit(),
             model,
             interface,
             probes,
-            sub_steps,
-            max_sub_steps,
+            sub_steps: SubStepping::of(scene),
             taken: 1,
             density: scene.solid.as_ref().map_or(1.0, |s| s.density),
-        }
-    }
-
-    /// Sub-steps for a time step: 1 where that is stable, else the smallest even number that is.
-    fn choose_sub_steps(&self, dt: f64) -> u32 {
-        match self.sub_steps {
-            SubSteps::Fixed(k) => k,
-            SubSteps::Auto => {
-                let needed = (dt / self.limit * (1.0 - 1e-12)).ceil();
-                if needed <= 1.0 { 1 } else { (needed as u32).next_multiple_of(2).min(self.max_sub_steps) }
-            }
         }
     }
 
@@ -105,17 +86,6 @@ impl<const D: usize> Solid<D> {
     }
 }
 
-/// The particles nearest to a point of the reference configuration: all that are equally near.
-fn nearest<const D: usize>(model: &dyn SolidModel<D>, at: [f64; D]) -> Vec<u32> {
-    let distance = |p: u32| {
-        let x = model.reference(p);
-        (0..D).map(|d| (x[d] - at[d]).powi(2)).sum::<f64>().sqrt()
-    };
-    let all = 0..model.particles() as u32;
-    let least = all.clone().map(distance).fold(f64::INFINITY, f64::min);
-    all.filter(|&p| distance(p) <= least * (1.0 + 1e-6) + 1e-12).collect()
-}
-
 impl<const D: usize> Role for Solid<D> {
     fn name(&self) -> RoleName {
         RoleName::Solid
@@ -126,11 +96,7 @@ impl<const D: usize> Role for Solid<D> {
     }
 
     fn dt_limit(&self) -> f64 {
-        self.limit
-            * match self.sub_steps {
-                SubSteps::Fixed(k) => f64::from(k),
-                SubSteps::Auto => f64::from(self.max_sub_steps),
-            }
+        self.limit * f64::from(self.sub_steps.most())
     }
 
     fn publish(&mut self, _peer: &[StateRecord], out: &mut Vec<StateRecord>) -> u64 {
@@ -172,7 +138,7 @@ impl<const D: usize> Role for Solid<D> {
                 std::array::from_fn(|d| mass * force.cross_viscosity[d] + force.stress_force[d]);
         }
         if stage == 0 {
-            self.taken = self.choose_sub_steps(dt);
+            self.taken = self.sub_steps.choose(dt, self.limit);
         }
         self.model.advance(stage, dt, self.taken, &self.load).map_err(|o| Diverged {
             role: RoleName::Solid,

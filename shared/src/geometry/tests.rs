@@ -33,6 +33,8 @@ fn scene(shapes: Vec<Shape>) -> Scene {
             smoothing_ratio: 1.33,
             artificial_viscosity: ArtificialViscosity { linear: 1.0, quadratic: 1.0 },
             artificial_stress: ArtificialStress { strength: 0.3, exponent: 4.0 },
+            material: Material::NeoHookean,
+            hourglass: None,
             sub_steps: SubSteps::Auto,
         }),
         interface: Interface { treatment: Treatment::MovingWall, cross_viscosity: 1.0 },

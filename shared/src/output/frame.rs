@@ -1,5 +1,6 @@
 //! One instant of one process: the columns that go into a frame file.
 
+use crate::protocol::StateRecord;
 use crate::scene::Phase;
 
 /// Number of the fluid in [`Frame::phase`].
@@ -47,6 +48,25 @@ pub struct FramePoint {
     pub phase: Phase,
     /// Its number.
     pub id: u32,
+}
+
+impl FramePoint {
+    /// A solid particle as its record shows it.
+    pub fn solid(r: &StateRecord) -> Self {
+        let mut stress = r.deviatoric_stress;
+        for normal in &mut stress[..3] {
+            *normal -= r.pressure;
+        }
+        Self {
+            position: r.position,
+            velocity: r.velocity,
+            density: r.density,
+            pressure: r.pressure,
+            stress,
+            phase: Phase::Solid,
+            id: r.id,
+        }
+    }
 }
 
 impl Frame {

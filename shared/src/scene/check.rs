@@ -115,17 +115,27 @@ impl Check<'_> {
                 Geometry::Ring { inner, outer, .. } => ("ring", outer - inner),
             };
             let nodal = self.scene.numerics.lattice == Lattice::Nodal && shape.phase != Phase::Wall;
-            let (least, convention) = if nodal { (2.0 * dx, " in the nodal lattice") } else { (dx, "") };
+            // One row of particles has no deformation gradient across.
+            let row = shape.phase == Phase::Solid && self.total_lagrangian() && kind != "disc";
+            let needed =
+                if row { "two particles of the total-lagrangian model need" } else { "one particle needs" };
+            let least = dx * (1.0 + f64::from(u8::from(nodal)) + f64::from(u8::from(row)));
+            let convention = if nodal { " in the nodal lattice" } else { "" };
             if thickness < least * (1.0 - 1e-9) {
                 let place = format!("{key}.{kind}");
                 let corners = [format!("{place}.min"), format!("{place}.max")];
-                let others = [&corners[0], &corners[1], "resolution", "numerics.lattice", "preset"];
+                let others =
+                    [&corners[0], &corners[1], "resolution", "numerics.lattice", "solid.model", "preset"];
                 // In single precision: without the last digits that a difference leaves.
                 let thickness = thickness as f32;
-                let reason = format!("is {thickness} m thin, and one particle needs {least} m{convention}");
+                let reason = format!("is {thickness} m thin, and {needed} {least} m{convention}");
                 self.report.among(self.root, &place, &others, reason);
             }
         }
+    }
+
+    fn total_lagrangian(&self) -> bool {
+        self.scene.solid.as_ref().is_some_and(|s| s.model == SolidModelName::TotalLagrangian)
     }
 
     fn thinnest(&self, block: &Block) -> f64 {
@@ -136,6 +146,11 @@ impl Check<'_> {
     fn interface(&self) {
         if self.report.has("interface.treatment") || self.scene.interface.treatment != Treatment::PhaseBlind {
             return;
+        }
+        if self.total_lagrangian() {
+            let why = "the fluid's share in a velocity gradient means nothing to a deformation gradient";
+            let reason = format!("cannot be phase-blind with solid.model = \"total-lagrangian\": {why}");
+            self.report.among(self.root, "interface.treatment", &["solid.model", "preset"], reason);
         }
         if let Some(SubSteps::Fixed(n)) = self.scene.solid.as_ref().map(|s| s.sub_steps)
             && n != 1

@@ -142,8 +142,13 @@ pub struct Solid {
     pub smoothing_ratio: f64,
     /// Artificial viscosity inside the solid.
     pub artificial_viscosity: ArtificialViscosity,
-    /// Gray's artificial stress.
+    /// Gray's artificial stress; the hypoelastic model only.
     pub artificial_stress: ArtificialStress,
+    /// Law of the total-Lagrangian model.
+    pub material: Material,
+    /// Coefficient alpha of the total-Lagrangian model's hourglass resistance; `None`: the one that gives particles the
+    /// bending stiffness of their cells.
+    pub hourglass: Option<f64>,
     /// Solid sub-steps per fluid step.
     pub sub_steps: SubSteps,
 }
@@ -173,6 +178,18 @@ impl Solid {
 pub enum SolidModelName {
     /// Hooke's law in rate form with the Jaumann rate (Gray, Monaghan and Swift 2001).
     Hypoelastic,
+    /// Hyperelastic, with neighbours of the reference configuration (Bonet and Lok 1999).
+    TotalLagrangian,
+}
+
+/// The hyperelastic laws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Material {
+    /// Linear between Green's strain and its stress.
+    StVenantKirchhoff,
+    /// Compressible, stiffens under compression.
+    NeoHookean,
 }
 
 /// Parameters of the artificial stress (Gray 2001).
@@ -339,6 +356,8 @@ pub enum EffectName {
     ArtificialStress,
     /// Renormalised velocity gradient in the solid.
     RenormalisedGradient,
+    /// Clamps hold the total-Lagrangian solid at their boxes' faces.
+    ClampFace,
     /// Rigid walls toward the solid.
     WallContact,
     /// Wall pressure is never negative.

@@ -3,6 +3,7 @@
 use super::*;
 
 /// Every default that does not depend on other keys.
+#[derive(Clone, Copy)]
 pub(super) struct Defaults {
     pub(super) smoothing_ratio: f64,
     pub(super) time_step: TimeStep,
@@ -50,6 +51,18 @@ impl Defaults {
                 cross_viscosity: 1.0,
                 kernel: KernelName::CubicSpline,
                 lattice: Lattice::Nodal,
+            },
+        }
+    }
+    /// With what the solid's model asks for.
+    pub(super) fn with_model(self, model: SolidModelName) -> Self {
+        match model {
+            SolidModelName::Hypoelastic => self,
+            // Fixed neighbours and corrected gradients: eight neighbours are enough, and nothing has to be damped.
+            SolidModelName::TotalLagrangian => Self {
+                solid_smoothing_ratio: 0.75,
+                solid_viscosity: ArtificialViscosity { linear: 0.0, quadratic: 0.0 },
+                ..self
             },
         }
     }

@@ -18,6 +18,9 @@ pub(super) struct Draft {
 const SMOOTHING: Range = Range::at_least(1.0)
     .up_to(2.5)
     .why("below, neighbours are too few; above, they are too many to resolve anything at this spacing");
+const FIXED_SMOOTHING: Range = Range::at_least(0.75)
+    .up_to(2.5)
+    .why("below, a particle loses its diagonal neighbours; above, they are too many to resolve anything at this spacing");
 // Ends beyond any material, within which no formula overflows.
 const DENSITY: Range = Range::at_least(1e-6).up_to(1e9);
 const PRESSURE: Range = Range::at_least(0.0).up_to(1e15);
@@ -39,7 +42,7 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report) -> Draft {
         _ => (None, false),
     };
     let solid = match top.section("solid") {
-        section if section.is_present() => Some(solid(section, &defaults, numerics.max_sub_steps)),
+        section if section.is_present() => Some(solid(section, defaults, numerics.max_sub_steps)),
         _ => None,
     };
     let scene = Scene {
@@ -138,16 +141,14 @@ fn viscosity(section: &Section<'_>, default: ArtificialViscosity) -> ArtificialV
     viscosity
 }
 
-fn solid(section: Section<'_>, defaults: &Defaults, max_sub_steps: u32) -> Solid {
+fn solid(section: Section<'_>, defaults: Defaults, max_sub_steps: u32) -> Solid {
+    const HYPOELASTIC: SolidModelName = SolidModelName::Hypoelastic;
+    let models = [("hypoelastic", HYPOELASTIC), ("total-lagrangian", SolidModelName::TotalLagrangian)];
+    let model = section.choice("model", Some(HYPOELASTIC), &models).unwrap_or(HYPOELASTIC);
+    let defaults = defaults.with_model(model);
     let stress = section.section("artificial_stress");
     let solid = Solid {
-        model: section
-            .choice(
-                "model",
-                Some(SolidModelName::Hypoelastic),
-                &[("hypoelastic", SolidModelName::Hypoelastic)],
-            )
-            .unwrap_or(SolidModelName::Hypoelastic),
+        model,
         density: section.number("density", None, DENSITY),
         youngs_modulus: section.number("youngs_modulus", None, Range::positive().up_to(1e15)),
         poissons_ratio: section.number(
@@ -157,7 +158,14 @@ fn solid(section: Section<'_>, defaults: &Defaults, max_sub_steps: u32) -> Solid
                 .below(0.5)
                 .why("at 0.5 a solid is incompressible, its bulk modulus infinite"),
         ),
-        smoothing_ratio: section.number("smoothing_ratio", Some(defaults.solid_smoothing_ratio), SMOOTHING),
+        smoothing_ratio: section.number(
+            "smoothing_ratio",
+            Some(defaults.solid_smoothing_ratio),
+            match model {
+                HYPOELASTIC => SMOOTHING,
+                SolidModelName::TotalLagrangian => FIXED_SMOOTHING,
+            },
+        ),
         artificial_viscosity: viscosity(&section, defaults.solid_viscosity),
         artificial_stress: ArtificialStress {
             strength: stress.number("strength", Some(defaults.artificial_stress.strength), COEFFICIENT),
@@ -167,8 +175,39 @@ fn solid(section: Section<'_>, defaults: &Defaults, max_sub_steps: u32) -> Solid
                 Range::at_least(1.0).up_to(16.0).why("it is a whole power of a ratio of kernels"),
             ),
         },
+        material: section
+            .choice(
+                "material",
+                Some(Material::NeoHookean),
+                &[
+                    ("st-venant-kirchhoff", Material::StVenantKirchhoff),
+                    ("neo-hookean", Material::NeoHookean),
+                ],
+            )
+            .unwrap_or(Material::NeoHookean),
+        hourglass: section.number_or_auto(
+            "hourglass",
+            None,
+            Range::at_least(0.0)
+                .up_to(10.0)
+                .why("beyond, it is stiffer than the material and limits the time step"),
+        ),
         sub_steps: sub_steps(&section, max_sub_steps),
     };
+    let foreign: &[(&str, &str)] = match model {
+        HYPOELASTIC => &[
+            ("material", "only the total-lagrangian model has a choice of materials"),
+            ("hourglass", "only the total-lagrangian model resists hourglass modes"),
+        ],
+        SolidModelName::TotalLagrangian => {
+            &[("artificial_stress", "the total-lagrangian model has no tensile instability that needs it")]
+        }
+    };
+    for (key, why) in foreign {
+        if let Some(node) = section.node(key) {
+            section.wrong(key, node, *why);
+        }
+    }
     stress.finish();
     section.finish();
     solid
@@ -228,6 +267,7 @@ fn effects(top: &Section<'_>) -> BTreeMap<EffectName, Switch> {
         ("viscosity", EffectName::Viscosity),
         ("artificial-stress", EffectName::ArtificialStress),
         ("renormalised-gradient", EffectName::RenormalisedGradient),
+        ("clamp-face", EffectName::ClampFace),
         ("wall-contact", EffectName::WallContact),
         ("non-negative-wall-pressure", EffectName::NonNegativeWallPressure),
         ("wall-guard", EffectName::WallGuard),

@@ -1,22 +1,8 @@
 //! Columns of the solid particles.
 
+use crate::columns::{Tensors, Vectors, tensors, vectors};
 use halfstep_shared::geometry::SolidPoint;
 use halfstep_shared::neighbours::Rows;
-
-/// D columns.
-pub(super) type Vectors<const D: usize> = [Vec<f64>; D];
-/// Symmetric tensors; a <= b filled.
-pub(super) type Tensors<const D: usize> = [[Vec<f64>; D]; D];
-
-/// `D` columns of `n` zeros.
-pub(super) fn vectors<const D: usize>(n: usize) -> Vectors<D> {
-    std::array::from_fn(|_| vec![0.0; n])
-}
-
-/// Columns of `n` zeros for a symmetric tensor.
-pub(super) fn tensors<const D: usize>(n: usize) -> Tensors<D> {
-    std::array::from_fn(|a| std::array::from_fn(|b| if a <= b { vec![0.0; n] } else { Vec::new() }))
-}
 
 /// What time integration advances.
 #[derive(Clone, Debug)]

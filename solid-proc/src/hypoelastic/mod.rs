@@ -3,12 +3,12 @@
 
 mod artificial_stress;
 mod columns;
+mod evaluate;
 mod gradient;
 mod model;
 mod rates;
 mod stress_rate;
 #[cfg(test)]
 mod tests;
-mod wall;
 
 pub use model::Hypoelastic;

@@ -3,7 +3,9 @@
 //!   dv_a/dx_b = sum_j V_j (v_j - v_i)_a F x_ij,b                                        (and D rho / Dt = -rho tr)
 //!   D v_i / Dt = sum_j m_j [sigma_i/rho_i² + sigma_j/rho_j² - Pi_ij I + (R_i + R_j) f^n] . grad W    (eqs. 22 to 26)
 
-use super::columns::{State, Tensors};
+use super::columns::State;
+use crate::artificial_viscosity::artificial_viscosity;
+use crate::columns::Tensors;
 use halfstep_shared::kernel::Kernel;
 use halfstep_shared::lane::{Arch, Lane};
 use halfstep_shared::pair::{PairLaw, distance, dot};
@@ -117,20 +119,6 @@ pub(super) struct Target<O, const D: usize> {
     density: Lane,
     stress_term: [[Lane; D]; D],
     own: O,
-}
-
-/// Pi_ij, Kayaki's eqs. (23) and (24).
-#[inline(always)]
-pub(super) fn artificial_viscosity<A: Arch>(
-    h: f64,
-    linear: f64,
-    quadratic: f64,
-    approach: Lane,
-    r2: Lane,
-    density_sum: Lane,
-) -> Lane {
-    let theta = approach.min(Lane::ZERO) * Lane::splat(h) / (r2 + Lane::splat(0.01 * h * h));
-    theta * A::mul_add(Lane::splat(quadratic), theta, Lane::splat(-linear)) * Lane::splat(2.0) / density_sum
 }
 
 impl<K: Kernel<D>, T: TensileCorrection<D>, M: Moment, const D: usize> PairLaw<D>

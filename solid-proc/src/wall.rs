@@ -2,33 +2,33 @@
 //! solid around, density rho_w = rho_s0 (1 + p_w / K), no deviatoric stress. A wall that could pull would glue the solid
 //! to it, so only pressures above zero act, and only walls that the scene lets the solid touch are here.
 
-use super::columns::{State, Vectors, vectors};
-use super::rates::artificial_viscosity;
-use halfstep_shared::extrapolation::ExtrapolationSum;
+use crate::artificial_viscosity::artificial_viscosity;
+use crate::columns::{Vectors, vectors};
+use halfstep_shared::extrapolation::{Extrapolation, ExtrapolationSum};
 use halfstep_shared::geometry::WallPoint;
 use halfstep_shared::kernel::Kernel;
-use halfstep_shared::lane::{Arch, LANES, Lane};
+use halfstep_shared::lane::{Arch, Isa, LANES, Lane};
 use halfstep_shared::neighbours::{ClusterList, Rows};
-use halfstep_shared::pair::{PairLaw, distance, dot};
+use halfstep_shared::pair::{self, PairLaw, distance, dot};
 
 /// Wall particles that the solid may touch.
-pub(super) struct Walls<const D: usize> {
+pub(crate) struct Walls<const D: usize> {
     id: Vec<u32>,
-    pub position: Vectors<D>,
-    pub pressure: Vec<f64>,
-    pub density: Vec<f64>,
-    pub rows: Rows<D>,
+    position: Vectors<D>,
+    pressure: Vec<f64>,
+    density: Vec<f64>,
+    rows: Rows<D>,
     /// Walls' solid neighbours.
-    pub sources: ClusterList,
+    sources: ClusterList,
     /// The solid's wall neighbours.
-    pub neighbours: ClusterList,
-    pub sums: Vec<ExtrapolationSum>,
-    pub forces: Vec<WallForce<D>>,
+    neighbours: ClusterList,
+    sums: Vec<ExtrapolationSum>,
+    forces: Vec<WallForce<D>>,
 }
 
 impl<const D: usize> Walls<D> {
     /// `None` where the solid may touch no wall.
-    pub(super) fn new(points: &[WallPoint<D>], height: f64) -> Option<Self> {
+    pub(crate) fn new(points: &[WallPoint<D>], height: f64) -> Option<Self> {
         let points: Vec<_> = points.iter().filter(|p| p.contact).collect();
         if points.is_empty() {
             return None;
@@ -63,8 +63,49 @@ impl<const D: usize> Walls<D> {
         Some(walls)
     }
 
+    /// Lists who is near whom, to `reach`. The solid is sorted by `rows`.
+    pub(crate) fn relist(&mut self, solid: &Vectors<D>, rows: &Rows<D>, reach: f64) {
+        self.neighbours.build(solid, &self.position, &self.rows, reach);
+        self.sources.build(&self.position, solid, rows, reach);
+        self.sums.resize(self.sources.clusters(), ExtrapolationSum::default());
+        self.forces.resize(self.neighbours.clusters(), WallForce::default());
+    }
+
+    /// Evaluates the push on every solid particle.
+    pub(crate) fn act<K: Kernel<D>>(
+        &mut self,
+        isa: Isa,
+        kernel: K,
+        gravity: [f64; D],
+        solid: Touching<'_, D>,
+    ) {
+        let law = Extrapolation {
+            kernel,
+            gravity,
+            targets: &self.position,
+            sources: solid.position,
+            density: solid.density,
+            pressure: solid.pressure,
+        };
+        pair::pass(isa, &law, &self.sources, &mut self.sums);
+        self.show(solid.reference_density, solid.bulk_modulus);
+        let law = Push {
+            kernel,
+            solid,
+            position: &self.position,
+            pressure: &self.pressure,
+            density: &self.density,
+        };
+        pair::pass(isa, &law, &self.neighbours, &mut self.forces);
+    }
+
+    /// Acceleration of the solid particle at a slot, m/s².
+    pub(crate) fn acceleration(&self, slot: usize) -> [f64; D] {
+        self.forces[slot / LANES].0.map(|a| a.0[slot % LANES])
+    }
+
     /// Pressure and density shown to the solid.
-    pub(super) fn show(&mut self, density: f64, bulk_modulus: f64) {
+    fn show(&mut self, density: f64, bulk_modulus: f64) {
         for (c, sum) in self.sums.iter().enumerate() {
             for k in 0..LANES {
                 let p = sum.pressure(k).unwrap_or(0.0).max(0.0);
@@ -75,9 +116,32 @@ impl<const D: usize> Walls<D> {
     }
 }
 
+/// The solid as walls see it: columns sorted by the rows that the lists were made with.
+#[derive(Clone, Copy)]
+pub(crate) struct Touching<'a, const D: usize> {
+    /// m.
+    pub(crate) position: &'a Vectors<D>,
+    /// m/s.
+    pub(crate) velocity: &'a Vectors<D>,
+    /// kg/m³.
+    pub(crate) density: &'a [f64],
+    /// Pa.
+    pub(crate) pressure: &'a [f64],
+    /// Of each particle, kg (2D: kg/m).
+    pub(crate) mass: f64,
+    /// kg/m³.
+    pub(crate) reference_density: f64,
+    /// Pa.
+    pub(crate) bulk_modulus: f64,
+    /// A c_s of the artificial viscosity.
+    pub(crate) linear: f64,
+    /// B of the artificial viscosity.
+    pub(crate) quadratic: f64,
+}
+
 /// Acceleration of four solid particles by the walls.
 #[derive(Clone, Copy)]
-pub(super) struct WallForce<const D: usize>(pub [Lane; D]);
+struct WallForce<const D: usize>([Lane; D]);
 
 impl<const D: usize> Default for WallForce<D> {
     fn default() -> Self {
@@ -86,19 +150,19 @@ impl<const D: usize> Default for WallForce<D> {
 }
 
 /// The walls push the solid.
-pub(super) struct Push<'a, K, const D: usize> {
-    pub kernel: K,
-    pub solid: &'a State<D>,
-    /// Pressure of the solid, Pa.
-    pub pressure: &'a [f64],
-    pub walls: &'a Walls<D>,
-    pub mass: f64,
-    pub linear: f64,
-    pub quadratic: f64,
+struct Push<'a, K, const D: usize> {
+    kernel: K,
+    solid: Touching<'a, D>,
+    /// Of the wall particles, m.
+    position: &'a Vectors<D>,
+    /// Of the wall particles, Pa.
+    pressure: &'a [f64],
+    /// Of the wall particles, kg/m³.
+    density: &'a [f64],
 }
 
 #[derive(Clone, Copy)]
-pub(super) struct Target<const D: usize> {
+struct Target<const D: usize> {
     velocity: [Lane; D],
     density: Lane,
     pressure_term: Lane,
@@ -109,12 +173,12 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for Push<'_, K, D> {
     type Sum = WallForce<D>;
     #[inline(always)]
     fn target_positions(&self) -> &[Vec<f64>; D] {
-        &self.solid.position
+        self.solid.position
     }
     #[inline(always)]
     fn target(&self, slot: usize) -> Target<D> {
-        let density = Lane::load(&self.solid.density, slot);
-        let pressure = Lane::load(self.pressure, slot).max(Lane::ZERO);
+        let density = Lane::load(self.solid.density, slot);
+        let pressure = Lane::load(self.solid.pressure, slot).max(Lane::ZERO);
         Target {
             velocity: std::array::from_fn(|d| Lane::load(&self.solid.velocity[d], slot)),
             density,
@@ -123,24 +187,24 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for Push<'_, K, D> {
     }
     #[inline(always)]
     fn source_position(&self, j: usize) -> [f64; D] {
-        std::array::from_fn(|d| self.walls.position[d][j])
+        std::array::from_fn(|d| self.position[d][j])
     }
     #[inline(always)]
     fn add<A: Arch>(&self, i: &Target<D>, j: usize, dx: [Lane; D], r2: Lane, sum: &mut WallForce<D>) {
         let h = self.kernel.smoothing_length();
         let f = self.kernel.gradient_over_r::<A>(distance(r2, h));
         let approach = dot::<D, A>(i.velocity, dx);
-        let rho = self.walls.density[j];
+        let rho = self.density[j];
         let pi = artificial_viscosity::<A>(
             h,
-            self.linear,
-            self.quadratic,
+            self.solid.linear,
+            self.solid.quadratic,
             approach,
             r2,
             i.density + Lane::splat(rho),
         );
-        let term = i.pressure_term + Lane::splat(self.walls.pressure[j] / (rho * rho)) + pi;
-        let coefficient = Lane::splat(-self.mass) * f * term;
+        let term = i.pressure_term + Lane::splat(self.pressure[j] / (rho * rho)) + pi;
+        let coefficient = Lane::splat(-self.solid.mass) * f * term;
         for d in 0..D {
             sum.0[d] = A::mul_add(coefficient, dx[d], sum.0[d]);
         }

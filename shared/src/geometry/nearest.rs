@@ -1,0 +1,24 @@
+//! Which particles a probe looks at.
+
+/// Indices of the positions nearest to a point: all that are equally near.
+pub fn nearest<const D: usize>(
+    positions: impl Iterator<Item = [f64; D]> + Clone,
+    at: [f64; D],
+) -> Vec<usize> {
+    let distances = positions.map(|x: [f64; D]| (0..D).map(|d| (x[d] - at[d]).powi(2)).sum::<f64>().sqrt());
+    let least = distances.clone().fold(f64::INFINITY, f64::min);
+    distances.enumerate().filter(|(_, r)| *r <= least * (1.0 + 1e-6) + 1e-12).map(|(i, _)| i).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::nearest;
+
+    #[test]
+    fn all_that_are_equally_near() {
+        let row = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 0.0]];
+        assert_eq!(nearest(row.into_iter(), [1.5, 2.0]), [1, 2]);
+        assert_eq!(nearest(row.into_iter(), [9.0, 0.0]), [3]);
+        assert!(nearest([[0.0; 3]; 0].into_iter(), [0.0; 3]).is_empty());
+    }
+}

@@ -1,0 +1,173 @@
+//! Rates of a state: equation of state, the pass, walls, stress rate.
+
+use super::artificial_stress;
+use super::gradient::renormalise;
+use super::model::Hypoelastic;
+use super::rates::{ArtificialStress, Moment, Plain, Renormalised, SolidLaw, TensileCorrection};
+use super::stress_rate::jaumann;
+use crate::columns::tensors;
+use crate::model::Load;
+use crate::wall::Touching;
+use halfstep_shared::kernel::Kernel;
+use halfstep_shared::lane::LANES;
+use halfstep_shared::neighbours::PADDING;
+use halfstep_shared::{pair, with_kernel};
+use std::marker::PhantomData;
+
+impl<const D: usize> Hypoelastic<D> {
+    pub(super) fn stress_at(&self, slot: usize) -> [[f64; D]; D] {
+        std::array::from_fn(|a| std::array::from_fn(|b| self.now.stress[a.min(b)][a.max(b)][slot]))
+    }
+
+    /// p = K (rho/rho0 - 1) (Kayaki's eq. 5) and what follows from pressure and stress.
+    pub(super) fn apply_state_equation(&mut self) {
+        let (k, rho0) = (self.material.bulk_modulus(), self.material.density);
+        for slot in 0..self.id.len() {
+            let rho = self.now.density[slot];
+            let p = k * (rho / rho0 - 1.0);
+            self.pressure[slot] = p;
+            self.volume[slot] = self.mass / rho;
+            let s = self.stress_at(slot);
+            let sigma: [[f64; D]; D] =
+                std::array::from_fn(|a| std::array::from_fn(|b| if a == b { s[a][b] - p } else { s[a][b] }));
+            let inverse = 1.0 / (rho * rho);
+            for a in 0..D {
+                for b in a..D {
+                    self.stress_term[a][b][slot] = sigma[a][b] * inverse;
+                }
+            }
+            if self.artificial_stress.is_some() {
+                let r = artificial_stress::tensor(self.material.artificial_stress.strength, sigma, rho);
+                for a in 0..D {
+                    for b in a..D {
+                        self.artificial[a][b][slot] = r[a][b];
+                    }
+                }
+            }
+        }
+    }
+
+    fn pass<K: Kernel<D>, T: TensileCorrection<D>, M: Moment>(&mut self, kernel: K, correction: T, _: M) {
+        // The correction borrows from self; the sums do not.
+        let mut sums = std::mem::take(&mut self.sums);
+        let law = SolidLaw {
+            kernel,
+            correction,
+            gradient: PhantomData::<M>,
+            state: &self.now,
+            stress_term: &self.stress_term,
+            volume: &self.volume,
+            mass: self.mass,
+            linear: self.material.artificial_viscosity.linear * self.material.sound_speed(),
+            quadratic: self.material.artificial_viscosity.quadratic,
+        };
+        pair::pass(self.isa, &law, &self.list, &mut sums);
+        self.sums = sums;
+        self.pair_evaluations += (self.list.entries() * LANES) as u64;
+    }
+
+    fn sums<K: Kernel<D>>(&mut self, kernel: K) {
+        let artificial = std::mem::replace(&mut self.artificial, tensors(0));
+        let correction = self.artificial_stress.map(|exponent| ArtificialStress {
+            tensors: &artificial,
+            inverse_w0: 1.0 / kernel.at(self.resolution),
+            exponent,
+        });
+        match (correction, self.renormalised) {
+            (None, false) => self.pass(kernel, (), Plain),
+            (None, true) => self.pass(kernel, (), Renormalised),
+            (Some(c), false) => self.pass(kernel, c, Plain),
+            (Some(c), true) => self.pass(kernel, c, Renormalised),
+        }
+        self.artificial = artificial;
+        if let Some(walls) = &mut self.walls {
+            let solid = Touching {
+                position: &self.now.position,
+                velocity: &self.now.velocity,
+                density: &self.now.density,
+                pressure: &self.pressure,
+                mass: self.mass,
+                reference_density: self.material.density,
+                bulk_modulus: self.material.bulk_modulus(),
+                linear: self.material.artificial_viscosity.linear * self.material.sound_speed(),
+                quadratic: self.material.artificial_viscosity.quadratic,
+            };
+            walls.act(self.isa, kernel, self.gravity, solid);
+        }
+    }
+
+    /// Rates of the present state under a load.
+    pub(super) fn compute_rates(&mut self, load: &Load<D>) {
+        if self.moved_too_far() {
+            self.sort();
+            self.apply_state_equation();
+        }
+        with_kernel!(self.kernel, self.smoothing_length, D, |kernel| self.sums(kernel));
+        let g = self.material.shear_modulus();
+        for slot in 0..self.id.len() {
+            let (sum, k) = (&self.sums[slot / LANES], slot % LANES);
+            let id = self.id[slot];
+            let mut l: [[f64; D]; D] =
+                std::array::from_fn(|a| std::array::from_fn(|b| sum.gradient[a][b].0[k]));
+            if self.renormalised {
+                l = renormalise(l, std::array::from_fn(|a| std::array::from_fn(|b| sum.moment[a][b].0[k])));
+            }
+            let mut density_rate = -self.now.density[slot] * (0..D).map(|d| l[d][d]).sum::<f64>();
+            let mut acceleration: [f64; D] =
+                std::array::from_fn(|d| sum.acceleration[d].0[k] + self.gravity[d]);
+            if let Some(walls) = &self.walls {
+                let push = walls.acceleration(slot);
+                for d in 0..D {
+                    acceleration[d] += push[d];
+                }
+            }
+            if id != PADDING {
+                let p = id as usize;
+                for d in 0..D {
+                    acceleration[d] += load.force[p][d] / self.mass;
+                }
+                if !load.gradient.is_empty() {
+                    density_rate += load.density_rate[p];
+                    for a in 0..D {
+                        for b in 0..D {
+                            l[a][b] += load.gradient[p][a][b];
+                        }
+                    }
+                }
+                if self.points[p].clamped {
+                    acceleration = [0.0; D];
+                }
+            }
+            let stress_rate = jaumann(g, l, self.stress_at(slot));
+            for a in 0..D {
+                self.rates.acceleration[a][slot] = acceleration[a];
+                for b in a..D {
+                    self.rates.stress[a][b][slot] = stress_rate[a][b];
+                }
+            }
+            self.rates.density[slot] = density_rate;
+        }
+    }
+}
+
+#[cfg(test)]
+impl<const D: usize> Hypoelastic<D> {
+    /// Gives every particle a velocity by its position.
+    pub(super) fn set_velocity(&mut self, v: impl Fn([f64; D]) -> [f64; D]) {
+        for slot in 0..self.id.len() {
+            let at = v(std::array::from_fn(|d| self.now.position[d][slot]));
+            for d in 0..D {
+                self.now.velocity[d][slot] = at[d];
+            }
+        }
+    }
+
+    /// Rate of the deviatoric stress of every particle.
+    pub(super) fn stress_rates(&mut self, load: &Load<D>) -> Vec<[[f64; D]; D]> {
+        self.compute_rates(load);
+        let rate = |s: usize| {
+            std::array::from_fn(|a| std::array::from_fn(|b: usize| self.rates.stress[a.min(b)][a.max(b)][s]))
+        };
+        self.slot_of.iter().map(|&s| rate(s as usize)).collect()
+    }
+}

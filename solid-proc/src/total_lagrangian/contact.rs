@@ -1,0 +1,248 @@
+//! Contact: what happens beyond the reference neighbours, in the present configuration.
+//!
+//! Bodies are what reference neighbours connect: shapes that touch at the start are one. Two particles of different
+//! bodies repel each other as soon as they are closer than the spacing dx, which is where two surfaces meet:
+//!   F_ij = k (dx - r) x_ij / r,   k = M/2 dx^(D-2),   M = K + 4 G / 3,
+//! pairwise, without friction and without loss. A body does not see itself. Walls push as they push any solid
+//! (see `crate::wall`), with the smoothing length of the interface.
+
+use crate::columns::{Vectors, vectors};
+use crate::surface::surface_set;
+use crate::wall::{Touching, Walls};
+use halfstep_shared::geometry::{self, Layout, SolidPoint};
+use halfstep_shared::kernel::Kernel;
+use halfstep_shared::lane::{Arch, Isa, LANES, Lane};
+use halfstep_shared::neighbours::{ClusterList, PADDING, Rows};
+use halfstep_shared::pair::{self, PairLaw, distance};
+use halfstep_shared::scene::{EffectName, Scene, Solid, Switch};
+
+/// Distance, in smoothing lengths of the interface, that lists hold beyond reach.
+const SKIN: f64 = 0.3;
+
+/// Particles that may touch something, sorted by where they are now.
+pub(super) struct Contact<const D: usize> {
+    id: Vec<u32>,
+    position: Vectors<D>,
+    velocity: Vectors<D>,
+    density: Vec<f64>,
+    pressure: Vec<f64>,
+    body: Vec<f64>,
+    /// Positions at the last sort.
+    listed: Vectors<D>,
+    rows: Rows<D>,
+    list: ClusterList,
+    sums: Vec<Repulsion<D>>,
+    several: bool,
+    walls: Option<Walls<D>>,
+    spacing: f64,
+    smoothing_length: f64,
+    domain: ([f64; D], [f64; D]),
+    gravity: [f64; D],
+    stiffness: f64,
+    mass: f64,
+}
+
+/// State of a particle, for [`Contact::act`].
+pub(super) struct Present<const D: usize> {
+    pub position: [f64; D],
+    pub velocity: [f64; D],
+    pub density: f64,
+    pub pressure: f64,
+}
+
+impl<const D: usize> Contact<D> {
+    /// `None` where nothing can touch. `body` has a number for each particle's body.
+    pub(super) fn new(scene: &Scene, solid: &Solid, layout: &Layout<D>, body: &[u32]) -> Option<Self> {
+        let h = scene.smoothing_ratio * scene.resolution;
+        let walls = (scene.switch(EffectName::WallContact) != Switch::Off)
+            .then(|| Walls::new(&layout.wall, (2.0 + SKIN) * h))
+            .flatten();
+        let several = body.iter().any(|&b| b != body[0]);
+        let id = match (&walls, several) {
+            (None, false) => return None,
+            // The pressure at a wall comes from what is behind the surface, too.
+            (Some(_), _) => (0..layout.solid.len() as u32).collect(),
+            (None, true) => surface_set(&layout.solid, 0.1 * scene.resolution, scene.resolution),
+        };
+        let column = |of: &dyn Fn(&SolidPoint<D>) -> f64| -> Vec<f64> {
+            id.iter().map(|&p| of(&layout.solid[p as usize])).collect()
+        };
+        let n = id.len();
+        let domain = geometry::domain(scene);
+        let modulus = solid.density * solid.pressure_wave_speed().powi(2);
+        let mut contact = Self {
+            position: std::array::from_fn(|d| column(&|p| p.position[d])),
+            velocity: vectors(n),
+            density: vec![solid.density; n],
+            pressure: vec![0.0; n],
+            body: id.iter().map(|&p| f64::from(body[p as usize])).collect(),
+            listed: vectors(0),
+            rows: Rows::default(),
+            list: ClusterList::default(),
+            sums: Vec::new(),
+            several,
+            walls,
+            spacing: scene.resolution,
+            smoothing_length: h,
+            domain: (std::array::from_fn(|d| domain.min[d]), std::array::from_fn(|d| domain.max[d])),
+            gravity: std::array::from_fn(|d| scene.gravity[d]),
+            stiffness: 0.5 * modulus * scene.resolution.powi(D as i32 - 2),
+            mass: solid.density * scene.resolution.powi(D as i32),
+            id,
+        };
+        contact.sort();
+        Some(contact)
+    }
+
+    /// Smoothing length of the walls' kernel, m.
+    pub(super) fn smoothing_length(&self) -> f64 {
+        self.smoothing_length
+    }
+
+    fn sort(&mut self) {
+        let skin = SKIN * self.smoothing_length;
+        let wall_reach = 2.0 * self.smoothing_length + skin;
+        let height = if self.walls.is_some() { wall_reach } else { self.spacing + skin };
+        self.rows.sort(&self.position, &self.id, height, self.domain.0, self.domain.1);
+        for d in 0..D {
+            self.rows.permute(&mut self.position[d]);
+            self.rows.permute(&mut self.velocity[d]);
+        }
+        for column in [&mut self.density, &mut self.pressure, &mut self.body] {
+            self.rows.permute(column);
+        }
+        self.rows.permute_ids(&mut self.id);
+        for d in 0..D {
+            self.listed[d].clone_from(&self.position[d]);
+        }
+        if self.several {
+            self.list.build(&self.position, &self.position, &self.rows, self.spacing + skin);
+            self.sums.resize(self.list.clusters(), Repulsion::default());
+        }
+        if let Some(walls) = &mut self.walls {
+            walls.relist(&self.position, &self.rows, wall_reach);
+        }
+    }
+
+    fn moved_too_far(&self) -> bool {
+        let limit = (0.5 * SKIN * self.smoothing_length).powi(2);
+        (0..self.id.len()).filter(|&s| self.id[s] != PADDING).any(|s| {
+            let r2: f64 = (0..D).map(|d| (self.position[d][s] - self.listed[d][s]).powi(2)).sum();
+            r2 > limit
+        })
+    }
+
+    /// Takes over the present state.
+    pub(super) fn update(&mut self, present: impl Fn(u32) -> Present<D>) {
+        for slot in 0..self.id.len() {
+            if self.id[slot] != PADDING {
+                let p = present(self.id[slot]);
+                for d in 0..D {
+                    self.position[d][slot] = p.position[d];
+                    self.velocity[d][slot] = p.velocity[d];
+                }
+                self.density[slot] = p.density;
+                self.pressure[slot] = p.pressure;
+            }
+        }
+        if self.moved_too_far() {
+            self.sort();
+        }
+    }
+
+    /// Evaluates all contacts of the state last taken over; `kernel` is the walls'.
+    pub(super) fn act<K: Kernel<D>>(&mut self, isa: Isa, kernel: K, solid: &Solid) {
+        if self.several {
+            let law = Repel { position: &self.position, body: &self.body, spacing: self.spacing };
+            pair::pass(isa, &law, &self.list, &mut self.sums);
+        }
+        if let Some(walls) = &mut self.walls {
+            let viscosity = solid.artificial_viscosity;
+            let touching = Touching {
+                position: &self.position,
+                velocity: &self.velocity,
+                density: &self.density,
+                pressure: &self.pressure,
+                mass: self.mass,
+                reference_density: solid.density,
+                bulk_modulus: solid.bulk_modulus(),
+                // The wall begins to push a body by stopping it: a solid without viscosity would not be stopped.
+                linear: viscosity.linear.max(1.0) * solid.sound_speed(),
+                quadratic: viscosity.quadratic,
+            };
+            walls.act(isa, kernel, self.gravity, touching);
+        }
+    }
+
+    /// Calls `add` with each particle's number and its acceleration by contacts, m/s².
+    pub(super) fn accelerations(&self, mut add: impl FnMut(u32, [f64; D])) {
+        for slot in (0..self.id.len()).filter(|&s| self.id[s] != PADDING) {
+            let mut a = [0.0; D];
+            if self.several {
+                a = self.sums[slot / LANES].force.map(|f| f.0[slot % LANES] * self.stiffness / self.mass);
+            }
+            if let Some(walls) = &self.walls {
+                let push = walls.acceleration(slot);
+                a = std::array::from_fn(|d| a[d] + push[d]);
+            }
+            add(self.id[slot], a);
+        }
+    }
+
+    /// Energy in the contacts between bodies, J.
+    pub(super) fn energy(&self) -> f64 {
+        let slots = (0..self.id.len()).filter(|&s| self.several && self.id[s] != PADDING);
+        // Half of each pair's energy, k (dx - r)² / 2, belongs to either particle.
+        slots.map(|s| 0.25 * self.stiffness * self.sums[s / LANES].square.0[s % LANES]).sum()
+    }
+}
+
+/// Sums over particles of other bodies for four particles, to be multiplied by k.
+#[derive(Clone, Copy)]
+struct Repulsion<const D: usize> {
+    force: [Lane; D],
+    /// sum (dx - r)².
+    square: Lane,
+}
+
+impl<const D: usize> Default for Repulsion<D> {
+    fn default() -> Self {
+        Self { force: [Lane::ZERO; D], square: Lane::ZERO }
+    }
+}
+
+struct Repel<'a, const D: usize> {
+    position: &'a Vectors<D>,
+    body: &'a [f64],
+    spacing: f64,
+}
+
+impl<const D: usize> PairLaw<D> for Repel<'_, D> {
+    type Target = Lane;
+    type Sum = Repulsion<D>;
+    #[inline(always)]
+    fn target_positions(&self) -> &[Vec<f64>; D] {
+        self.position
+    }
+    #[inline(always)]
+    fn source_position(&self, j: usize) -> [f64; D] {
+        std::array::from_fn(|d| self.position[d][j])
+    }
+    #[inline(always)]
+    fn target(&self, slot: usize) -> Lane {
+        Lane::load(self.body, slot)
+    }
+    #[inline(always)]
+    fn add<A: Arch>(&self, body: &Lane, j: usize, dx: [Lane; D], r2: Lane, sum: &mut Repulsion<D>) {
+        let r = distance(r2, self.spacing);
+        // Body numbers are whole: 1 between different bodies, else 0.
+        let other = *body - Lane::splat(self.body[j]);
+        let other = other.max(-other).min(Lane::splat(1.0));
+        let overlap = (Lane::splat(self.spacing) - r).max(Lane::ZERO) * other;
+        sum.square = A::mul_add(overlap, overlap, sum.square);
+        let force = overlap / r;
+        for d in 0..D {
+            sum.force[d] = A::mul_add(force, dx[d], sum.force[d]);
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! Inner acceleration of a state: deformation gradient, stress, momentum, contacts.
+
+use super::contact::{Contact, Present};
+use super::material::Matrix;
+use super::model::TotalLagrangian;
+use super::pass::{Damping, Deformation, DeformationSum, Momentum, Viscous};
+use crate::model::OutOfBounds;
+use halfstep_shared::failure::Quantity;
+use halfstep_shared::kernel::Kernel;
+use halfstep_shared::lane::LANES;
+use halfstep_shared::neighbours::PADDING;
+use halfstep_shared::{pair, tensor, wide, with_kernel};
+
+/// Below this determinant of the moment matrix a particle has too few neighbours for a deformation gradient.
+const SINGULAR: f64 = 0.05;
+/// A material that is compressed or stretched further has left what its law describes.
+const VOLUME_RATIO: std::ops::Range<f64> = 0.1..10.0;
+
+fn at<const D: usize>(entries: &[[halfstep_shared::lane::Lane; D]; D], k: usize) -> Matrix<D> {
+    Matrix::from_fn(|a, b| entries[a][b].0[k])
+}
+
+impl<const D: usize> TotalLagrangian<D> {
+    /// Inverse moment matrices: zero where singular, so that F = I and no stress.
+    pub(super) fn correct(&mut self) {
+        with_kernel!(self.kernel, self.smoothing_length, D, |kernel| self.deformation(kernel));
+        for slot in 0..self.id.len() {
+            let sum = &self.deformations[slot / LANES];
+            let moment = Matrix::<D>::from_fn(|a, b| sum.moment[a.min(b)][a.max(b)].0[slot % LANES]);
+            let determinant = tensor::determinant(&moment);
+            let inverse = (determinant >= SINGULAR).then(|| tensor::inverse(&moment, determinant)).flatten();
+            // A clamped particle is rigid: it has neither strain nor error vectors. Nor has one that lacks neighbours.
+            let rigid = self.rigid_clamps && self.fixed.clamped[slot] != 0.0;
+            let correction = inverse.filter(|_| !rigid);
+            self.hourglass[slot] = if correction.is_some() { self.hourglass_modulus } else { 0.0 };
+            self.correction[slot] = correction.unwrap_or_else(Matrix::zeros);
+        }
+    }
+
+    fn deformation<K: Kernel<D>>(&mut self, kernel: K) {
+        let law = Deformation {
+            kernel,
+            fixed: &self.fixed,
+            displacement: &self.now.displacement,
+            volume: self.volume,
+        };
+        pair::pass(self.isa, &law, &self.list, &mut self.deformations);
+        self.pair_evaluations += (self.list.entries() * LANES) as u64;
+    }
+
+    fn momentum<K: Kernel<D>, V: Damping<D>>(
+        &self,
+        kernel: K,
+        damping: V,
+        sums: &mut [super::pass::Acceleration<D>],
+    ) {
+        let law = Momentum {
+            kernel,
+            damping,
+            fixed: &self.fixed,
+            displacement: &self.now.displacement,
+            stress: &self.bracket,
+            hourglass: &self.hourglass,
+            scale: self.volume / self.material.density,
+        };
+        pair::pass(self.isa, &law, &self.list, sums);
+    }
+
+    /// F of every particle from the sums of the first pass, and the second pass' brackets. The first particle whose
+    /// volume ratio left its bounds is kept in `failure`.
+    fn stresses(&mut self) {
+        for slot in 0..self.id.len() {
+            if self.id[slot] == PADDING {
+                continue;
+            }
+            let correction = self.correction[slot];
+            let h = at(&self.deformations[slot / LANES].gradient, slot % LANES) * correction;
+            let f = Matrix::identity() + h;
+            let j = tensor::determinant(&f);
+            if !VOLUME_RATIO.contains(&j) && self.failure.is_none() {
+                self.failure = Some(OutOfBounds {
+                    particle: self.id[slot],
+                    quantity: Quantity::Density,
+                    value: self.material.density / j,
+                    position: wide(self.position_at(slot)),
+                });
+            }
+            let p = self.law.first_piola_kirchhoff(&f, j);
+            let bracket = p * correction - h * self.hourglass[slot];
+            self.gradient[slot] = f;
+            self.volume_ratio[slot] = j;
+            for a in 0..D {
+                for b in 0..D {
+                    self.bracket[a][b][slot] = bracket[(a, b)];
+                }
+            }
+        }
+    }
+
+    /// Acceleration of the present state by everything but loads and gravity.
+    pub(super) fn evaluate(&mut self) {
+        with_kernel!(self.kernel, self.smoothing_length, D, |kernel| self.deformation(kernel));
+        self.stresses();
+        let mut sums = std::mem::take(&mut self.sums);
+        let viscosity = self.material.artificial_viscosity;
+        let damped = viscosity.linear > 0.0 || viscosity.quadratic > 0.0;
+        with_kernel!(self.kernel, self.smoothing_length, D, |kernel| if damped {
+            let viscous = Viscous {
+                velocity: &self.now.velocity,
+                density: self.material.density,
+                linear: viscosity.linear * self.material.sound_speed(),
+                quadratic: viscosity.quadratic,
+            };
+            self.momentum(kernel, viscous, &mut sums);
+        } else {
+            self.momentum(kernel, (), &mut sums);
+        });
+        for slot in 0..self.id.len() {
+            let free = self.id[slot] != PADDING && self.fixed.clamped[slot] == 0.0;
+            for d in 0..D {
+                let a = sums[slot / LANES].0[d].0[slot % LANES];
+                self.now.acceleration[d][slot] = if free { a } else { 0.0 };
+            }
+        }
+        self.sums = sums;
+        if let Some(contact) = self.contact.take() {
+            self.contact = Some(self.touch(contact));
+        }
+    }
+
+    fn touch(&mut self, mut contact: Contact<D>) -> Contact<D> {
+        contact.update(|id| {
+            let slot = self.slot_of[id as usize] as usize;
+            let j = self.volume_ratio[slot];
+            Present {
+                position: self.position_at(slot),
+                velocity: std::array::from_fn(|d| self.now.velocity[d][slot]),
+                density: self.material.density / j,
+                pressure: self.law.cauchy(&self.gradient[slot], j).pressure,
+            }
+        });
+        let material = &self.material;
+        with_kernel!(self.kernel, contact.smoothing_length(), D, |kernel| contact
+            .act(self.isa, kernel, material));
+        contact.accelerations(|id, a| {
+            let slot = self.slot_of[id as usize] as usize;
+            if self.fixed.clamped[slot] == 0.0 {
+                for d in 0..D {
+                    self.now.acceleration[d][slot] += a[d];
+                }
+            }
+        });
+        contact
+    }
+
+    /// sum V0 psi, the hourglass energy and that of contacts between bodies, J.
+    pub(super) fn energy(&self) -> f64 {
+        let inner: f64 = self
+            .slot_of
+            .iter()
+            .map(|&slot| {
+                let slot = slot as usize;
+                let f = &self.gradient[slot];
+                let strained = self.volume * self.law.energy(f, self.volume_ratio[slot]);
+                strained + 0.5 * self.hourglass[slot] * self.volume * self.error_square(slot)
+            })
+            .sum();
+        inner + self.contact.as_ref().map_or(0.0, Contact::energy)
+    }
+
+    /// sum_j V0 (-F) |e_ij|² = sum_j V0 (-F) |beta u_ij|² - H : H M, by the definition of H.
+    fn error_square(&self, slot: usize) -> f64 {
+        let sum: &DeformationSum<D> = &self.deformations[slot / LANES];
+        let h = self.gradient[slot] - Matrix::identity();
+        sum.square.0[slot % LANES] - h.component_mul(&at(&sum.gradient, slot % LANES)).sum()
+    }
+}

@@ -1,0 +1,177 @@
+//! Hyperelastic laws: energy psi per reference volume and first Piola-Kirchhoff stress P = d psi / d F.
+//!
+//! F deformation gradient, J = det F, lambda and mu Lame's constants. In 2D: plane strain, F_zz = 1.
+//!
+//!   St. Venant-Kirchhoff:  E = (F^T F - I) / 2,  S = lambda tr(E) I + 2 mu E,  P = F S,
+//!                          psi = lambda/2 tr(E)² + mu E : E                              (Holzapfel 2000, eq. 6.151)
+//!   neo-Hooke:             P = mu (F - F^-T) + lambda ln J F^-T,
+//!                          psi = mu/2 (tr(F^T F) - 3 - 2 ln J) + lambda/2 (ln J)²        (Bonet and Wood 2008, eq. 6.27)
+
+use halfstep_shared::scene::{Material, Solid};
+use halfstep_shared::tensor;
+use nalgebra::SMatrix;
+
+/// A matrix of the scene's dimension.
+pub(super) type Matrix<const D: usize> = SMatrix<f64, D, D>;
+
+/// A law with its constants.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Law {
+    material: Material,
+    /// Pa.
+    lambda: f64,
+    /// Pa.
+    mu: f64,
+}
+
+/// Pressure and deviator of the Cauchy stress, Pa.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cauchy<const D: usize> {
+    pub pressure: f64,
+    pub deviator: Matrix<D>,
+}
+
+impl Law {
+    pub(super) fn new(solid: &Solid) -> Self {
+        let mu = solid.shear_modulus();
+        Self { material: solid.material, lambda: solid.bulk_modulus() - 2.0 / 3.0 * mu, mu }
+    }
+
+    /// First Piola-Kirchhoff stress, Pa.
+    pub(super) fn first_piola_kirchhoff<const D: usize>(&self, f: &Matrix<D>, j: f64) -> Matrix<D> {
+        match self.material {
+            Material::StVenantKirchhoff => {
+                let e = green(f);
+                f * (Matrix::identity() * (self.lambda * e.trace()) + e * (2.0 * self.mu))
+            }
+            Material::NeoHookean => {
+                let Some(inverse) = tensor::inverse(f, j) else { return Matrix::repeat(f64::NAN) };
+                f * self.mu + inverse.transpose() * (self.lambda * libm::log(j) - self.mu)
+            }
+        }
+    }
+
+    /// Energy per reference volume, J/m³.
+    pub(super) fn energy<const D: usize>(&self, f: &Matrix<D>, j: f64) -> f64 {
+        match self.material {
+            Material::StVenantKirchhoff => {
+                let e = green(f);
+                0.5 * self.lambda * e.trace().powi(2) + self.mu * e.component_mul(&e).sum()
+            }
+            Material::NeoHookean => {
+                let log = libm::log(j);
+                // tr(F^T F) - D - 2 ln J by way of E, which is small where F is near a rotation.
+                0.5 * self.mu * (2.0 * green(f).trace() - 2.0 * log) + 0.5 * self.lambda * log * log
+            }
+        }
+    }
+
+    /// Cauchy stress P F^T / J as pressure and deviator; in 2D sigma_zz is that of plane strain.
+    pub(super) fn cauchy<const D: usize>(&self, f: &Matrix<D>, j: f64) -> Cauchy<D> {
+        let sigma = self.first_piola_kirchhoff(f, j) * f.transpose() / j;
+        let out_of_plane = match (D, self.material) {
+            (2, Material::StVenantKirchhoff) => self.lambda * green(f).trace() / j,
+            (2, Material::NeoHookean) => self.lambda * libm::log(j) / j,
+            _ => 0.0,
+        };
+        let pressure = -(sigma.trace() + out_of_plane) / 3.0;
+        Cauchy { pressure, deviator: sigma + Matrix::identity() * pressure }
+    }
+}
+
+/// Green's strain E.
+fn green<const D: usize>(f: &Matrix<D>) -> Matrix<D> {
+    (f.transpose() * f - Matrix::identity()) * 0.5
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Matrix2, Matrix3, Rotation2};
+
+    /// lambda = 2, mu = 1.
+    fn law(material: Material) -> Law {
+        Law { material, lambda: 2.0, mu: 1.0 }
+    }
+    const BOTH: [Material; 2] = [Material::StVenantKirchhoff, Material::NeoHookean];
+
+    #[test]
+    fn st_venant_kirchhoff_stretch_by_hand() {
+        // F = diag(2, 1): E = diag(3/2, 0), S = 2 (3/2) I + 2 E = diag(6, 3), P = F S = diag(12, 3), J = 2;
+        // sigma = P F^T / J = diag(12, 3/2), sigma_zz = lambda tr E / J = 3/2; p = -5.
+        let (f, law) = (Matrix2::new(2.0, 0.0, 0.0, 1.0), law(Material::StVenantKirchhoff));
+        assert_eq!(law.first_piola_kirchhoff(&f, 2.0), Matrix2::new(12.0, 0.0, 0.0, 3.0));
+        assert_eq!(law.energy(&f, 2.0), 0.5 * 2.0 * 2.25 + 2.25);
+        let cauchy = law.cauchy(&f, 2.0);
+        assert!((cauchy.pressure + 5.0).abs() < 1e-15);
+        assert!((cauchy.deviator - Matrix2::new(7.0, 0.0, 0.0, -3.5)).norm() < 1e-14);
+    }
+
+    #[test]
+    fn neo_hookean_stretch_by_hand() {
+        // F = diag(2, 1): P_xx = 2 - 1/2 + 2 ln 2 / 2, P_yy = 2 ln 2; sigma_zz = 2 ln 2 / 2;
+        // psi = (4 + 1 + 1 - 3 - 2 ln 2) / 2 + (ln 2)².
+        let (f, law, log) = (Matrix2::new(2.0, 0.0, 0.0, 1.0), law(Material::NeoHookean), 2.0_f64.ln());
+        let p = law.first_piola_kirchhoff(&f, 2.0);
+        assert!((p - Matrix2::new(1.5 + log, 0.0, 0.0, 2.0 * log)).norm() < 1e-15);
+        assert!((law.energy(&f, 2.0) - (1.5 - log + log * log)).abs() < 1e-15);
+        // sigma = diag(1.5 + ln 2, ln 2), zz = ln 2: p = -(1.5 + 3 ln 2) / 3.
+        let cauchy = law.cauchy(&f, 2.0);
+        assert!((cauchy.pressure + 0.5 + log).abs() < 1e-15);
+        assert!((cauchy.deviator - Matrix2::new(1.0, 0.0, 0.0, -0.5)).norm() < 1e-15);
+    }
+
+    #[test]
+    fn simple_shear_by_hand() {
+        // F = [[1, 1], [0, 1]]: E = [[0, 1/2], [1/2, 1/2]], S = [[1, 1], [1, 2]], P = [[2, 3], [1, 2]].
+        let f = Matrix2::new(1.0, 1.0, 0.0, 1.0);
+        let p = law(Material::StVenantKirchhoff).first_piola_kirchhoff(&f, 1.0);
+        assert_eq!(p, Matrix2::new(2.0, 3.0, 1.0, 2.0));
+        // J = 1, F^-T = [[1, 0], [-1, 1]]: P = F - F^-T = [[0, 1], [1, 0]].
+        let p = law(Material::NeoHookean).first_piola_kirchhoff(&f, 1.0);
+        assert_eq!(p, Matrix2::new(0.0, 1.0, 1.0, 0.0));
+    }
+
+    #[test]
+    fn stress_is_the_slope_of_the_energy() {
+        for material in BOTH {
+            let law = law(material);
+            let f = Matrix3::new(1.1, 0.2, -0.1, 0.05, 0.9, 0.3, -0.2, 0.1, 1.2);
+            let p = law.first_piola_kirchhoff(&f, f.determinant());
+            for a in 0..3 {
+                for b in 0..3 {
+                    let at = |step: f64| {
+                        let mut g = f;
+                        g[(a, b)] += step;
+                        law.energy(&g, g.determinant())
+                    };
+                    let slope = (at(1e-5) - at(-1e-5)) / 2e-5;
+                    assert!((slope - p[(a, b)]).abs() < 1e-8, "{material:?} {a}{b}: {slope} {p}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_rotation_makes_no_stress() {
+        let f = *Rotation2::new(2.1).matrix();
+        for material in BOTH {
+            let law = law(material);
+            assert!(law.first_piola_kirchhoff(&f, f.determinant()).norm() < 1e-14);
+            assert!(law.energy(&f, f.determinant()).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn small_strains_follow_hooke() {
+        // sigma = lambda tr(e) I + 2 mu e to first order.
+        let e = Matrix2::new(3e-7, 1e-7, 1e-7, -2e-7);
+        let f = Matrix2::identity() + e;
+        let hooke = Matrix2::identity() * (2.0 * e.trace()) + e * 2.0;
+        for material in BOTH {
+            let cauchy = law(material).cauchy(&f, f.determinant());
+            let sigma = cauchy.deviator - Matrix2::identity() * cauchy.pressure;
+            assert!((sigma - hooke).norm() < 1e-12, "{material:?}");
+        }
+    }
+}

@@ -1,0 +1,15 @@
+//! Total-Lagrangian solid: neighbours, kernels and their correction belong to the reference configuration and are made
+//! once. A hyperelastic law turns the deformation gradient into stress (Bonet and Lok 1999; Vignjevic, Reveles and
+//! Campbell 2006).
+
+mod clamp;
+mod contact;
+mod evaluate;
+mod hourglass;
+mod material;
+mod model;
+mod pass;
+#[cfg(test)]
+mod tests;
+
+pub use model::TotalLagrangian;

@@ -1,0 +1,359 @@
+//! The model behind [`SolidModel`]: reference configuration and time integration.
+//!
+//! Velocity Verlet (kick, drift, kick), which keeps the energy of an undamped solid: the midpoint scheme would amplify
+//! it by 1 + (omega dt)⁴/8 a step. One evaluation a sub-step, since the acceleration at its start is known.
+
+use super::clamp;
+use super::contact::Contact;
+use super::hourglass;
+use super::material::{Law, Matrix};
+use super::pass::{Acceleration, DeformationSum, Fixed, Matrices};
+use crate::columns::{Vectors, vectors};
+use crate::model::{Load, OutOfBounds, SolidModel};
+use crate::surface::surface_set;
+use halfstep_shared::failure::Quantity;
+use halfstep_shared::geometry::{self, SolidPoint};
+use halfstep_shared::interface::wire_component;
+use halfstep_shared::lane::{Isa, LANES};
+use halfstep_shared::neighbours::{ClusterList, PADDING, Rows};
+use halfstep_shared::protocol::StateRecord;
+use halfstep_shared::scene::{EffectName, KernelName, Scene, Solid, Switch};
+use halfstep_shared::{wide, with_kernel};
+
+/// What time integration advances, and the inner acceleration that belongs to it.
+#[derive(Clone, Debug)]
+pub(super) struct State<const D: usize> {
+    /// u, m.
+    pub displacement: Vectors<D>,
+    /// m/s.
+    pub velocity: Vectors<D>,
+    /// By all but loads and gravity, m/s².
+    pub acceleration: Vectors<D>,
+}
+
+impl<const D: usize> State<D> {
+    fn copy_from(&mut self, other: &Self) {
+        for d in 0..D {
+            self.displacement[d].clone_from(&other.displacement[d]);
+            self.velocity[d].clone_from(&other.velocity[d]);
+            self.acceleration[d].clone_from(&other.acceleration[d]);
+        }
+    }
+}
+
+/// The total-Lagrangian solid.
+pub struct TotalLagrangian<const D: usize> {
+    pub(super) material: Solid,
+    pub(super) law: Law,
+    pub(super) kernel: KernelName,
+    pub(super) isa: Isa,
+    pub(super) smoothing_length: f64,
+    resolution: f64,
+    gravity: [f64; D],
+    courant: f64,
+    /// V0 of a particle.
+    pub(super) volume: f64,
+    mass: f64,
+    /// alpha G, Pa.
+    pub(super) hourglass_modulus: f64,
+    /// Beyond the face of a clamp there is no strain.
+    pub(super) rigid_clamps: bool,
+    points: Vec<SolidPoint<D>>,
+    interface_set: Vec<u32>,
+    /// Particle number of a slot, or padding.
+    pub(super) id: Vec<u32>,
+    /// Slot of a particle.
+    pub(super) slot_of: Vec<u32>,
+    pub(super) fixed: Fixed<D>,
+    pub(super) list: ClusterList,
+    /// L; zero where a particle has no deformation gradient.
+    pub(super) correction: Vec<Matrix<D>>,
+    /// a, Pa.
+    pub(super) hourglass: Vec<f64>,
+    pub(super) now: State<D>,
+    /// State at n.
+    at_n: State<D>,
+    /// Displacements at the start of a stage.
+    stage_start: Vectors<D>,
+    /// Velocity shown to the fluid: the mean over the sub-steps of a stage.
+    shown_velocity: Vectors<D>,
+    /// Loads and gravity, m/s².
+    load: Vectors<D>,
+    /// F.
+    pub(super) gradient: Vec<Matrix<D>>,
+    /// J.
+    pub(super) volume_ratio: Vec<f64>,
+    /// B, Pa.
+    pub(super) bracket: Matrices<D>,
+    pub(super) deformations: Vec<DeformationSum<D>>,
+    pub(super) sums: Vec<Acceleration<D>>,
+    pub(super) contact: Option<Contact<D>>,
+    pub(super) failure: Option<OutOfBounds>,
+    pub(super) pair_evaluations: u64,
+}
+
+impl<const D: usize> TotalLagrangian<D> {
+    /// The solid of a scene that has one.
+    pub fn new(scene: &Scene, isa: Isa) -> Option<Self> {
+        let material = scene.solid.clone()?;
+        let layout = geometry::layout::<D>(scene);
+        let points = &layout.solid;
+        let dx = scene.resolution;
+        let h = material.smoothing_ratio * dx;
+        let reach = 2.0 * h;
+
+        let mut position: Vectors<D> =
+            std::array::from_fn(|d| points.iter().map(|p| p.position[d]).collect());
+        let mut id: Vec<u32> = (0..points.len() as u32).collect();
+        let mut rows = Rows::default();
+        rows.sort(&position, &id, reach, [f64::MIN; D], [f64::MAX; D]);
+        for column in &mut position {
+            rows.permute(column);
+        }
+        rows.permute_ids(&mut id);
+        let mut list = ClusterList::default();
+        list.build(&position, &position, &rows, reach);
+        let slots = id.len();
+        let mut slot_of = vec![0; points.len()];
+        let (mut velocity, mut clamped) = (vectors(slots), vec![0.0; slots]);
+        for (slot, &p) in id.iter().enumerate().filter(|&(_, &p)| p != PADDING) {
+            slot_of[p as usize] = slot as u32;
+            let point = &points[p as usize];
+            clamped[slot] = f64::from(u8::from(point.clamped));
+            for d in 0..D {
+                velocity[d][slot] = point.velocity[d];
+            }
+        }
+        let rigid_clamps = scene.switch(EffectName::ClampFace) != Switch::Off;
+        let excess_gain = if rigid_clamps {
+            clamp::excess_gain(scene, points, &id, &list, reach)
+        } else {
+            vec![0.0; slots]
+        };
+        let body = bodies(&position, &id, &list, reach);
+        let contact = Contact::new(scene, &material, &layout, &body);
+        let alpha = material.hourglass.unwrap_or_else(|| {
+            with_kernel!(scene.numerics.kernel, h, D, |k| hourglass::from_bending(
+                k,
+                dx,
+                material.poissons_ratio
+            ))
+        });
+        let now = State { displacement: vectors(slots), acceleration: vectors(slots), velocity };
+        let mut model = Self {
+            law: Law::new(&material),
+            kernel: scene.numerics.kernel,
+            isa,
+            smoothing_length: h,
+            resolution: dx,
+            gravity: std::array::from_fn(|d| scene.gravity[d]),
+            courant: scene.numerics.solid_cfl,
+            volume: dx.powi(D as i32),
+            mass: material.density * dx.powi(D as i32),
+            hourglass_modulus: alpha * material.shear_modulus(),
+            rigid_clamps,
+            interface_set: surface_set(points, 2.0 * scene.smoothing_ratio * dx, dx),
+            at_n: now.clone(),
+            stage_start: now.displacement.clone(),
+            shown_velocity: now.velocity.clone(),
+            load: vectors(slots),
+            gradient: vec![Matrix::identity(); slots],
+            volume_ratio: vec![1.0; slots],
+            bracket: std::array::from_fn(|_| vectors(slots)),
+            deformations: vec![DeformationSum::default(); slots / LANES],
+            sums: vec![Acceleration::default(); slots / LANES],
+            correction: vec![Matrix::zeros(); slots],
+            hourglass: vec![0.0; slots],
+            fixed: Fixed { position, clamped, excess_gain },
+            points: layout.solid,
+            now,
+            material,
+            id,
+            slot_of,
+            list,
+            contact,
+            failure: None,
+            pair_evaluations: 0,
+        };
+        model.correct();
+        model.evaluate();
+        Some(model)
+    }
+
+    /// Present position of the particle at a slot.
+    pub(super) fn position_at(&self, slot: usize) -> [f64; D] {
+        std::array::from_fn(|d| self.fixed.position[d][slot] + self.now.displacement[d][slot])
+    }
+
+    fn take_load(&mut self, load: &Load<D>) {
+        for slot in 0..self.id.len() {
+            let free = self.id[slot] != PADDING && self.fixed.clamped[slot] == 0.0;
+            for d in 0..D {
+                let force = || load.force[self.id[slot] as usize][d] / self.mass;
+                self.load[d][slot] = if free { self.gravity[d] + force() } else { 0.0 };
+            }
+        }
+    }
+
+    fn kick(&mut self, dt: f64) {
+        for d in 0..D {
+            let rates = self.now.acceleration[d].iter().zip(&self.load[d]);
+            for (v, (inner, load)) in self.now.velocity[d].iter_mut().zip(rates) {
+                *v += dt * (inner + load);
+            }
+        }
+    }
+
+    fn drift(&mut self, dt: f64) {
+        for d in 0..D {
+            for (u, v) in self.now.displacement[d].iter_mut().zip(&self.now.velocity[d]) {
+                *u += dt * v;
+            }
+        }
+    }
+
+    /// `count` Verlet steps over `dt`; shows the mean velocity meanwhile, with one step the velocity itself.
+    fn sub_step(&mut self, count: u32, dt: f64) {
+        let each = dt / f64::from(count);
+        for d in 0..D {
+            self.stage_start[d].clone_from(&self.now.displacement[d]);
+        }
+        for _ in 0..count {
+            self.kick(0.5 * each);
+            self.drift(each);
+            self.evaluate();
+            self.kick(0.5 * each);
+        }
+    }
+
+    fn show(&mut self, sub_steps: u32, dt: f64) {
+        for d in 0..D {
+            if sub_steps == 1 {
+                self.shown_velocity[d].clone_from(&self.now.velocity[d]);
+                continue;
+            }
+            let way = self.now.displacement[d].iter().zip(&self.stage_start[d]);
+            for (shown, (now, start)) in self.shown_velocity[d].iter_mut().zip(way) {
+                *shown = (now - start) / dt;
+            }
+        }
+    }
+
+    fn check(&self) -> Result<(), OutOfBounds> {
+        if let Some(failure) = self.failure {
+            return Err(failure);
+        }
+        let fastest = self.material.pressure_wave_speed();
+        for (p, &slot) in self.slot_of.iter().enumerate() {
+            let slot = slot as usize;
+            let v2: f64 = (0..D).map(|d| self.now.velocity[d][slot].powi(2)).sum();
+            if v2.is_nan() || v2 > fastest * fastest {
+                return Err(OutOfBounds {
+                    particle: p as u32,
+                    quantity: Quantity::Speed,
+                    value: v2.sqrt(),
+                    position: wide(self.position_at(slot)),
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A number for each particle's body: what neighbours within reach connect.
+fn bodies<const D: usize>(x: &Vectors<D>, id: &[u32], list: &ClusterList, reach: f64) -> Vec<u32> {
+    fn root(parent: &mut [u32], mut p: u32) -> u32 {
+        while parent[p as usize] != p {
+            parent[p as usize] = parent[parent[p as usize] as usize];
+            p = parent[p as usize];
+        }
+        p
+    }
+    let n = id.iter().filter(|&&p| p != PADDING).count() as u32;
+    let mut parent: Vec<u32> = (0..n).collect();
+    for i in (0..id.len()).filter(|&i| id[i] != PADDING) {
+        for &j in list.of(i / LANES) {
+            let j = j as usize;
+            let r2: f64 = (0..D).map(|d| (x[d][i] - x[d][j]).powi(2)).sum();
+            if r2 < reach * reach {
+                let (a, b) = (root(&mut parent, id[i]), root(&mut parent, id[j]));
+                parent[a.max(b) as usize] = a.min(b);
+            }
+        }
+    }
+    (0..n).map(|p| root(&mut parent, p)).collect()
+}
+
+impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {
+    fn particles(&self) -> usize {
+        self.points.len()
+    }
+
+    fn interface_set(&self) -> &[u32] {
+        &self.interface_set
+    }
+
+    fn record(&self, particle: u32) -> StateRecord {
+        let slot = self.slot_of[particle as usize] as usize;
+        let j = self.volume_ratio[slot];
+        let cauchy = self.law.cauchy(&self.gradient[slot], j);
+        let mut r = StateRecord {
+            id: particle,
+            flags: u32::from(self.points[particle as usize].clamped),
+            position: wide(self.position_at(slot)),
+            velocity: wide(std::array::from_fn::<_, D, _>(|d| self.shown_velocity[d][slot])),
+            density: self.material.density / j,
+            pressure: cauchy.pressure,
+            mass: self.mass,
+            ..StateRecord::default()
+        };
+        for a in 0..D {
+            for b in a..D {
+                r.deviatoric_stress[wire_component(a, b)] = cauchy.deviator[(a, b)];
+            }
+        }
+        if D == 2 {
+            r.deviatoric_stress[2] = -cauchy.deviator.trace();
+        }
+        r
+    }
+
+    fn velocity(&self, particle: u32) -> [f64; D] {
+        let slot = self.slot_of[particle as usize] as usize;
+        std::array::from_fn(|d| self.now.velocity[d][slot])
+    }
+
+    fn sub_step_limit(&self) -> f64 {
+        self.courant * self.resolution / self.material.pressure_wave_speed()
+    }
+
+    fn advance(&mut self, stage: u32, dt: f64, sub_steps: u32, load: &Load<D>) -> Result<(), OutOfBounds> {
+        self.take_load(load);
+        if stage == 0 {
+            self.at_n.copy_from(&self.now);
+            self.sub_step((sub_steps / 2).max(1), 0.5 * dt);
+            self.show(sub_steps, 0.5 * dt);
+        } else {
+            self.now.copy_from(&self.at_n);
+            self.sub_step(sub_steps, dt);
+            self.show(sub_steps, dt);
+        }
+        self.check()
+    }
+
+    fn reference(&self, particle: u32) -> [f64; D] {
+        self.points[particle as usize].position
+    }
+
+    fn mass(&self, _: u32) -> f64 {
+        self.mass
+    }
+
+    fn strain_energy(&self) -> f64 {
+        self.energy()
+    }
+
+    fn pair_evaluations(&self) -> u64 {
+        self.pair_evaluations
+    }
+}
