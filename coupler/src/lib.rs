@@ -10,5 +10,6 @@ pub mod foreign;
 pub mod recorder;
 pub mod roles;
 pub mod run;
+mod session;
 pub mod solo;
 pub mod supervise;

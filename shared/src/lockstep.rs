@@ -266,8 +266,7 @@ pub fn serve_process(
     let scene = variable(SCENE_VARIABLE).ok_or_else(|| start(format!("{SCENE_VARIABLE} is not set")))?;
     let text = std::fs::read_to_string(&scene)
         .map_err(|e| start(format!("cannot read {}: {e}", PathBuf::from(&scene).display())))?;
-    let scene: Scene =
-        serde_json::from_str(&text).map_err(|e| start(format!("not a resolved scene: {e}")))?;
+    let scene = Scene::from_json(&text).map_err(|e| start(format!("not a resolved scene: {e}")))?;
     let threads = variable(THREADS_VARIABLE).and_then(|v| v.to_str()?.parse().ok()).unwrap_or(1);
     let writer =
         variable(FOLDER_VARIABLE).map(|dir| FrameWriter::start(&PathBuf::from(dir), stem)).transpose()?;
