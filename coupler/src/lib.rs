@@ -1,5 +1,6 @@
 //! The front door: runs scenes, couples fluid and solid in lock-step, writes what a run leaves.
 
+mod advice;
 pub mod check;
 pub mod clock;
 pub mod couple;

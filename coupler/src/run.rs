@@ -1,5 +1,6 @@
 //! One run from a scene to a folder.
 
+use crate::advice::advice;
 use crate::clock::Clock;
 use crate::effects;
 use crate::error::RunError;
@@ -81,26 +82,18 @@ pub fn run(scene: &Scene, options: &RunOptions) -> Result<(RunReport, Option<Run
         solo(scene, options, &directory, &stop, &mut clock, &mut recorder, &mut report)
     };
     recorder.finish(&mut report);
-    if let Some((dt, limit)) = clock.exceeded() {
-        tracing::warn!(
-            "time_step = {dt:e} s is above the stability limit of {limit:e} s: look at the result with care"
-        );
-        eprintln!(
-            "note: time_step = {dt:e} s is above the stability limit of {limit:e} s (time_step = \"auto\" keeps to it)"
-        );
-    }
     let error = match result {
         Ok(stopped) => {
             report.status = Some(if stopped { RunStatus::Stopped } else { RunStatus::Finished });
             None
         }
-        Err(error) => {
+        Err(mut error) => {
+            report.status = Some(RunStatus::Failed);
+            if let RunError::Diverged { diverged, hint } = &mut error {
+                *hint = advice(diverged, scene, &clock, foreign);
+                report.status = Some(RunStatus::Diverged);
+            }
             tracing::error!("{error}");
-            report.status = Some(if matches!(error, RunError::Diverged(_)) {
-                RunStatus::Diverged
-            } else {
-                RunStatus::Failed
-            });
             report.error = Some(error.to_string());
             Some(error)
         }

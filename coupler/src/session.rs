@@ -202,7 +202,7 @@ impl Session<'_> {
                 }
             }
             match (result, first) {
-                (Err(error @ RunError::Diverged(_)), _) => Err(error),
+                (Err(error @ RunError::Diverged { .. }), _) => Err(error),
                 (Err(_), Some(cause)) => Err(cause.into()),
                 (result, _) => result,
             }

@@ -10,7 +10,8 @@ use crate::time_step::Limits;
 use crate::viscosity::{self, StressTerm, VelocityGradient, Viscosity, ViscosityAtWall};
 use crate::wall::{Damping, WallLaw, WallSum, Walls};
 use crate::wall_guard::{GUARD, WallViscosity};
-use halfstep_shared::failure::{Diverged, Quantity, RoleName};
+use halfstep_shared::bounds::Bounds;
+use halfstep_shared::failure::{Diverged, RoleName};
 use halfstep_shared::geometry;
 use halfstep_shared::interface::Parameters;
 use halfstep_shared::kernel::Kernel;
@@ -41,6 +42,7 @@ pub struct Fluid<const D: usize> {
     pub(crate) gravity: [f64; D],
     pub(crate) probes: Vec<ProbeKind>,
 
+    bounds: Bounds,
     isa: Isa,
     limits: Limits,
     diffusion: DensityDiffusion,
@@ -99,6 +101,7 @@ impl<const D: usize> Fluid<D> {
                 gravity: std::array::from_fn(|d| scene.gravity[d]),
                 probes: scene.probes.iter().map(|p| p.kind).filter(|k| k.phase() == Phase::Fluid).collect(),
 
+                bounds: Bounds::of_fluid(scene)?,
                 isa,
                 limits: Limits::new(scene),
                 diffusion: fluid.density_diffusion,
@@ -206,31 +209,24 @@ impl<const D: usize> Fluid<D> {
         }
     }
 
-    /// The first particle out of bounds: density within a factor of 3 of rho0, speed below 3 c0.
+    /// The particle that is farthest out of bounds, if any is.
     fn find_divergence(&self, step: u64, stage: u32) -> Option<Diverged> {
         let c = &self.columns;
-        let (low, high) = (self.state.density / 3.0, self.state.density * 3.0);
-        let fastest = 3.0 * self.state.sound_speed;
-        (0..c.slots()).filter(|&s| c.id[s] != PADDING).find_map(|s| {
-            let rho = c.now.density[s];
+        let excess = |s: usize| {
             let v2: f64 = (0..D).map(|d| c.now.velocity[d][s].powi(2)).sum();
-            let (quantity, value) = if !(rho > low && rho < high) {
-                (Quantity::Density, rho)
-            } else if v2.is_nan() || v2 > fastest * fastest {
-                (Quantity::Speed, v2.sqrt())
-            } else {
-                return None;
-            };
-            let position: [f64; D] = std::array::from_fn(|d| c.now.position[d][s]);
-            Some(Diverged {
-                role: RoleName::Fluid,
-                particle: c.id[s],
-                quantity,
-                value,
-                step,
-                stage,
-                position: halfstep_shared::wide(position),
-            })
+            Some((s, self.bounds.excess(c.now.density[s], v2.sqrt())?))
+        };
+        let found = (0..c.slots()).filter(|&s| c.id[s] != PADDING).filter_map(excess);
+        let (s, worst) = found.max_by(|a, b| a.1.ratio.total_cmp(&b.1.ratio))?;
+        let position: [f64; D] = std::array::from_fn(|d| c.now.position[d][s]);
+        Some(Diverged {
+            role: RoleName::Fluid,
+            particle: c.id[s],
+            quantity: worst.quantity,
+            value: worst.value,
+            step,
+            stage,
+            position: halfstep_shared::wide(position),
         })
     }
 
