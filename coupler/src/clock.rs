@@ -14,10 +14,21 @@ pub struct Clock {
     time: f64,
     step: u64,
     last_dt: Option<f64>,
-    /// Smallest limit seen.
-    limit: f64,
+    /// Of each phase, as last told.
+    limits: [Option<Limit>; 2],
+    /// The fixed step was found above the limit of this phase.
+    warned: [bool; 2],
     frames: Periodic,
     rows: Periodic,
+}
+
+/// Largest time step that a phase is stable with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limit {
+    /// The phase.
+    pub role: RoleName,
+    /// Time step, s.
+    pub dt: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -53,6 +64,8 @@ pub struct Tick {
     pub frame: bool,
     /// It is a row of the probe log.
     pub row: bool,
+    /// The step is the scene's and, for the first time, above this limit.
+    pub exceeded: Option<Limit>,
 }
 
 impl Clock {
@@ -67,25 +80,38 @@ impl Clock {
             time: 0.0,
             step: 0,
             last_dt: None,
-            limit: f64::INFINITY,
+            limits: [None; 2],
+            warned: [false; 2],
             frames: Periodic { interval: scene.output.frame_interval, count: 0 },
             rows: Periodic { interval: scene.output.probe_interval, count: 0 },
         }
     }
 
-    /// Looks at the state at n: what to do with it and how far to go next, given both sides' limit.
+    /// Looks at the state at n: what to do with it and how far to go next, given the limits of the phases.
     ///
     /// # Errors
     /// The limit is no positive number, or would never reach the end.
-    pub fn tick(&mut self, limit: f64, stop: bool) -> Result<Tick, Diverged> {
+    pub fn tick(&mut self, limits: &[Limit], stop: bool) -> Result<Tick, Diverged> {
         let remaining = self.end - self.time;
         let last = stop || remaining <= self.end * 1e-12;
-        let tick =
-            |dt, next_time, frame, row| Tick { step: self.step, time: self.time, dt, next_time, frame, row };
+        let (step, time) = (self.step, self.time);
         if last {
-            return Ok(tick(None, self.time, true, true));
+            return Ok(Tick {
+                step,
+                time,
+                dt: None,
+                next_time: time,
+                frame: true,
+                row: true,
+                exceeded: None,
+            });
         }
-        self.limit = self.limit.min(limit);
+        for (known, told) in self.limits.iter_mut().zip(limits) {
+            *known = Some(*told);
+        }
+        // A minimum that keeps what is no number.
+        let limit =
+            limits.iter().map(|l| l.dt).fold(f64::INFINITY, |a, b| if b.is_nan() || b < a { b } else { a });
         let frame = self.frames.due(self.time).is_some();
         let row = self.rows.due(self.time).is_some();
         let mut dt = match self.fixed {
@@ -112,12 +138,21 @@ impl Clock {
             dt = 0.5 * remaining;
             next_time = self.time + dt;
         }
-        Ok(Tick { step: self.step, time: self.time, dt: Some(dt), next_time, frame, row })
+        let exceeded = self.exceeded().find(|(k, _)| !self.warned[*k]);
+        if let Some((k, _)) = exceeded {
+            self.warned[k] = true;
+        }
+        Ok(Tick { step, time, dt: Some(dt), next_time, frame, row, exceeded: exceeded.map(|(_, l)| l) })
     }
 
-    /// The fixed time step and the smallest stability limit seen, where the step exceeds it.
-    pub fn exceeded(&self) -> Option<(f64, f64)> {
-        self.fixed.filter(|&dt| dt > self.limit * (1.0 + 1e-9)).map(|dt| (dt, self.limit))
+    /// Limits that the scene's own time step exceeds, by place.
+    pub fn exceeded(&self) -> impl Iterator<Item = (usize, Limit)> + '_ {
+        let above = |l: &Limit| self.fixed.is_some_and(|dt| dt > l.dt * (1.0 + 1e-9));
+        self.limits
+            .iter()
+            .enumerate()
+            .filter_map(|(k, limit)| Some((k, *limit.as_ref()?)))
+            .filter(move |(_, limit)| above(limit))
     }
 
     /// The step was done.
@@ -138,16 +173,21 @@ mod tests {
             time: 0.0,
             step: 0,
             last_dt: None,
-            limit: f64::INFINITY,
+            limits: [None; 2],
+            warned: [false; 2],
             frames: Periodic { interval: 0.25, count: 0 },
             rows: Periodic { interval: 0.1, count: 0 },
         }
     }
 
+    fn of_fluid(dt: f64) -> Limit {
+        Limit { role: RoleName::Fluid, dt }
+    }
+
     fn run(mut clock: Clock, limit: impl Fn(u64) -> f64) -> (Vec<f64>, Vec<f64>, f64) {
         let (mut steps, mut frames) = (Vec::new(), Vec::new());
         loop {
-            let tick = clock.tick(limit(clock.step), false).unwrap();
+            let tick = clock.tick(&[of_fluid(limit(clock.step))], false).unwrap();
             if tick.frame {
                 frames.push(tick.time);
             }
@@ -186,8 +226,26 @@ mod tests {
 
     #[test]
     fn a_limit_that_is_no_number_is_an_error() {
-        let failure = clock(1.0, None).tick(f64::NAN, false).unwrap_err();
+        let failure = clock(1.0, None).tick(&[of_fluid(f64::NAN)], false).unwrap_err();
         assert_eq!(failure.quantity, Quantity::TimeStep);
-        assert!(clock(1.0, None).tick(0.0, false).is_err());
+        assert!(clock(1.0, None).tick(&[of_fluid(0.0)], false).is_err());
+        let both = [of_fluid(0.1), Limit { role: RoleName::Solid, dt: f64::NAN }];
+        assert!(clock(1.0, None).tick(&both, false).is_err());
+    }
+
+    #[test]
+    fn a_fixed_step_above_a_limit_is_told_once_for_each_phase() {
+        let mut clock = clock(1.0, Some(0.1));
+        let mut told = Vec::new();
+        for (fluid, solid) in [(0.2, 0.05), (0.2, 0.04), (0.09, 0.05), (0.08, 0.05)] {
+            let solid = Limit { role: RoleName::Solid, dt: solid };
+            let tick = clock.tick(&[of_fluid(fluid), solid], false).unwrap();
+            assert_eq!(tick.dt, Some(0.1), "it is taken all the same");
+            told.push(tick.exceeded);
+            clock.advance(&tick);
+        }
+        let solid = Limit { role: RoleName::Solid, dt: 0.05 };
+        assert_eq!(told, [Some(solid), None, Some(of_fluid(0.09)), None]);
+        assert_eq!(clock.exceeded().count(), 2);
     }
 }

@@ -1,11 +1,11 @@
 //! The coupler's half-step loop: checks both states, evaluates the cross-phase forces, decides dt and orders.
 
-use crate::clock::{Clock, Tick};
+use crate::clock::{Clock, Limit, Tick};
 use crate::cross_viscosity::CrossViscosity;
 use crate::error::RunError;
 use crate::foreign::ForeignSolid;
 use crate::recorder::{Measured, Recorder};
-use halfstep_shared::failure::{Diverged, Quantity, RoleName};
+use halfstep_shared::failure::{Diverged, RoleName};
 use halfstep_shared::interface::{Interface, Parameters};
 use halfstep_shared::lane::Isa;
 use halfstep_shared::link::{CouplerLink, Expect, StateSample, Transport};
@@ -88,8 +88,9 @@ impl<S: Transport, const D: usize> Coupler<S, D> {
             let expect = Expect::new(step, 0).time(time);
             let (fluid, solid) = self.receive(&expect)?;
             let stopped = stop.load(Ordering::Relaxed);
-            let limit = fluid.header().dt_limit.min(solid.header().dt_limit);
-            let tick = clock.tick(limit, stopped)?;
+            let limit = |role, header: &StateHeader| Limit { role, dt: header.dt_limit };
+            let limits = [limit(RoleName::Fluid, fluid.header()), limit(RoleName::Solid, solid.header())];
+            let tick = clock.tick(&limits, stopped)?;
             self.answer(&tick, 0, &fluid, &solid)?;
             let mut of_solid = Measured::of(solid.header());
             if let Some(foreign) = &mut self.foreign {
@@ -241,16 +242,7 @@ impl<S: Transport, const D: usize> Coupler<S, D> {
 fn reject_failure(role: RoleName, header: &StateHeader) -> Result<(), RunError> {
     match header.status {
         status::OK | status::FINISHED => Ok(()),
-        status::DIVERGED => Err(RunError::Diverged(Diverged {
-            role,
-            particle: header.failure_particle,
-            quantity: Quantity::from_wire(header.failure_quantity).unwrap_or(Quantity::Position),
-            value: header.failure_value,
-            // The message stands for the state that the failed half-step would have led to.
-            step: if header.stage == 1 { header.step } else { header.step.saturating_sub(1) },
-            stage: 1 - header.stage.min(1),
-            position: header.failure_position,
-        })),
+        status::DIVERGED => Err(Diverged::told(role, header).into()),
         _ => Err(RunError::RoleFailed { role, step: header.step }),
     }
 }

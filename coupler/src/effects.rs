@@ -2,7 +2,7 @@
 
 use halfstep_shared::geometry::Counts;
 use halfstep_shared::output::run_json::EffectReport;
-use halfstep_shared::scene::{DensityDiffusion, EffectName, Scene, Switch, Treatment};
+use halfstep_shared::scene::{EffectName, Scene, Switch, Treatment};
 
 /// The ledger of effects of a scene. Shares of the run time are not measured yet and stay empty.
 pub fn ledger(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
@@ -17,28 +17,10 @@ pub fn ledger(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
     };
     let moving = scene.gravity.iter().any(|&g| g != 0.0);
     add("gravity", moving, if moving { "gravity is not zero" } else { "gravity is zero" }.into());
-    if let Some(fluid) = &scene.fluid {
-        let on = halfstep_fluid::viscosity_acts(scene);
-        let why = match (forced(EffectName::Viscosity), halfstep_fluid::viscosity_share(scene)) {
-            (_, None) => "fluid.viscosity is zero".into(),
-            (Some((_, why)), _) => why,
-            (None, Some(share)) => format!(
-                "{:.2} % of the artificial viscosity; computed from {} % on",
-                100.0 * share,
-                100.0 * halfstep_fluid::SMALLEST_VISCOSITY_SHARE
-            ),
-        };
-        add("viscosity", on, why);
-        let a = fluid.artificial_viscosity;
-        add("artificial-viscosity", true, format!("A = {}, B = {}", a.linear, a.quadratic));
-        let diffusion = match fluid.density_diffusion {
-            DensityDiffusion::None => "none",
-            DensityDiffusion::Simple => "simple",
-            DensityDiffusion::Hydrostatic => "hydrostatic",
-            DensityDiffusion::DeltaSph => "delta-sph",
-        };
-        let on = fluid.density_diffusion != DensityDiffusion::None;
-        add("density-diffusion", on, format!("fluid.density_diffusion is {diffusion}"));
+    if scene.fluid.is_some() {
+        for decision in halfstep_fluid::effects::decide(scene) {
+            add(decision.effect.name(), decision.on, decision.why);
+        }
         let walls = counts.wall > 0;
         add("walls", walls, format!("{} wall particles", counts.wall));
         let (on, why) =

@@ -11,8 +11,13 @@ use std::process::ExitStatus;
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// A quantity left its bounds.
-    #[error(transparent)]
-    Diverged(#[from] Diverged),
+    #[error("{diverged}{}{hint}", if hint.is_empty() { "" } else { "\nhint: " })]
+    Diverged {
+        /// Whose and which.
+        diverged: Diverged,
+        /// What to change in the scene; empty until the run knows.
+        hint: String,
+    },
     /// A role gave up.
     #[error("the {role} failed at step {step}; log.txt says why")]
     RoleFailed {
@@ -54,8 +59,23 @@ pub enum RunError {
     Supervise(#[from] SuperviseError),
     /// A role in this process failed.
     #[error(transparent)]
-    Role(#[from] RoleError),
+    Role(RoleError),
     /// The operating system refused.
     #[error("{0}")]
     System(String),
+}
+
+impl From<Diverged> for RunError {
+    fn from(diverged: Diverged) -> Self {
+        Self::Diverged { diverged, hint: String::new() }
+    }
+}
+
+impl From<RoleError> for RunError {
+    fn from(error: RoleError) -> Self {
+        match error {
+            RoleError::Diverged(diverged) => diverged.into(),
+            other => Self::Role(other),
+        }
+    }
 }

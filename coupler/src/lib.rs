@@ -1,5 +1,6 @@
 //! The front door: runs scenes, couples fluid and solid in lock-step, writes what a run leaves.
 
+mod advice;
 pub mod check;
 pub mod clock;
 pub mod couple;
@@ -10,5 +11,6 @@ pub mod foreign;
 pub mod recorder;
 pub mod roles;
 pub mod run;
+mod session;
 pub mod solo;
 pub mod supervise;

@@ -119,6 +119,17 @@ impl Recorder {
         solid: Option<Measured<'_>>,
     ) -> Result<(), OutputError> {
         self.time = tick.time;
+        if let (Some(limit), Some(dt)) = (tick.exceeded, tick.dt) {
+            let warning = format!(
+                "time_step = {dt:.4e} s is above the {}'s stability limit of {:.4e} s, {:.2} times (time_step = \
+                 \"auto\" keeps to it)",
+                limit.role,
+                limit.dt,
+                dt / limit.dt
+            );
+            tracing::warn!("{warning}");
+            self.bar.suspend(|| eprintln!("warning: {warning}"));
+        }
         if tick.row {
             let (mut f, mut s, mut at) = (0, 0, 0);
             for &(phase, n) in &self.order {

@@ -1,6 +1,6 @@
 //! A scene with one phase: the same role, clock and writer in one process, no exchange.
 
-use crate::clock::Clock;
+use crate::clock::{Clock, Limit};
 use crate::error::RunError;
 use crate::recorder::{Measured, Recorder};
 use halfstep_shared::output::FrameWriter;
@@ -40,7 +40,7 @@ pub fn run_solo(
         let start = Instant::now();
         let stopped = stop.load(Ordering::Relaxed);
         role.publish(&[], &mut scratch);
-        let tick = clock.tick(role.dt_limit(), stopped)?;
+        let tick = clock.tick(&[Limit { role: role.name(), dt: role.dt_limit() }], stopped)?;
         let n = role.probes(&mut probes);
         let measured = Measured {
             probes: &probes[..n],

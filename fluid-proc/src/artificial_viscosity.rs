@@ -1,10 +1,13 @@
 //! Monaghan's artificial viscosity between fluid particles: -Pi_ij of [`halfstep_shared::artificial_viscosity`] in the
 //! bracket of the momentum equation, Kayaki's eq. (22).
 
+use crate::effects::FluidEffect;
 use crate::rates::{FluidPair, PairEffect, PairRates};
 use halfstep_shared::artificial_viscosity::damping;
 use halfstep_shared::lane::{Arch, Lane};
-use halfstep_shared::scene::ArtificialViscosity as Coefficients;
+use halfstep_shared::scene::{
+    ArtificialViscosity as Coefficients, Decision, Derived, EffectName, Fluid, Scene,
+};
 
 /// The effect.
 #[derive(Clone, Copy, Debug)]
@@ -23,6 +26,25 @@ impl ArtificialViscosity {
             linear: coefficients.linear * sound_speed,
             quadratic: coefficients.quadratic,
         }
+    }
+}
+
+impl<const D: usize> FluidEffect<D> for ArtificialViscosity {
+    type Pair<'a> = Self;
+    fn decide(scene: &Scene) -> Decision {
+        let derived = match &scene.fluid {
+            None => Derived::Impossible("the scene has no fluid".into()),
+            Some(Fluid { artificial_viscosity: a, .. }) if a.linear == 0.0 && a.quadratic == 0.0 => {
+                Derived::Impossible("fluid.artificial_viscosity is zero".into())
+            }
+            Some(Fluid { artificial_viscosity: a, .. }) => {
+                Derived::On(format!("fluid.artificial_viscosity: A = {}, B = {}", a.linear, a.quadratic))
+            }
+        };
+        Decision::new(scene, EffectName::ArtificialViscosity, derived)
+    }
+    fn pair(fluid: &crate::Fluid<D>) -> Self {
+        fluid.artificial_viscosity
     }
 }
 

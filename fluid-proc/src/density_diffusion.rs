@@ -8,9 +8,12 @@
 //!   [`crate::density_gradient`]. (Printed with a difference of the gradients in Kayaki's eq. (19); only the sum cancels a
 //!   linear field.)
 
+use crate::effects::FluidEffect;
+use crate::fluid::Fluid;
 use crate::rates::{FluidPair, PairEffect, PairRates};
 use halfstep_shared::lane::{Arch, Lane};
 use halfstep_shared::pair::dot;
+use halfstep_shared::scene::{Decision, DensityDiffusion as Variant, Derived, EffectName, Scene};
 
 /// delta h c0, m²/s.
 #[derive(Clone, Copy, Debug)]
@@ -36,6 +39,74 @@ pub struct DeltaSph<'a, const D: usize> {
     pub strength: Strength,
     /// Renormalised density gradient of each slot, kg/m⁴.
     pub gradient: &'a [[f64; D]],
+}
+
+/// One of the variants.
+#[derive(Clone, Copy, Debug)]
+pub enum Diffusion<'a, const D: usize> {
+    /// Molteni and Colagrossi.
+    Simple(Simple),
+    /// Fourtakas.
+    Hydrostatic(Hydrostatic<D>),
+    /// Antuono, Marrone.
+    DeltaSph(DeltaSph<'a, D>),
+}
+
+/// The effect in the list.
+#[derive(Clone, Copy, Debug)]
+pub struct DensityDiffusion;
+
+impl<const D: usize> FluidEffect<D> for DensityDiffusion {
+    type Pair<'a> = Diffusion<'a, D>;
+    fn decide(scene: &Scene) -> Decision {
+        let derived = match scene.fluid.as_ref().map(|f| (f.density_diffusion, f.density_diffusion_coefficient)) {
+            None => Derived::Impossible("the scene has no fluid".into()),
+            Some((Variant::None, _)) => Derived::Impossible("fluid.density_diffusion is \"none\"".into()),
+            Some((_, 0.0)) => Derived::Impossible("fluid.density_diffusion_coefficient is zero".into()),
+            Some((variant, delta)) => {
+                let name = match variant {
+                    Variant::None => "none",
+                    Variant::Simple => "simple",
+                    Variant::Hydrostatic => "hydrostatic",
+                    Variant::DeltaSph => "delta-sph",
+                };
+                Derived::On(format!("fluid.density_diffusion is \"{name}\", delta = {delta}"))
+            }
+        };
+        Decision::new(scene, EffectName::DensityDiffusion, derived)
+    }
+    fn pair(fluid: &Fluid<D>) -> Diffusion<'_, D> {
+        let strength = fluid.strength;
+        match fluid.diffusion {
+            Variant::DeltaSph => {
+                Diffusion::DeltaSph(DeltaSph { strength, gradient: fluid.gradient.as_flattened() })
+            }
+            Variant::Hydrostatic => {
+                let scale = fluid.state.density / fluid.state.sound_speed.powi(2);
+                Diffusion::Hydrostatic(Hydrostatic { strength, gradient: fluid.gravity.map(|g| scale * g) })
+            }
+            Variant::Simple | Variant::None => Diffusion::Simple(Simple(strength)),
+        }
+    }
+}
+
+impl<const D: usize> PairEffect<D> for Diffusion<'_, D> {
+    type Own = [Lane; D];
+    #[inline(always)]
+    fn own(&self, slot: usize) -> [Lane; D] {
+        match self {
+            Self::DeltaSph(d) => d.own(slot),
+            Self::Simple(_) | Self::Hydrostatic(_) => [Lane::ZERO; D],
+        }
+    }
+    #[inline(always)]
+    fn add<A: Arch>(&self, own: &[Lane; D], j: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
+        match self {
+            Self::Simple(d) => d.add::<A>(&(), j, pair, rates),
+            Self::Hydrostatic(d) => d.add::<A>(&(), j, pair, rates),
+            Self::DeltaSph(d) => d.add::<A>(own, j, pair, rates),
+        }
+    }
 }
 
 #[inline(always)]

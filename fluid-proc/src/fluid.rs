@@ -1,17 +1,19 @@
 //! The fluid as a [`Role`]: what happens in a half-step, and which effects take part.
 
 use crate::artificial_viscosity::ArtificialViscosity;
-use crate::columns::{Columns, Shown};
-use crate::density_diffusion::{DeltaSph, Hydrostatic, Simple, Strength};
+use crate::columns::Columns;
+use crate::density_diffusion::Strength;
+use crate::effects::{self, Effects, Pass};
 use crate::density_gradient::{GradientLaw, GradientSum};
 use crate::interface::Coupling;
 use crate::midpoint::{self, Extremes, Stage};
 use crate::rates::{PairEffect, RateLaw, RateSum};
 use crate::time_step::Limits;
-use crate::viscosity::{self, StressTerm, VelocityGradient, Viscosity, ViscosityAtWall};
+use crate::viscosity::{self, StressTerm, VelocityGradient, ViscosityAtWall};
 use crate::wall::{Damping, WallLaw, WallSum, Walls};
 use crate::wall_guard::{GUARD, WallViscosity};
-use halfstep_shared::failure::{Diverged, Quantity, RoleName};
+use halfstep_shared::bounds::Bounds;
+use halfstep_shared::failure::{Diverged, RoleName};
 use halfstep_shared::geometry;
 use halfstep_shared::interface::Parameters;
 use halfstep_shared::kernel::Kernel;
@@ -42,13 +44,16 @@ pub struct Fluid<const D: usize> {
     pub(crate) gravity: [f64; D],
     pub(crate) probes: Vec<ProbeKind>,
 
+    bounds: Bounds,
     isa: Isa,
     limits: Limits,
-    diffusion: DensityDiffusion,
-    strength: Strength,
-    artificial_viscosity: ArtificialViscosity,
+    /// The effects that take part.
+    effects: Vec<EffectName>,
+    pub(crate) diffusion: DensityDiffusion,
+    pub(crate) strength: Strength,
+    pub(crate) artificial_viscosity: ArtificialViscosity,
     quadratic: f64,
-    viscosity: Option<f64>,
+    viscosity: f64,
     domain: ([f64; D], [f64; D]),
     fluid_list: ClusterList,
     wall_list: ClusterList,
@@ -56,12 +61,12 @@ pub struct Fluid<const D: usize> {
     sums: Vec<RateSum<D>>,
     extrapolations: Vec<WallSum<D>>,
     /// Renormalised density gradient of each cluster's particles.
-    gradient: Vec<[[f64; D]; LANES]>,
+    pub(crate) gradient: Vec<[[f64; D]; LANES]>,
     /// Computed once a step.
     frozen: bool,
     /// The gradient belongs to this step and order.
     gradient_known: bool,
-    stress: StressTerm<D>,
+    pub(crate) stress: StressTerm<D>,
     velocity_gradients: Vec<VelocityGradient<D>>,
     displacement: f64,
     largest_speed: f64,
@@ -103,8 +108,10 @@ impl<const D: usize> Fluid<D> {
                 gravity: std::array::from_fn(|d| scene.gravity[d]),
                 probes: scene.probes.iter().map(|p| p.kind).filter(|k| k.phase() == Phase::Fluid).collect(),
 
+                bounds: Bounds::of_fluid(scene)?,
                 isa,
                 limits: Limits::new(scene),
+                effects: effects::decide(scene).into_iter().filter(|d| d.on).map(|d| d.effect).collect(),
                 diffusion: fluid.density_diffusion,
                 strength: Strength(fluid.density_diffusion_coefficient * h * fluid.sound_speed),
                 artificial_viscosity: ArtificialViscosity::new(
@@ -113,7 +120,7 @@ impl<const D: usize> Fluid<D> {
                     h,
                 ),
                 quadratic: fluid.artificial_viscosity.quadratic,
-                viscosity: crate::viscosity_acts(scene).then_some(fluid.viscosity),
+                viscosity: fluid.viscosity,
                 domain: (std::array::from_fn(|d| domain.min[d]), std::array::from_fn(|d| domain.max[d])),
                 fluid_list: ClusterList::default(),
                 wall_list: ClusterList::default(),
@@ -167,11 +174,11 @@ impl<const D: usize> Fluid<D> {
         }
         let clusters = self.fluid_list.clusters();
         self.sums.resize(clusters, RateSum::default());
-        if self.diffusion == DensityDiffusion::DeltaSph {
+        if self.needs_gradient() {
             self.gradient.resize(clusters, [[0.0; D]; LANES]);
             self.gradient_known = false;
         }
-        if self.viscosity.is_some() {
+        if self.takes_part(EffectName::Viscosity) {
             self.velocity_gradients.resize(clusters, VelocityGradient::default());
         }
         self.displacement = 0.0;
@@ -187,35 +194,24 @@ impl<const D: usize> Fluid<D> {
         }
     }
 
-    /// Bounds of density and speed: within a factor of 3 of rho0, below 3 c0.
-    fn bounds(&self) -> ((f64, f64), f64) {
-        ((self.state.density / 3.0, self.state.density * 3.0), 3.0 * self.state.sound_speed)
-    }
-
-    /// The first particle out of bounds.
+    /// The particle that is farthest out of bounds, if any is.
     fn find_divergence(&self, step: u64, stage: u32) -> Option<Diverged> {
         let c = &self.columns;
-        let ((low, high), fastest) = self.bounds();
-        (0..c.slots()).filter(|&s| c.id[s] != PADDING).find_map(|s| {
-            let rho = c.now.density[s];
+        let excess = |s: usize| {
             let v2: f64 = (0..D).map(|d| c.now.velocity[d][s].powi(2)).sum();
-            let (quantity, value) = if !(rho > low && rho < high) {
-                (Quantity::Density, rho)
-            } else if v2.is_nan() || v2 > fastest * fastest {
-                (Quantity::Speed, v2.sqrt())
-            } else {
-                return None;
-            };
-            let position: [f64; D] = std::array::from_fn(|d| c.now.position[d][s]);
-            Some(Diverged {
-                role: RoleName::Fluid,
-                particle: c.id[s],
-                quantity,
-                value,
-                step,
-                stage,
-                position: halfstep_shared::wide(position),
-            })
+            Some((s, self.bounds.excess(c.now.density[s], v2.sqrt())?))
+        };
+        let found = (0..c.slots()).filter(|&s| c.id[s] != PADDING).filter_map(excess);
+        let (s, worst) = found.max_by(|a, b| a.1.ratio.total_cmp(&b.1.ratio))?;
+        let position: [f64; D] = std::array::from_fn(|d| c.now.position[d][s]);
+        Some(Diverged {
+            role: RoleName::Fluid,
+            particle: c.id[s],
+            quantity: worst.quantity,
+            value: worst.value,
+            step,
+            stage,
+            position: halfstep_shared::wide(position),
         })
     }
 
@@ -226,35 +222,25 @@ impl<const D: usize> Fluid<D> {
             pair::pass(isa, &law, &self.list_of_walls, &mut self.extrapolations);
             walls.show(&self.extrapolations, &self.state);
         }
-        if self.diffusion == DensityDiffusion::DeltaSph && !(self.frozen && self.gradient_known) {
-            self.gradient_known = true;
-            let law = GradientLaw { kernel, fluid: &self.columns.now };
-            pair::pass_into(isa, &law, &self.fluid_list, GradientSum::solve, &mut self.gradient);
+        if self.needs_gradient() && !(self.frozen && self.gradient_known) {
+            self.density_gradient(kernel);
         }
-        if let Some(mu) = self.viscosity {
-            self.viscous_stress(kernel, mu);
+        if self.takes_part(EffectName::Viscosity) {
+            self.viscous_stress(kernel);
         }
         let mut sums = std::mem::take(&mut self.sums);
-        match self.diffusion {
-            DensityDiffusion::None => self.rates(kernel, (), &mut sums),
-            DensityDiffusion::Simple => {
-                self.rates(kernel, Simple(self.strength), &mut sums);
-            }
-            DensityDiffusion::Hydrostatic => {
-                let scale = self.state.density / self.state.sound_speed.powi(2);
-                let effect =
-                    Hydrostatic { strength: self.strength, gradient: self.gravity.map(|g| scale * g) };
-                self.rates(kernel, effect, &mut sums);
-            }
-            DensityDiffusion::DeltaSph => {
-                let effect = DeltaSph { strength: self.strength, gradient: self.gradient.as_flattened() };
-                self.rates(kernel, effect, &mut sums);
-            }
-        }
+        self.rates(kernel, Effects::of(self), &mut sums);
+        self.wall_rates(kernel, &mut sums);
         self.sums = sums;
     }
 
-    fn viscous_stress<K: Kernel<D>>(&mut self, kernel: K, viscosity: f64) {
+    fn density_gradient<K: Kernel<D>>(&mut self, kernel: K) {
+        self.gradient_known = true;
+        let law = GradientLaw { kernel, fluid: &self.columns.now };
+        pair::pass_into(self.isa, &law, &self.fluid_list, GradientSum::solve, &mut self.gradient);
+    }
+
+    fn viscous_stress<K: Kernel<D>>(&mut self, kernel: K) {
         let fluid = &self.columns.now;
         let law = viscosity::GradientLaw { kernel, targets: fluid, sources: fluid };
         pair::pass(self.isa, &law, &self.fluid_list, &mut self.velocity_gradients);
@@ -262,44 +248,44 @@ impl<const D: usize> Fluid<D> {
             let law = viscosity::GradientLaw { kernel, targets: fluid, sources: &walls.shown };
             pair::pass_adding(self.isa, &law, &self.wall_list, &mut self.velocity_gradients);
         }
-        self.stress.set(viscosity, &self.velocity_gradients, &fluid.density);
+        self.stress.set(self.viscosity, &self.velocity_gradients, &fluid.density);
     }
 
-    /// The rate pass over fluid and walls with a density diffusion; viscosity as the scene has it.
-    fn rates<K: Kernel<D>, E: PairEffect<D>>(&self, kernel: K, diffusion: E, sums: &mut [RateSum<D>]) {
-        let damping = self.artificial_viscosity;
-        let stress = &self.stress;
-        let fluid = &self.columns.now;
-        let isa = self.isa;
-        match self.viscosity {
-            None => {
-                pair::pass(isa, &law(kernel, (damping, diffusion, ()), fluid, fluid), &self.fluid_list, sums)
-            }
-            Some(_) => {
-                let effects = (damping, diffusion, Viscosity(stress));
-                pair::pass(isa, &law(kernel, effects, fluid, fluid), &self.fluid_list, sums);
-            }
-        }
+    /// The rate pass over the fluid; returns the name of the composition that ran.
+    fn rates<K: Kernel<D>>(&self, kernel: K, effects: Effects<'_, D>, sums: &mut [RateSum<D>]) -> &'static str {
+        effects.composition(OverFluid { kernel, fluid: self, sums })
+    }
+
+    /// Adds the rates by the walls.
+    fn wall_rates<K: Kernel<D>>(&self, kernel: K, sums: &mut [RateSum<D>]) {
         let Some(walls) = &self.walls else { return };
-        let at_walls = WallViscosity {
+        let damping = WallViscosity {
             smoothing_length: self.smoothing_length,
             linear: &walls.damping,
             quadratic: self.quadratic,
         };
-        let shown = &walls.shown;
-        match self.viscosity {
-            None => {
-                pair::pass_adding(isa, &law(kernel, (at_walls, (), ()), fluid, shown), &self.wall_list, sums);
-            }
-            Some(_) => {
-                let effects = (at_walls, (), ViscosityAtWall(stress));
-                pair::pass_adding(isa, &law(kernel, effects, fluid, shown), &self.wall_list, sums);
-            }
+        let (targets, sources) = (&self.columns.now, &walls.shown);
+        if self.takes_part(EffectName::Viscosity) {
+            let effects = (damping, (ViscosityAtWall(&self.stress), ()));
+            let law = RateLaw { kernel, effects, targets, sources };
+            pair::pass_adding(self.isa, &law, &self.wall_list, sums);
+        } else {
+            let law = RateLaw { kernel, effects: (damping, ()), targets, sources };
+            pair::pass_adding(self.isa, &law, &self.wall_list, sums);
         }
     }
 
+    /// An effect of the list takes part.
+    pub(crate) fn takes_part(&self, effect: EffectName) -> bool {
+        self.effects.contains(&effect)
+    }
+
+    fn needs_gradient(&self) -> bool {
+        self.diffusion == DensityDiffusion::DeltaSph && self.takes_part(EffectName::DensityDiffusion)
+    }
+
     fn passes_over_fluid(&self) -> u64 {
-        1 + u64::from(self.diffusion == DensityDiffusion::DeltaSph) + u64::from(self.viscosity.is_some())
+        1 + u64::from(self.needs_gradient()) + u64::from(self.takes_part(EffectName::Viscosity))
     }
 
     /// Number of wall particles.
@@ -308,13 +294,18 @@ impl<const D: usize> Fluid<D> {
     }
 }
 
-fn law<'a, K, E, const D: usize>(
+struct OverFluid<'a, K, const D: usize> {
     kernel: K,
-    effects: E,
-    targets: &'a Shown<D>,
-    sources: &'a Shown<D>,
-) -> RateLaw<'a, K, E, D> {
-    RateLaw { kernel, effects, targets, sources }
+    fluid: &'a Fluid<D>,
+    sums: &'a mut [RateSum<D>],
+}
+
+impl<K: Kernel<D>, const D: usize> Pass<D> for OverFluid<'_, K, D> {
+    fn run<E: PairEffect<D>>(self, effects: E) {
+        let shown = &self.fluid.columns.now;
+        let law = RateLaw { kernel: self.kernel, effects, targets: shown, sources: shown };
+        pair::pass(self.fluid.isa, &law, &self.fluid.fluid_list, self.sums);
+    }
 }
 
 impl<const D: usize> Role for Fluid<D> {
@@ -381,8 +372,7 @@ impl<const D: usize> Role for Fluid<D> {
             self.gradient_known = false;
         }
         let dt = if stage == 0 { 0.5 * dt } else { dt };
-        let (density, fastest) = self.bounds();
-        let stage_ = Stage::new(stage, dt, self.gravity, &self.state, density, fastest * fastest);
+        let stage_ = Stage::new(stage, dt, self.gravity, &self.state, &self.bounds);
         let extremes = midpoint::advance(&mut self.columns, &self.sums, stage_);
         self.remember(&extremes);
         match extremes.out_of_bounds.then(|| self.find_divergence(step, stage)).flatten() {

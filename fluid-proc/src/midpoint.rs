@@ -3,6 +3,7 @@
 
 use crate::columns::{Columns, Source, source};
 use crate::rates::RateSum;
+use halfstep_shared::bounds::Bounds;
 use halfstep_shared::lane::LANES;
 use halfstep_shared::neighbours::PADDING;
 use halfstep_shared::state_equation::StateEquation;
@@ -37,30 +38,21 @@ impl Extremes {
 /// What holds for all particles during a stage.
 #[derive(Clone, Copy)]
 pub struct Stage<'a, const D: usize> {
-    /// The state equation.
-    pub state: &'a StateEquation,
-    /// Gravity, m/s².
-    pub gravity: [f64; D],
-    /// Time from n, s.
-    pub dt: f64,
-    /// Bounds of the density, kg/m³.
-    pub density: (f64, f64),
-    /// Square of the largest speed allowed, m²/s².
-    pub fastest: f64,
+    state: &'a StateEquation,
+    gravity: [f64; D],
+    dt: f64,
+    density: (f64, f64),
+    fastest: f64,
     mass: f64,
     first: bool,
 }
 
 impl<'a, const D: usize> Stage<'a, D> {
-    /// Stage 0 or 1 of a step.
-    pub fn new(
-        stage: u32,
-        dt: f64,
-        gravity: [f64; D],
-        state: &'a StateEquation,
-        density: (f64, f64),
-        fastest: f64,
-    ) -> Self {
+    /// Stage 0 or 1 of a step; `dt` is the time from n, s.
+    pub fn new(stage: u32, dt: f64, gravity: [f64; D], state: &'a StateEquation, bounds: &Bounds) -> Self {
+        let change = bounds.density_change;
+        let density = (bounds.density * (1.0 - change), bounds.density * (1.0 + change));
+        let fastest = bounds.speed * bounds.speed;
         Self { state, gravity, dt, density, fastest, mass: 0.0, first: stage == 0 }
     }
 }

@@ -39,7 +39,7 @@ pub struct PairRates<const D: usize> {
     pub vector: [Lane; D],
 }
 
-/// An effect in the pair pass. An absent effect is `()`; several are a tuple.
+/// An effect in the pair pass. An absent effect is `()`; several are nested pairs.
 pub trait PairEffect<const D: usize>: Copy + Send + Sync {
     /// What it loads of four targets before their neighbours are visited.
     type Own: Copy;
@@ -59,18 +59,33 @@ impl<const D: usize> PairEffect<D> for () {
     fn add<A: Arch>(&self, _: &(), _: usize, _: &FluidPair<D>, _: &mut PairRates<D>) {}
 }
 
-impl<const D: usize, E: PairEffect<D>, F: PairEffect<D>, G: PairEffect<D>> PairEffect<D> for (E, F, G) {
-    type Own = (E::Own, F::Own, G::Own);
-    const VECTOR: bool = E::VECTOR || F::VECTOR || G::VECTOR;
+impl<const D: usize, E: PairEffect<D>, F: PairEffect<D>> PairEffect<D> for (E, F) {
+    type Own = (E::Own, F::Own);
+    const VECTOR: bool = E::VECTOR || F::VECTOR;
     #[inline(always)]
     fn own(&self, slot: usize) -> Self::Own {
-        (self.0.own(slot), self.1.own(slot), self.2.own(slot))
+        (self.0.own(slot), self.1.own(slot))
     }
     #[inline(always)]
     fn add<A: Arch>(&self, own: &Self::Own, j: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
         self.0.add::<A>(&own.0, j, pair, rates);
         self.1.add::<A>(&own.1, j, pair, rates);
-        self.2.add::<A>(&own.2, j, pair, rates);
+    }
+}
+
+/// An effect of which only the run knows whether it takes part.
+impl<const D: usize, E: PairEffect<D>> PairEffect<D> for Option<E> {
+    type Own = Option<E::Own>;
+    const VECTOR: bool = E::VECTOR;
+    #[inline(always)]
+    fn own(&self, slot: usize) -> Self::Own {
+        self.as_ref().map(|effect| effect.own(slot))
+    }
+    #[inline(always)]
+    fn add<A: Arch>(&self, own: &Self::Own, j: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
+        if let (Some(effect), Some(own)) = (self, own) {
+            effect.add::<A>(own, j, pair, rates);
+        }
     }
 }
 

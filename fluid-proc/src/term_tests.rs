@@ -5,7 +5,7 @@ use crate::columns::{Shown, Source};
 use crate::density_diffusion::{DeltaSph, Hydrostatic, Simple, Strength};
 use crate::density_gradient::{GradientLaw, GradientSum};
 use crate::rates::{PairEffect, RateLaw, RateSum};
-use crate::viscosity::{self, StressTerm, VelocityGradient, Viscosity};
+use crate::viscosity::{self, StressTerm, VelocityGradient, ViscousStress};
 use halfstep_shared::kernel::{CubicSpline, Kernel};
 use halfstep_shared::lane::{Fused, Isa, LANES, Lane};
 use halfstep_shared::neighbours::{ClusterList, PADDING, Rows};
@@ -101,7 +101,7 @@ fn two(v0: [f64; 2], v1: [f64; 2]) -> [P; 2] {
 #[test]
 fn pressure_of_two_particles_by_hand() {
     // a_0 = -m (3/4 + 5/16) F(1) (x_0 - x_1), m = 7: the factor is 17/16, x_0 - x_1 = -1.
-    let rates = cloud(&two([0.0; 2], [0.0; 2]), 7.0).rates(((), (), ()));
+    let rates = cloud(&two([0.0; 2], [0.0; 2]), 7.0).rates(());
     close(rates[0].0[0], 7.0 * 17.0 / 16.0 * slope(1.0));
     close(rates[1].0[0], -7.0 * 17.0 / 16.0 * slope(1.0));
     assert_eq!(rates[0].0[1], 0.0);
@@ -111,7 +111,7 @@ fn pressure_of_two_particles_by_hand() {
 #[test]
 fn continuity_of_two_particles_by_hand() {
     // Approach at 0.5: v_01 . x_01 = (0.5)(-1) = -0.5; D rho_0 = rho_0 m / rho_1 (-0.5) F > 0.
-    let rates = cloud(&two([0.5, 0.0], [0.0; 2]), 7.0).rates(((), (), ()));
+    let rates = cloud(&two([0.5, 0.0], [0.0; 2]), 7.0).rates(());
     close(rates[0].1, 2.0 * 7.0 / 4.0 * -0.5 * slope(1.0));
     close(rates[1].1, 4.0 * 7.0 / 2.0 * -0.5 * slope(1.0));
     assert!(rates[0].1 > 0.0, "approach raises the density");
@@ -123,20 +123,20 @@ fn artificial_viscosity_of_two_particles_by_hand() {
     // Pi = (-0.2 * 10 theta + 0.7 theta²) / 3 > 0 and a_0 gets -m Pi F x_01.
     let effect = ArtificialViscosity::new(Coefficients { linear: 0.2, quadratic: 0.7 }, 10.0, H);
     let cloud_ = cloud(&two([0.5, 0.0], [0.0; 2]), 7.0);
-    let (with, without) = (cloud_.rates((effect, (), ())), cloud_.rates(((), (), ())));
+    let (with, without) = (cloud_.rates((effect, ())), cloud_.rates(()));
     let theta = -1.3 * 0.5 / 1.0169;
     let pi = (-2.0 * theta + 0.7 * theta * theta) / 3.0;
     assert!((with[0].0[0] - without[0].0[0] - 7.0 * pi * slope(1.0)).abs() < 1e-12);
     // Receding particles feel none.
     let cloud_ = cloud(&two([-0.5, 0.0], [0.0; 2]), 7.0);
-    assert_eq!(cloud_.rates((effect, (), ())), cloud_.rates(((), (), ())));
+    assert_eq!(cloud_.rates((effect, ())), cloud_.rates(()));
 }
 
 #[test]
 fn simple_diffusion_of_two_particles_by_hand() {
     // delta h c0 = 0.6: D rho_0 = 0.6 (m / rho_1) 2 (2 - 4) F.
     let effect = Simple(Strength(0.6));
-    let rates = cloud(&two([0.0; 2], [0.0; 2]), 7.0).rates(((), effect, ()));
+    let rates = cloud(&two([0.0; 2], [0.0; 2]), 7.0).rates((effect, ()));
     close(rates[0].1, 0.6 * 7.0 / 4.0 * 2.0 * -2.0 * slope(1.0));
     assert!(rates[0].1 > 0.0, "density flows toward the lighter particle");
 }
@@ -164,9 +164,9 @@ fn a_linear_density_is_not_diffused() {
     for &s in &c.slot {
         assert!((gradient[s][0] - 3.0).abs() < 1e-10 && (gradient[s][1] + 2.0).abs() < 1e-10);
     }
-    let plain = c.rates(((), Simple(Strength(1.0)), ()));
-    let full = c.rates(((), DeltaSph { strength: Strength(1.0), gradient: &gradient }, ()));
-    let rest = c.rates(((), Hydrostatic { strength: Strength(1.0), gradient: [3.0, -2.0] }, ()));
+    let plain = c.rates((Simple(Strength(1.0)), ()));
+    let full = c.rates((DeltaSph { strength: Strength(1.0), gradient: &gradient }, ()));
+    let rest = c.rates((Hydrostatic { strength: Strength(1.0), gradient: [3.0, -2.0] }, ()));
     let largest = |r: &[([f64; 2], f64)]| r.iter().map(|r| r.1.abs()).fold(0.0, f64::max);
     assert!(largest(&plain) > 1.0, "the simple variant diffuses at the edges");
     assert!(largest(&full) < 1e-10, "{}", largest(&full));
@@ -200,7 +200,7 @@ fn shear_flow_has_the_stress_of_its_rate() {
     assert!((stress.0[0][1][middle] - 1.5).abs() < 0.02, "{}", stress.0[0][1][middle]);
     assert!(stress.0[0][0][middle].abs() < 1e-12 && stress.0[1][1][middle].abs() < 1e-12);
     // A uniform stress makes no force inside.
-    let rates = c.rates(((), (), Viscosity(&stress)));
+    let rates = c.rates((ViscousStress(&stress), ()));
     assert!(rates[40].0[0].abs() < 1e-10 && rates[40].0[1].abs() < 1e-10);
 }
 
@@ -216,7 +216,7 @@ fn particle() -> impl Strategy<Value = P> {
 fn all_effects(c: &Cloud) -> Vec<([f64; 2], f64)> {
     let damping = ArtificialViscosity::new(Coefficients { linear: 1.0, quadratic: 1.0 }, 20.0, H);
     let gradient = c.gradients();
-    c.rates((damping, DeltaSph { strength: Strength(2.0), gradient: &gradient }, ()))
+    c.rates((damping, (DeltaSph { strength: Strength(2.0), gradient: &gradient }, ())))
 }
 
 fn scale(rates: &[([f64; 2], f64)]) -> f64 {

@@ -4,10 +4,13 @@
 //! particle takes part in the gradient with the velocity it shows and repeats the stress of its fluid neighbour.
 
 use crate::columns::{Shown, Vectors, vectors};
+use crate::effects::FluidEffect;
+use crate::fluid::Fluid;
 use crate::rates::{FluidPair, PairEffect, PairRates};
 use halfstep_shared::kernel::Kernel;
 use halfstep_shared::lane::{Arch, LANES, Lane};
 use halfstep_shared::pair::{PairLaw, distance};
+use halfstep_shared::scene::{Decision, Derived, EffectName, Scene};
 
 /// tau_ab / rho² of each slot; a <= b filled.
 #[derive(Clone, Debug)]
@@ -118,11 +121,45 @@ fn add_stress<const D: usize, A: Arch>(
     }
 }
 
+/// Physical over artificial kinematic viscosity below which the physical one is left out.
+pub const SMALLEST_SHARE: f64 = 0.01;
+
+/// Physical over artificial kinematic viscosity A h c0 / 8 (Monaghan 2005, two dimensions); infinite without artificial
+/// one, `None` without fluid or without physical one.
+pub fn share_of_artificial(scene: &Scene) -> Option<f64> {
+    let fluid = scene.fluid.as_ref().filter(|f| f.viscosity > 0.0)?;
+    let h = scene.smoothing_ratio * scene.resolution;
+    let artificial = fluid.artificial_viscosity.linear * h * fluid.sound_speed / 8.0;
+    Some(fluid.viscosity / fluid.density / artificial)
+}
+
+/// The effect in the list.
+#[derive(Clone, Copy, Debug)]
+pub struct Viscosity;
+
+impl<const D: usize> FluidEffect<D> for Viscosity {
+    type Pair<'a> = ViscousStress<'a, D>;
+    fn decide(scene: &Scene) -> Decision {
+        let derived = match share_of_artificial(scene) {
+            None => Derived::Impossible("fluid.viscosity is zero".into()),
+            Some(share) => {
+                let (percent, least) = (100.0 * share, 100.0 * SMALLEST_SHARE);
+                let why = format!("{percent:.2} % of the artificial viscosity; computed from {least} % on");
+                if share >= SMALLEST_SHARE { Derived::On(why) } else { Derived::Off(why) }
+            }
+        };
+        Decision::new(scene, EffectName::Viscosity, derived)
+    }
+    fn pair(fluid: &Fluid<D>) -> ViscousStress<'_, D> {
+        ViscousStress(&fluid.stress)
+    }
+}
+
 /// The effect between fluid particles.
 #[derive(Clone, Copy, Debug)]
-pub struct Viscosity<'a, const D: usize>(pub &'a StressTerm<D>);
+pub struct ViscousStress<'a, const D: usize>(pub &'a StressTerm<D>);
 
-impl<const D: usize> PairEffect<D> for Viscosity<'_, D> {
+impl<const D: usize> PairEffect<D> for ViscousStress<'_, D> {
     type Own = [[Lane; D]; D];
     const VECTOR: bool = true;
     #[inline(always)]

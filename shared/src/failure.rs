@@ -1,5 +1,6 @@
 //! A simulation that left its bounds: who, where, which quantity.
 
+use crate::protocol::{StateHeader, status};
 use serde::{Deserialize, Serialize};
 
 /// The process, by what it owns.
@@ -50,6 +51,19 @@ impl Quantity {
     }
 }
 
+impl Quantity {
+    /// Its unit.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Density => "kg/m³",
+            Self::Speed => "m/s",
+            Self::Position => "m",
+            Self::Stress => "Pa",
+            Self::TimeStep => "s",
+        }
+    }
+}
+
 impl std::fmt::Display for Quantity {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
@@ -65,8 +79,8 @@ impl std::fmt::Display for Quantity {
 /// A particle's quantity is out of bounds: the run cannot go on.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error, Serialize, Deserialize)]
 #[error(
-    "the {role} diverged at step {step}, stage {stage}: {quantity} of particle {particle} is {value:e} at \
-     ({}, {}, {})", position[0], position[1], position[2]
+    "the {role} diverged at step {step}, stage {stage}: {quantity} of particle {particle} is {value:.4e} {} at \
+     ({:.6}, {:.6}, {:.6}) m", quantity.unit(), position[0], position[1], position[2]
 )]
 pub struct Diverged {
     /// Whose particle.
@@ -83,4 +97,63 @@ pub struct Diverged {
     pub stage: u32,
     /// Where, m.
     pub position: [f64; 3],
+}
+
+/// Added to the quantity's number on the wire where the particle is not the sender's but the other phase's.
+const OF_PEER: u32 = 16;
+
+impl Diverged {
+    /// Makes `header` the message of `sender` that tells of this in the place of its next state.
+    pub fn tell(&self, sender: RoleName, header: &mut StateHeader) {
+        header.status = status::DIVERGED;
+        header.failure_quantity = self.quantity as u32 + if self.role == sender { 0 } else { OF_PEER };
+        header.failure_particle = self.particle;
+        header.failure_value = self.value;
+        header.failure_position = self.position;
+    }
+
+    /// What a message of `sender` tells. It takes the place of the state after the one that diverged.
+    pub fn told(sender: RoleName, header: &StateHeader) -> Self {
+        let number = header.failure_quantity;
+        let (role, number) =
+            if number > OF_PEER { (sender.peer(), number - OF_PEER) } else { (sender, number) };
+        Self {
+            role,
+            particle: header.failure_particle,
+            quantity: Quantity::from_wire(number).unwrap_or(Quantity::Position),
+            value: header.failure_value,
+            step: if header.stage == 1 { header.step } else { header.step.saturating_sub(1) },
+            stage: 1 - header.stage.min(1),
+            position: header.failure_position,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_told_arrives_whoever_owns_the_particle() {
+        for (role, sender) in [
+            (RoleName::Solid, RoleName::Solid),
+            (RoleName::Solid, RoleName::Fluid),
+            (RoleName::Fluid, RoleName::Fluid),
+        ] {
+            let diverged = Diverged {
+                role,
+                particle: 7,
+                quantity: Quantity::Speed,
+                value: 250.0,
+                step: 41,
+                stage: 1,
+                position: [1.0, 2.0, 0.0],
+            };
+            // The state of step 41, stage 1 was the last one: the message stands for step 42, stage 0.
+            let mut header = StateHeader { step: 42, stage: 0, ..StateHeader::default() };
+            diverged.tell(sender, &mut header);
+            assert_eq!(header.status, status::DIVERGED);
+            assert_eq!(Diverged::told(sender, &header), diverged);
+        }
+    }
 }

@@ -73,6 +73,14 @@ pub struct Layout<const D: usize> {
     pub wall: Vec<WallPoint<D>>,
 }
 
+impl<const D: usize> Layout<D> {
+    /// How many there are.
+    pub fn counts(&self) -> Counts {
+        let [fluid, solid, wall] = [self.fluid.len(), self.solid.len(), self.wall.len()].map(|n| n as u64);
+        Counts { fluid, solid, wall }
+    }
+}
+
 /// Numbers of particles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {

@@ -1,6 +1,7 @@
 //! What two processes of halfstep both need: scenes, particles and neighbours, the pair pass, the wire, output.
 
 pub mod artificial_viscosity;
+pub mod bounds;
 pub mod extrapolation;
 pub mod failure;
 pub mod geometry;

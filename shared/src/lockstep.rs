@@ -1,6 +1,6 @@
 //! The half-step loop of a process (or thread) that owns particles.
 
-use crate::failure::{Diverged, RoleName};
+use crate::failure::{Diverged, Quantity, RoleName};
 use crate::latency::Latency;
 use crate::link::{Expect, LinkConfig, LinkError, PhaseLink, Processes, Transport};
 use crate::output::{FrameWriter, OutputError};
@@ -18,12 +18,9 @@ pub enum RoleError {
     /// The exchange failed.
     #[error(transparent)]
     Link(#[from] LinkError),
-    /// Own particles left their bounds.
+    /// A particle left its bounds, or moves so fast that the interface set may lack one.
     #[error(transparent)]
     Diverged(#[from] Diverged),
-    /// The interface set lacks a particle.
-    #[error(transparent)]
-    Coverage(#[from] CoverageError),
     /// A frame cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),
@@ -59,11 +56,21 @@ pub fn serve<S: Transport>(
         peer: Vec::new(),
         peer_epoch: 0,
         header: StateHeader::default(),
+        frames: 0,
+        at: 0.0,
         compute: Duration::ZERO,
         output: Duration::ZERO,
         latency: Latency::default(),
     };
     let result = server.run(role, &mut writer);
+    if let Err(error) = &result {
+        server.report_failure(error);
+        if let (RoleError::Diverged(_) | RoleError::PeerEnded { .. }, Some(writer)) = (error, &mut writer) {
+            // It shows where the trouble is; that it failed is not the reason why the run ended.
+            let written = writer.submit(server.frames, |frame| role.fill_frame(server.at, frame));
+            written.unwrap_or_else(|e| tracing::warn!("the last frame is missing: {e}"));
+        }
+    }
     let written = match writer {
         Some(writer) => writer.finish(),
         None => Ok(0),
@@ -76,10 +83,7 @@ pub fn serve<S: Transport>(
             server.link.send_state(&header, &[])?;
             Ok(())
         }
-        Err(error) => {
-            server.report_failure(&error);
-            Err(error)
-        }
+        Err(error) => Err(error),
     }
 }
 
@@ -89,6 +93,10 @@ struct Server<S: Transport> {
     peer: Vec<StateRecord>,
     peer_epoch: u64,
     header: StateHeader,
+    /// Number of the next frame.
+    frames: u32,
+    /// Time of the role's own state, s.
+    at: f64,
     compute: Duration,
     output: Duration,
     latency: Latency,
@@ -128,7 +136,8 @@ impl<S: Transport> Server<S> {
                 }
                 let fluid_epoch = if role.name() == RoleName::Fluid { epoch } else { self.peer_epoch };
                 let start = Instant::now();
-                role.cross_sums(&self.own, &self.peer, fluid_epoch)?;
+                role.cross_sums(&self.own, &self.peer, fluid_epoch)
+                    .map_err(|lost| self.fastest(role.name(), &lost, step, stage))?;
                 self.compute += start.elapsed();
 
                 // At stage 0 the answer brings the time step.
@@ -136,11 +145,13 @@ impl<S: Transport> Server<S> {
                 self.latency.add(sent.elapsed());
                 let answer = *forces.header();
                 dt = answer.dt;
+                self.at = if stage == 0 { time + 0.5 * dt } else { answer.next_time };
                 if answer.order & order::WRITE_FRAME != 0
                     && let Some(writer) = writer
                 {
                     let start = Instant::now();
                     writer.submit(answer.frame as u32, |frame| role.fill_frame(time, frame))?;
+                    self.frames = answer.frame as u32 + 1;
                     self.output += start.elapsed();
                 }
                 if answer.order & order::STOP != 0 {
@@ -205,6 +216,25 @@ impl<S: Transport> Server<S> {
         self.header = header;
     }
 
+    /// Coverage is lost when a particle moves half a smoothing length in one half-step: it is the one to name.
+    fn fastest(&self, own: RoleName, lost: &CoverageError, step: u64, stage: u32) -> Diverged {
+        tracing::error!("{lost}");
+        let role = if lost.fluid > lost.solid { RoleName::Fluid } else { RoleName::Solid };
+        let records = if role == own { &self.own } else { &self.peer };
+        let speed = |r: &StateRecord| r.velocity.iter().map(|v| v * v).sum::<f64>().sqrt();
+        let fastest = records.iter().max_by(|a, b| speed(a).total_cmp(&speed(b)));
+        let record = fastest.copied().unwrap_or_default();
+        Diverged {
+            role,
+            particle: record.id,
+            quantity: Quantity::Speed,
+            value: speed(&record),
+            step,
+            stage,
+            position: record.position,
+        }
+    }
+
     fn farewell(&self, role: &dyn Role, last: &StateHeader, frames_safe: u32) -> StateHeader {
         let times = self.link.times();
         let mut header = StateHeader {
@@ -227,16 +257,10 @@ impl<S: Transport> Server<S> {
         // It takes the place of the next state.
         (header.step, header.stage) = if header.stage == 0 { (header.step, 1) } else { (header.step + 1, 0) };
         match error {
-            RoleError::Diverged(d) => {
-                header.status = status::DIVERGED;
-                header.failure_quantity = d.quantity as u32;
-                header.failure_particle = d.particle;
-                header.failure_value = d.value;
-                header.failure_position = d.position;
-            }
+            RoleError::Diverged(diverged) => diverged.tell(self.link.role(), &mut header),
             // The exchange itself is broken, or the other side knows already.
             RoleError::Link(_) | RoleError::PeerEnded { .. } | RoleError::Start(_) => return,
-            RoleError::Coverage(_) | RoleError::Output(_) => {}
+            RoleError::Output(_) => {}
         }
         if let Err(error) = self.link.send_state(&header, &[]) {
             tracing::warn!("the failure could not be reported: {error}");
@@ -266,8 +290,7 @@ pub fn serve_process(
     let scene = variable(SCENE_VARIABLE).ok_or_else(|| start(format!("{SCENE_VARIABLE} is not set")))?;
     let text = std::fs::read_to_string(&scene)
         .map_err(|e| start(format!("cannot read {}: {e}", PathBuf::from(&scene).display())))?;
-    let scene: Scene =
-        serde_json::from_str(&text).map_err(|e| start(format!("not a resolved scene: {e}")))?;
+    let scene = Scene::from_json(&text).map_err(|e| start(format!("not a resolved scene: {e}")))?;
     let threads = variable(THREADS_VARIABLE).and_then(|v| v.to_str()?.parse().ok()).unwrap_or(1);
     let writer =
         variable(FOLDER_VARIABLE).map(|dir| FrameWriter::start(&PathBuf::from(dir), stem)).transpose()?;

@@ -133,23 +133,3 @@ fn a_wrong_scene_starts_nothing() {
     assert_eq!(missing.code(), Some(1));
     assert!(missing.stderr.contains("no-such-scene"), "{}", missing.stderr);
 }
-
-#[test]
-fn a_divergence_names_role_particle_and_quantity() {
-    for in_process in [false, true] {
-        let run = scene("elastic-gate").set("resolution", 0.0025).set("time_step", 1e-3);
-        let outcome = if in_process { run.in_process() } else { run }.outcome();
-        assert_eq!(outcome.code(), Some(2), "{}", outcome.stderr);
-        let report = outcome.report();
-        assert_eq!(report.status, Some(RunStatus::Diverged), "{:?}", report.error);
-        let error = report.error.unwrap();
-        assert!(
-            error.starts_with("the fluid diverged") || error.starts_with("the solid diverged"),
-            "{error}"
-        );
-        assert!(["density", "speed", "stress", "position"].iter().any(|q| error.contains(q)), "{error}");
-        assert!(error.contains("of particle ") && error.contains("step"), "{error}");
-        assert!(outcome.stderr.contains(&error), "{}", outcome.stderr);
-        assert!(outcome.log().contains(&error));
-    }
-}

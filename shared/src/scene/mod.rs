@@ -6,6 +6,7 @@
 
 mod check;
 mod document;
+mod effect;
 mod error;
 mod load;
 mod overrides;
@@ -17,6 +18,7 @@ mod read_shape;
 mod resources;
 mod section;
 
+pub use effect::{Decision, Derived, EffectName, Switch};
 pub use error::{Place, SceneError, SceneErrors};
 pub use load::{load, parse};
 pub use probe::{Probe, ProbeKind, Reference};
@@ -344,47 +346,6 @@ pub struct CantileverMode {
     pub root: f64,
     /// Free length, m.
     pub length: f64,
-}
-
-/// Effects that the program derives from the scene and the user may force.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum EffectName {
-    /// Physical viscosity of the fluid.
-    Viscosity,
-    /// Artificial stress in the solid.
-    ArtificialStress,
-    /// Renormalised velocity gradient in the solid.
-    RenormalisedGradient,
-    /// Clamps hold the total-Lagrangian solid at their boxes' faces.
-    ClampFace,
-    /// Rigid walls toward the solid.
-    WallContact,
-    /// Wall pressure is never negative.
-    NonNegativeWallPressure,
-    /// Artificial viscosity of at least A = 1 between fluid and wall.
-    WallGuard,
-    /// The renormalised density gradient of delta-SPH is computed once a step.
-    FrozenDiffusion,
-}
-
-impl Scene {
-    /// What the user wants of an effect.
-    pub fn switch(&self, effect: EffectName) -> Switch {
-        self.effects.get(&effect).copied().unwrap_or(Switch::Auto)
-    }
-}
-
-/// A forced effect.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Switch {
-    /// The program decides.
-    Auto,
-    /// Always.
-    On,
-    /// Never.
-    Off,
 }
 
 /// Where lattice points lie.

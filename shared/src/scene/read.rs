@@ -263,29 +263,19 @@ fn output(section: Section<'_>, end_time: f64) -> Output {
 }
 
 fn effects(top: &Section<'_>) -> BTreeMap<EffectName, Switch> {
-    const NAMES: [(&str, EffectName); 7] = [
-        ("viscosity", EffectName::Viscosity),
-        ("artificial-stress", EffectName::ArtificialStress),
-        ("renormalised-gradient", EffectName::RenormalisedGradient),
-        ("clamp-face", EffectName::ClampFace),
-        ("wall-contact", EffectName::WallContact),
-        ("non-negative-wall-pressure", EffectName::NonNegativeWallPressure),
-        ("wall-guard", EffectName::WallGuard),
-        ("frozen-diffusion", EffectName::FrozenDiffusion),
-    ];
     const SWITCHES: [(&str, Switch); 3] = [("auto", Switch::Auto), ("on", Switch::On), ("off", Switch::Off)];
     let mut effects = BTreeMap::new();
     let section = top.section("effects");
     let Some(table) = top.node("effects").and_then(Node::table) else { return effects };
     for (key, entry) in table {
-        match NAMES.iter().find(|(name, _)| name == key) {
-            Some((_, effect)) => {
+        match EffectName::ALL.iter().find(|effect| effect.name() == key) {
+            Some(effect) => {
                 if let Some(switch) = section.as_choice(key, &entry.node, &SWITCHES) {
                     effects.insert(*effect, switch);
                 }
             }
             None => {
-                let known = || NAMES.iter().map(|(name, _)| *name);
+                let known = || EffectName::ALL.iter().map(|effect| effect.name());
                 let note = top.report.place(&section.path_of(key), entry.key, "unknown effect");
                 match nearest(key, known()) {
                     Some(near) => note.help(format!("did you mean `{near}`?")),

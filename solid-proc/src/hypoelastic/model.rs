@@ -6,6 +6,7 @@ use crate::columns::{Tensors, tensors};
 use crate::model::{Load, OutOfBounds, SolidModel};
 use crate::surface::surface_set;
 use crate::wall::Walls;
+use halfstep_shared::bounds::{Bounds, Excess};
 use halfstep_shared::failure::Quantity;
 use halfstep_shared::geometry::{self, SolidPoint};
 use halfstep_shared::interface::wire_component;
@@ -20,6 +21,7 @@ const SKIN: f64 = 0.3;
 /// The hypoelastic solid.
 pub struct Hypoelastic<const D: usize> {
     pub(super) material: Solid,
+    bounds: Bounds,
     pub(super) kernel: KernelName,
     pub(super) isa: Isa,
     pub(super) smoothing_length: f64,
@@ -74,6 +76,7 @@ impl<const D: usize> Hypoelastic<D> {
         let domain = geometry::domain(scene);
         let now = State::new(&layout.solid, material.density);
         let mut model = Self {
+            bounds: Bounds::of_solid(scene)?,
             kernel: scene.numerics.kernel,
             isa,
             smoothing_length: h,
@@ -209,27 +212,20 @@ impl<const D: usize> Hypoelastic<D> {
         }
     }
 
+    /// Names the particle that is farthest out of bounds, if any is.
     fn check(&self) -> Result<(), OutOfBounds> {
-        let rho0 = self.material.density;
-        let fastest = self.material.pressure_wave_speed();
-        for (p, &slot) in self.slot_of.iter().enumerate() {
+        let excess = |(p, &slot): (usize, &u32)| {
             let s = slot as usize;
-            let rho = self.now.density[s];
             let v2: f64 = (0..D).map(|d| self.now.velocity[d][s].powi(2)).sum();
             let stress: f64 = self.stress_at(s).as_flattened().iter().map(|s| s.abs()).sum();
-            let (quantity, value) = if !(rho > rho0 / 3.0 && rho < rho0 * 3.0) {
-                (Quantity::Density, rho)
-            } else if v2.is_nan() || v2 > fastest * fastest {
-                (Quantity::Speed, v2.sqrt())
-            } else if !stress.is_finite() {
-                (Quantity::Stress, stress)
-            } else {
-                continue;
-            };
-            let position: [f64; D] = std::array::from_fn(|d| self.now.position[d][s]);
-            return Err(OutOfBounds { particle: p as u32, quantity, value, position: wide(position) });
-        }
-        Ok(())
+            let no_number = Excess { quantity: Quantity::Stress, value: stress, ratio: f64::INFINITY };
+            let found = self.bounds.excess(self.now.density[s], v2.sqrt());
+            Some((p, s, found.or((!stress.is_finite()).then_some(no_number))?))
+        };
+        let all = self.slot_of.iter().enumerate().filter_map(excess);
+        let Some((p, s, worst)) = all.max_by(|a, b| a.2.ratio.total_cmp(&b.2.ratio)) else { return Ok(()) };
+        let position = wide::<D>(std::array::from_fn(|d| self.now.position[d][s]));
+        Err(OutOfBounds { particle: p as u32, quantity: worst.quantity, value: worst.value, position })
     }
 }
 

@@ -1,0 +1,114 @@
+//! The fluid's effects: what takes part in the pair pass, decided once by the scene.
+//!
+//! [`halfstep_shared::fluid_effects`] is the list. A pass is compiled for the compositions named in
+//! [`Effects::composition`]; there an absent effect does not exist. Any other composition runs the complete law, which
+//! asks for each effect whether it is there.
+
+use crate::density_diffusion::{DeltaSph, Diffusion, Hydrostatic, Simple};
+use crate::fluid::Fluid;
+use crate::rates::PairEffect;
+use halfstep_shared::scene::{Decision, EffectName, Scene};
+
+/// An effect of the list.
+pub trait FluidEffect<const D: usize> {
+    /// What it adds to a pair.
+    type Pair<'a>: PairEffect<D>;
+    /// Whether it takes part in a scene with fluid.
+    fn decide(scene: &Scene) -> Decision;
+    /// Its share of the pass, where it takes part.
+    fn pair(fluid: &Fluid<D>) -> Self::Pair<'_>;
+}
+
+macro_rules! compose {
+    ($($(#[$doc:meta])* $effect:ident $name:literal $module:ident,)*) => {
+        /// The effects of a scene's pair pass; `None`: absent.
+        #[derive(Clone, Copy)]
+        pub struct Effects<'a, const D: usize> {
+            $($(#[$doc])* pub $module: Option<<crate::$module::$effect as FluidEffect<D>>::Pair<'a>>,)*
+        }
+
+        impl<'a, const D: usize> Effects<'a, D> {
+            /// Those that take part.
+            pub(crate) fn of(fluid: &'a Fluid<D>) -> Self {
+                Self {
+                    $($module: fluid
+                        .takes_part(EffectName::$effect)
+                        .then(|| <crate::$module::$effect as FluidEffect<D>>::pair(fluid)),)*
+                }
+            }
+
+            /// The same without one.
+            pub fn without(mut self, effect: EffectName) -> Self {
+                match effect {
+                    $(EffectName::$effect => self.$module = None,)*
+                    _ => {}
+                }
+                self
+            }
+
+            fn on(&self) -> usize {
+                [$(self.$module.is_some(),)*].into_iter().filter(|&on| on).count()
+            }
+
+            /// All effects with a question whether each is there.
+            #[allow(clippy::type_complexity)]
+            fn complete(self) -> chain!(type D, 'a $($module::$effect)*) {
+                chain!(self $($module)*)
+            }
+        }
+
+        /// What a scene with fluid decides about each effect of the list.
+        pub fn decide(scene: &Scene) -> Vec<Decision> {
+            vec![$(<crate::$module::$effect as FluidEffect<2>>::decide(scene),)*]
+        }
+    };
+}
+
+macro_rules! chain {
+    (type $D:ident, $a:lifetime) => { () };
+    (type $D:ident, $a:lifetime $module:ident::$effect:ident $($rest:tt)*) => {
+        (Option<<crate::$module::$effect as FluidEffect<$D>>::Pair<$a>>, chain!(type $D, $a $($rest)*))
+    };
+    ($effects:ident) => { () };
+    ($effects:ident $module:ident $($rest:tt)*) => { ($effects.$module, chain!($effects $($rest)*)) };
+}
+
+halfstep_shared::fluid_effects!(compose);
+
+/// A pass over whatever composition it is given.
+pub(crate) trait Pass<const D: usize> {
+    fn run<E: PairEffect<D>>(self, effects: E);
+}
+
+impl<'a, const D: usize> Effects<'a, D> {
+    /// Runs a pass compiled for exactly these effects, or the complete law. Returns the composition's name.
+    pub(crate) fn composition(self, pass: impl Pass<D>) -> &'static str {
+        let Self { artificial_viscosity: damping, density_diffusion: diffusion, viscosity, .. } = self;
+        match (self.on(), damping, diffusion, viscosity) {
+            (1, Some(damping), None, None) => {
+                pass.run((damping, ()));
+                "artificial viscosity"
+            }
+            (2, Some(damping), Some(Diffusion::Simple(diffusion)), None) => {
+                pass.run::<(_, (Simple, ()))>((damping, (diffusion, ())));
+                "artificial viscosity, simple diffusion"
+            }
+            (2, Some(damping), Some(Diffusion::Hydrostatic(diffusion)), None) => {
+                pass.run::<(_, (Hydrostatic<D>, ()))>((damping, (diffusion, ())));
+                "artificial viscosity, hydrostatic diffusion"
+            }
+            (2, Some(damping), Some(Diffusion::DeltaSph(diffusion)), None) => {
+                pass.run::<(_, (DeltaSph<'a, D>, ()))>((damping, (diffusion, ())));
+                "artificial viscosity, delta-SPH diffusion"
+            }
+            (3, Some(damping), Some(Diffusion::DeltaSph(diffusion)), Some(stress)) => {
+                pass.run((damping, (diffusion, (stress, ()))));
+                "artificial viscosity, delta-SPH diffusion, viscosity"
+            }
+            _ => {
+                pass.run(self.complete());
+                "complete law"
+            }
+        }
+    }
+}
