@@ -1,58 +1,131 @@
-//! Which effects a scene calls for, and why.
+//! The ledger of effects: which take part in a scene, why, and what they cost.
 
+use crate::couple::CoupledOutcome;
+use crate::solo::SoloOutcome;
 use halfstep_shared::geometry::Counts;
+use halfstep_shared::output::RunReport;
 use halfstep_shared::output::run_json::EffectReport;
-use halfstep_shared::scene::{EffectName, Scene, Switch, Treatment};
+use halfstep_shared::protocol::{StateHeader, farewell};
+use halfstep_shared::role::Costs;
+use halfstep_shared::scene::{Decision, EffectName, Scene, Treatment};
 
-/// The ledger of effects of a scene. Shares of the run time are not measured yet and stay empty.
+/// What the fluid does in any case: pressure, continuity, neighbour lists, time step.
+const FLUID: &str = "fluid";
+/// What the solid does in any case.
+const SOLID: &str = "solid";
+/// Walls toward the fluid or the solid.
+const WALLS: &str = "walls";
+/// Sums across the interface.
+const INTERFACE: &str = "interface";
+/// The force f_i.
+const CROSS_VISCOSITY: &str = "cross-viscosity";
+
+/// The ledger of effects of a scene, without shares.
 pub fn ledger(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
-    let mut list = Vec::new();
-    let mut add = |name: &str, on: bool, why: String| {
-        list.push(EffectReport { name: name.into(), on, why, ..EffectReport::default() });
+    let row = |name: &str, on: bool, why: String| EffectReport {
+        name: name.into(),
+        on,
+        why,
+        ..EffectReport::default()
     };
-    let forced = |effect| match scene.switch(effect) {
-        Switch::Auto => None,
-        Switch::On => Some((true, "the scene says on".to_owned())),
-        Switch::Off => Some((false, "the scene says off".to_owned())),
-    };
+    let decided = |d: Decision| row(d.effect.name(), d.on, d.why);
+    let (fluid, solid) = (scene.fluid.is_some(), scene.solid.is_some());
     let moving = scene.gravity.iter().any(|&g| g != 0.0);
-    add("gravity", moving, if moving { "gravity is not zero" } else { "gravity is zero" }.into());
-    if scene.fluid.is_some() {
-        for decision in halfstep_fluid::effects::decide(scene) {
-            add(decision.effect.name(), decision.on, decision.why);
-        }
-        let walls = counts.wall > 0;
-        add("walls", walls, format!("{} wall particles", counts.wall));
-        let (on, why) =
-            forced(EffectName::WallGuard).unwrap_or((walls, "keeps single particles out of walls".into()));
-        add("wall-guard", on && walls, why);
-        let (on, why) = forced(EffectName::NonNegativeWallPressure)
-            .unwrap_or((walls || scene.solid.is_some(), "walls and solids push and do not pull".into()));
-        add("non-negative-wall-pressure", on, why);
+    let mut list = vec![
+        row("gravity", moving, if moving { "gravity is not zero" } else { "gravity is zero" }.into()),
+        row(
+            FLUID,
+            fluid,
+            if fluid {
+                "[fluid]: pressure, continuity, neighbour lists, time step"
+            } else {
+                "no [fluid]: no fluid process"
+            }
+            .into(),
+        ),
+    ];
+    if fluid {
+        list.extend(halfstep_fluid::effects::decide(scene).into_iter().map(|d| {
+            let bytes = halfstep_fluid::effects::bytes(scene, d.effect);
+            let bytes_per_particle = (d.on && bytes > 0).then_some(bytes as f64);
+            EffectReport { bytes_per_particle, ..decided(d) }
+        }));
     }
-    if let Some(solid) = &scene.solid {
-        let strength = solid.artificial_stress.strength;
-        let (on, why) = forced(EffectName::ArtificialStress).unwrap_or((
-            strength > 0.0,
-            format!("the hypoelastic solid is unstable in tension; strength {strength}"),
-        ));
-        add("artificial-stress", on && strength > 0.0, why);
-        let (on, why) = forced(EffectName::RenormalisedGradient)
-            .unwrap_or((false, "the plain gradient is the method's default".into()));
-        add("renormalised-gradient", on, why);
-        let touching = scene.shapes.iter().any(|s| s.contact);
-        let (on, why) = forced(EffectName::WallContact)
-            .unwrap_or((touching, format!("contact is {touching} for the scene's walls")));
-        add("wall-contact", on && touching, why);
+    list.push(row(WALLS, counts.wall > 0, format!("{} wall particles", counts.wall)));
+    list.push(row(
+        SOLID,
+        solid,
+        if solid { "[solid]: stress, neighbours, time step" } else { "no [solid]: no solid process" }.into(),
+    ));
+    if solid {
+        list.extend(halfstep_solid::effects::decide(scene).into_iter().map(decided));
     }
-    let coupled = scene.fluid.is_some() && scene.solid.is_some();
+    let coupled = fluid && solid;
     let treatment = match scene.interface.treatment {
         Treatment::MovingWall => "moving-wall",
         Treatment::PhaseBlind => "phase-blind",
     };
-    let why = if coupled { format!("treatment {treatment}") } else { "the scene has one phase only".into() };
-    add("interface", coupled, why);
+    let why = if coupled {
+        format!("interface.treatment is \"{treatment}\"")
+    } else {
+        "one phase only: no coupler, nothing exchanged".into()
+    };
+    list.push(row(INTERFACE, coupled, why));
     let c = scene.interface.cross_viscosity;
-    add("cross-viscosity", coupled && c > 0.0, format!("C = {c}"));
+    let why = if coupled { format!("interface.cross_viscosity is {c}") } else { "one phase only".into() };
+    list.push(row(CROSS_VISCOSITY, coupled && c > 0.0, why));
     list
+}
+
+/// Shares of a coupled run: parts of the computing time of all three roles.
+pub(crate) fn share_coupled(report: &mut RunReport, outcome: &CoupledOutcome) {
+    let total = outcome.fluid.seconds[0] + outcome.solid.seconds[0] + outcome.seconds.compute;
+    let both = [&outcome.fluid, &outcome.solid];
+    let sum = |place: usize| both.iter().map(|h| told(h, place)).sum::<f64>();
+    let mut costs = Costs { walls: sum(farewell::WALLS), ..Costs::default() };
+    for (k, seconds) in costs.effects.iter_mut().enumerate() {
+        *seconds = sum(farewell::EFFECTS + k);
+    }
+    share(report, &costs, total);
+    share_row(report, INTERFACE, sum(farewell::INTERFACE) / total);
+    share_row(report, CROSS_VISCOSITY, outcome.seconds.compute / total);
+    for (name, header) in [(FLUID, &outcome.fluid), (SOLID, &outcome.solid)] {
+        let effects: f64 = (farewell::WALLS..farewell::COUNT).map(|place| told(header, place)).sum();
+        share_row(report, name, (header.seconds[0] - effects).max(0.0) / total);
+    }
+}
+
+/// Shares of a run of one phase.
+pub(crate) fn share_solo(report: &mut RunReport, outcome: &SoloOutcome) {
+    let total = outcome.seconds.compute;
+    share(report, &outcome.costs, total);
+    let effects = outcome.costs.walls + outcome.costs.effects.iter().sum::<f64>();
+    for name in [FLUID, SOLID] {
+        share_row(report, name, (total - effects).max(0.0) / total);
+    }
+}
+
+fn share(report: &mut RunReport, costs: &Costs, total: f64) {
+    for (effect, seconds) in EffectName::ALL.iter().zip(costs.effects) {
+        if seconds > 0.0 {
+            share_row(report, effect.name(), seconds / total);
+        }
+    }
+    if costs.walls > 0.0 {
+        share_row(report, WALLS, costs.walls / total);
+    }
+}
+
+fn share_row(report: &mut RunReport, name: &str, share: f64) {
+    if !share.is_finite() {
+        return;
+    }
+    for row in report.effects.iter_mut().filter(|row| row.on && row.name == name) {
+        row.share = Some(share);
+    }
+}
+
+/// What a last message says; a foreign phase may say nothing.
+fn told(last: &StateHeader, place: usize) -> f64 {
+    if (place as u64) < last.probe_count { last.probes[place] } else { 0.0 }
 }

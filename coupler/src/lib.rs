@@ -7,6 +7,7 @@ pub mod couple;
 pub mod cross_viscosity;
 pub mod effects;
 pub mod error;
+pub mod explain;
 pub mod foreign;
 pub mod recorder;
 pub mod roles;

@@ -27,6 +27,14 @@ enum Command {
     Run(RunArguments),
     /// Validates a scene; prints counts, time steps, memory and expected time
     Check(SceneArguments),
+    /// Shows which effects take part in a scene, why, and what each costs
+    Explain {
+        #[command(flatten)]
+        scene: SceneArguments,
+        /// Prints JSON
+        #[arg(long)]
+        json: bool,
+    },
     /// A role's process; started by `run`
     #[command(hide = true)]
     Role {
@@ -84,6 +92,7 @@ fn main() -> ExitCode {
             }
             Err(code) => code,
         },
+        Command::Explain { scene, json } => explain_scene(&scene, json),
         Command::Role { name } => serve_role(&name),
     }
 }
@@ -95,6 +104,33 @@ fn load(arguments: &SceneArguments) -> Result<scene::Scene, ExitCode> {
         eprintln!("{:?}", miette::Report::new(errors));
         ExitCode::from(1)
     })
+}
+
+fn explain_scene(arguments: &SceneArguments, json: bool) -> ExitCode {
+    let scene = match load(arguments) {
+        Ok(scene) => scene,
+        Err(code) => return code,
+    };
+    match halfstep::explain::explain(&scene) {
+        Ok(explanation) if json => match serde_json::to_string_pretty(&explanation) {
+            Ok(text) => {
+                println!("{text}");
+                ExitCode::SUCCESS
+            }
+            Err(error) => {
+                eprintln!("error: {error}");
+                ExitCode::from(2)
+            }
+        },
+        Ok(explanation) => {
+            print!("{explanation}");
+            ExitCode::SUCCESS
+        }
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(2)
+        }
+    }
 }
 
 fn run_scene(arguments: RunArguments) -> ExitCode {

@@ -157,6 +157,7 @@ fn solo(
     writer.finish()?;
     let outcome = result?;
     report.audit.state_hash = Some(format!("{:016x}", outcome.state_hash));
+    effects::share_solo(report, &outcome);
     let seconds = Some(outcome.seconds);
     if name == RoleName::Fluid {
         report.roles.fluid = seconds

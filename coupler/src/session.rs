@@ -2,6 +2,7 @@
 
 use crate::clock::Clock;
 use crate::couple::{CoupledOutcome, Coupler};
+use crate::effects;
 use crate::error::RunError;
 use crate::foreign::ForeignSolid;
 use crate::recorder::Recorder;
@@ -13,7 +14,7 @@ use halfstep_shared::link::{self, Claim, CouplerLink, LinkConfig, LinkError, Pro
 use halfstep_shared::lockstep::{self, FOLDER_VARIABLE, RoleError, SCENE_VARIABLE, THREADS_VARIABLE};
 use halfstep_shared::output::run_json::{Percentiles, RoleSeconds};
 use halfstep_shared::output::{self, FrameWriter, RunDirectory, RunReport};
-use halfstep_shared::protocol::StateHeader;
+use halfstep_shared::protocol::{StateHeader, farewell};
 use halfstep_shared::scene::Scene;
 use std::process::{Command, ExitStatus};
 use std::sync::Arc;
@@ -70,8 +71,11 @@ impl Session<'_> {
         report.roles.fluid = Some(seconds(&outcome.fluid));
         report.roles.solid = Some(seconds(&outcome.solid));
         report.roles.coupler = Some(outcome.seconds);
-        report.round_trip_us =
-            Some(Percentiles { p50: outcome.fluid.probes[0], p99: outcome.fluid.probes[1] });
+        report.round_trip_us = Some(Percentiles {
+            p50: outcome.fluid.probes[farewell::ROUND_TRIP_P50],
+            p99: outcome.fluid.probes[farewell::ROUND_TRIP_P99],
+        });
+        effects::share_coupled(report, &outcome);
         Ok(outcome.stopped)
     }
 

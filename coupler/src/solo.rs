@@ -6,7 +6,7 @@ use crate::recorder::{Measured, Recorder};
 use halfstep_shared::output::FrameWriter;
 use halfstep_shared::output::run_json::RoleSeconds;
 use halfstep_shared::protocol::MAX_PROBE_VALUES;
-use halfstep_shared::role::Role;
+use halfstep_shared::role::{Costs, Role};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
@@ -19,6 +19,8 @@ pub struct SoloOutcome {
     pub state_hash: u64,
     /// Where the time went.
     pub seconds: RoleSeconds,
+    /// What the effects took of it, s.
+    pub costs: Costs,
 }
 
 /// Runs a role to the clock's end or until `stop`.
@@ -36,6 +38,7 @@ pub fn run_solo(
     let mut probes = [0.0; MAX_PROBE_VALUES];
     let mut scratch = Vec::new();
     let mut seconds = RoleSeconds::default();
+    let mut sums = 0.0;
     loop {
         let start = Instant::now();
         let stopped = stop.load(Ordering::Relaxed);
@@ -61,13 +64,20 @@ pub fn run_solo(
         let written = Instant::now();
         seconds.output += (written - computed).as_secs_f64();
         let Some(dt) = tick.dt else {
-            return Ok(SoloOutcome { stopped, state_hash: role.state_hash(), seconds });
+            return Ok(SoloOutcome {
+                stopped,
+                state_hash: role.state_hash(),
+                seconds,
+                costs: role.costs().of(sums, seconds.compute),
+            });
         };
         for stage in 0..2 {
             if stage == 1 {
                 role.publish(&[], &mut scratch);
             }
+            let start = Instant::now();
             role.own_sums();
+            sums += start.elapsed().as_secs_f64();
             if let Err(diverged) = role.advance(tick.step, stage, dt, &[]) {
                 writer.submit(frame, |f| role.fill_frame(tick.time, f))?;
                 return Err(diverged.into());

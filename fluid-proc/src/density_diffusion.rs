@@ -59,21 +59,26 @@ pub struct DensityDiffusion;
 impl<const D: usize> FluidEffect<D> for DensityDiffusion {
     type Pair<'a> = Diffusion<'a, D>;
     fn decide(scene: &Scene) -> Decision {
-        let derived = match scene.fluid.as_ref().map(|f| (f.density_diffusion, f.density_diffusion_coefficient)) {
-            None => Derived::Impossible("the scene has no fluid".into()),
-            Some((Variant::None, _)) => Derived::Impossible("fluid.density_diffusion is \"none\"".into()),
-            Some((_, 0.0)) => Derived::Impossible("fluid.density_diffusion_coefficient is zero".into()),
-            Some((variant, delta)) => {
-                let name = match variant {
-                    Variant::None => "none",
-                    Variant::Simple => "simple",
-                    Variant::Hydrostatic => "hydrostatic",
-                    Variant::DeltaSph => "delta-sph",
-                };
-                Derived::On(format!("fluid.density_diffusion is \"{name}\", delta = {delta}"))
-            }
-        };
+        let derived =
+            match scene.fluid.as_ref().map(|f| (f.density_diffusion, f.density_diffusion_coefficient)) {
+                None => Derived::Impossible("the scene has no fluid".into()),
+                Some((Variant::None, _)) => Derived::Impossible("fluid.density_diffusion is \"none\"".into()),
+                Some((_, 0.0)) => Derived::Impossible("fluid.density_diffusion_coefficient is zero".into()),
+                Some((variant, delta)) => {
+                    let name = match variant {
+                        Variant::None => "none",
+                        Variant::Simple => "simple",
+                        Variant::Hydrostatic => "hydrostatic",
+                        Variant::DeltaSph => "delta-sph",
+                    };
+                    Derived::On(format!("fluid.density_diffusion is \"{name}\", delta = {delta}"))
+                }
+            };
         Decision::new(scene, EffectName::DensityDiffusion, derived)
+    }
+    fn bytes(scene: &Scene) -> usize {
+        let renormalised = scene.fluid.as_ref().is_some_and(|f| f.density_diffusion == Variant::DeltaSph);
+        if renormalised { size_of::<[f64; D]>() } else { 0 }
     }
     fn pair(fluid: &Fluid<D>) -> Diffusion<'_, D> {
         let strength = fluid.strength;

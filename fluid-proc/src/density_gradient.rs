@@ -8,18 +8,24 @@ use crate::columns::Shown;
 use halfstep_shared::kernel::Kernel;
 use halfstep_shared::lane::{Arch, LANES, Lane};
 use halfstep_shared::pair::{PairLaw, distance};
-use halfstep_shared::scene::{EffectName, Preset, Scene, Switch};
+use halfstep_shared::scene::{Decision, DensityDiffusion, Derived, EffectName, Preset, Scene};
 use nalgebra::{SMatrix, SVector};
 
-/// Whether the gradient is computed at stage 0 only and used at both stages: as the user says, else unless the scene asks
-/// for Kayaki's scheme, which evaluates everything at both. The diffusion itself is evaluated at both in any case.
-/// (Antuono, Colagrossi and Marrone 2012 freeze the whole diffusive term over a step.)
-pub fn is_frozen(scene: &Scene) -> bool {
-    match scene.switch(EffectName::FrozenDiffusion) {
-        Switch::On => true,
-        Switch::Off => false,
-        Switch::Auto => scene.preset != Some(Preset::Kayaki),
-    }
+/// Whether the gradient is computed at stage 0 only and used at both stages: unless the scene asks for Kayaki's scheme,
+/// which evaluates everything at both. The diffusion itself is evaluated at both in any case. (Antuono, Colagrossi and
+/// Marrone 2012 freeze the whole diffusive term over a step.)
+pub fn decide(scene: &Scene) -> Decision {
+    let derived = match &scene.fluid {
+        Some(fluid) if fluid.density_diffusion == DensityDiffusion::DeltaSph => {
+            if scene.preset == Some(Preset::Kayaki) {
+                Derived::Off("preset = \"kayaki\" evaluates everything at both stages".into())
+            } else {
+                Derived::On("the density gradient of delta-SPH changes little in half a step".into())
+            }
+        }
+        _ => Derived::Impossible("only delta-SPH diffusion needs the density gradient".into()),
+    };
+    Decision::new(scene, EffectName::FrozenDiffusion, derived)
 }
 
 /// Determinant of M below which the gradient is left out.

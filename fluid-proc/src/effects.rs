@@ -5,8 +5,11 @@
 //! asks for each effect whether it is there.
 
 use crate::density_diffusion::{DeltaSph, Diffusion, Hydrostatic, Simple};
+use crate::density_gradient;
 use crate::fluid::Fluid;
 use crate::rates::PairEffect;
+use crate::wall_guard;
+use halfstep_shared::interface::non_negative_pressure;
 use halfstep_shared::scene::{Decision, EffectName, Scene};
 
 /// An effect of the list.
@@ -15,6 +18,10 @@ pub trait FluidEffect<const D: usize> {
     type Pair<'a>: PairEffect<D>;
     /// Whether it takes part in a scene with fluid.
     fn decide(scene: &Scene) -> Decision;
+    /// Memory of its own, bytes a particle, where it takes part in this scene.
+    fn bytes(_: &Scene) -> usize {
+        0
+    }
     /// Its share of the pass, where it takes part.
     fn pair(fluid: &Fluid<D>) -> Self::Pair<'_>;
 }
@@ -57,8 +64,18 @@ macro_rules! compose {
             }
         }
 
-        /// What a scene with fluid decides about each effect of the list.
-        pub fn decide(scene: &Scene) -> Vec<Decision> {
+        /// The effects of the list.
+        pub const LIST: &[EffectName] = &[$(EffectName::$effect,)*];
+
+        /// Memory that an effect of the list takes where it takes part, bytes a particle.
+        pub fn bytes(scene: &Scene, effect: EffectName) -> usize {
+            match effect {
+                $(EffectName::$effect => <crate::$module::$effect as FluidEffect<2>>::bytes(scene),)*
+                _ => 0,
+            }
+        }
+
+        fn of_the_list(scene: &Scene) -> Vec<Decision> {
             vec![$(<crate::$module::$effect as FluidEffect<2>>::decide(scene),)*]
         }
     };
@@ -74,6 +91,15 @@ macro_rules! chain {
 }
 
 halfstep_shared::fluid_effects!(compose);
+
+/// What a scene with fluid decides about each of the fluid's effects.
+pub fn decide(scene: &Scene) -> Vec<Decision> {
+    let mut decisions = of_the_list(scene);
+    decisions.push(density_gradient::decide(scene));
+    decisions.push(wall_guard::decide(scene));
+    decisions.push(non_negative_pressure(scene));
+    decisions
+}
 
 /// A pass over whatever composition it is given.
 pub(crate) trait Pass<const D: usize> {

@@ -3,27 +3,24 @@
 use crate::artificial_viscosity::ArtificialViscosity;
 use crate::columns::Columns;
 use crate::density_diffusion::Strength;
-use crate::effects::{self, Effects, Pass};
-use crate::density_gradient::{GradientLaw, GradientSum};
+use crate::effects::{self};
 use crate::interface::Coupling;
 use crate::midpoint::{self, Extremes, Stage};
-use crate::rates::{PairEffect, RateLaw, RateSum};
+use crate::rates::RateSum;
 use crate::time_step::Limits;
-use crate::viscosity::{self, StressTerm, VelocityGradient, ViscosityAtWall};
-use crate::wall::{Damping, WallLaw, WallSum, Walls};
-use crate::wall_guard::{GUARD, WallViscosity};
+use crate::viscosity::{StressTerm, VelocityGradient};
+use crate::wall::{Damping, WallSum, Walls};
+use crate::wall_guard::{self, GUARD};
 use halfstep_shared::bounds::Bounds;
 use halfstep_shared::failure::{Diverged, RoleName};
 use halfstep_shared::geometry;
-use halfstep_shared::interface::Parameters;
-use halfstep_shared::kernel::Kernel;
+use halfstep_shared::interface::{Parameters, non_negative_pressure};
 use halfstep_shared::lane::{Isa, LANES};
 use halfstep_shared::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_shared::output::Frame;
-use halfstep_shared::pair;
 use halfstep_shared::protocol::{ForceRecord, MAX_PROBE_VALUES, StateRecord};
-use halfstep_shared::role::{CoverageError, Role};
-use halfstep_shared::scene::{DensityDiffusion, EffectName, KernelName, Phase, ProbeKind, Scene, Switch};
+use halfstep_shared::role::{Costs, CoverageError, Role};
+use halfstep_shared::scene::{DensityDiffusion, EffectName, KernelName, Phase, ProbeKind, Scene};
 use halfstep_shared::state_equation::StateEquation;
 use halfstep_shared::with_kernel;
 
@@ -45,34 +42,36 @@ pub struct Fluid<const D: usize> {
     pub(crate) probes: Vec<ProbeKind>,
 
     bounds: Bounds,
-    isa: Isa,
+    pub(crate) isa: Isa,
     limits: Limits,
     /// The effects that take part.
-    effects: Vec<EffectName>,
+    pub(crate) effects: Vec<EffectName>,
     pub(crate) diffusion: DensityDiffusion,
     pub(crate) strength: Strength,
     pub(crate) artificial_viscosity: ArtificialViscosity,
-    quadratic: f64,
-    viscosity: f64,
+    pub(crate) quadratic: f64,
+    pub(crate) viscosity: f64,
     domain: ([f64; D], [f64; D]),
-    fluid_list: ClusterList,
-    wall_list: ClusterList,
-    list_of_walls: ClusterList,
-    sums: Vec<RateSum<D>>,
-    extrapolations: Vec<WallSum<D>>,
+    pub(crate) fluid_list: ClusterList,
+    pub(crate) wall_list: ClusterList,
+    pub(crate) list_of_walls: ClusterList,
+    pub(crate) sums: Vec<RateSum<D>>,
+    pub(crate) extrapolations: Vec<WallSum<D>>,
     /// Renormalised density gradient of each cluster's particles.
     pub(crate) gradient: Vec<[[f64; D]; LANES]>,
     /// Computed once a step.
-    frozen: bool,
+    pub(crate) frozen: bool,
+    /// Name of the composition that the rate pass ran last.
+    pub(crate) composition: Option<&'static str>,
     /// The gradient belongs to this step and order.
-    gradient_known: bool,
+    pub(crate) gradient_known: bool,
     pub(crate) stress: StressTerm<D>,
-    velocity_gradients: Vec<VelocityGradient<D>>,
+    pub(crate) velocity_gradients: Vec<VelocityGradient<D>>,
     displacement: f64,
     largest_speed: f64,
     largest_acceleration: f64,
     sorted: bool,
-    pair_evaluations: u64,
+    pub(crate) pair_evaluations: u64,
 }
 
 impl<const D: usize> Fluid<D> {
@@ -85,10 +84,9 @@ impl<const D: usize> Fluid<D> {
         let volume = scene.resolution.powi(D as i32);
         let state = StateEquation::new(fluid.density, fluid.sound_speed, fluid.background_pressure);
         let columns = Columns::new(&layout.fluid, &state, volume);
-        let non_negative = scene.switch(EffectName::NonNegativeWallPressure) != Switch::Off;
+        let non_negative = non_negative_pressure(scene).on;
         let plain = fluid.artificial_viscosity.linear;
-        let guarded =
-            if scene.switch(EffectName::WallGuard) == Switch::Off { plain } else { plain.max(GUARD) };
+        let guarded = if wall_guard::decide(scene).on { plain.max(GUARD) } else { plain };
         let damping = Damping { free_slip: guarded * fluid.sound_speed, plain: plain * fluid.sound_speed };
         let walls = (!layout.wall.is_empty())
             .then(|| Walls::new(&layout.wall, &state, volume, 2.0 * h + skin, non_negative, damping));
@@ -128,8 +126,9 @@ impl<const D: usize> Fluid<D> {
                 sums: Vec::new(),
                 extrapolations: Vec::new(),
                 gradient: Vec::new(),
-                frozen: crate::density_gradient::is_frozen(scene),
+                frozen: crate::density_gradient::decide(scene).on,
                 gradient_known: false,
+                composition: None,
                 stress: StressTerm::default(),
                 velocity_gradients: Vec::new(),
                 displacement: 0.0,
@@ -215,96 +214,18 @@ impl<const D: usize> Fluid<D> {
         })
     }
 
-    fn sums<K: Kernel<D>>(&mut self, kernel: K) {
-        let isa = self.isa;
-        if let Some(walls) = &mut self.walls {
-            let law = WallLaw::new(kernel, self.gravity, walls, &self.columns);
-            pair::pass(isa, &law, &self.list_of_walls, &mut self.extrapolations);
-            walls.show(&self.extrapolations, &self.state);
-        }
-        if self.needs_gradient() && !(self.frozen && self.gradient_known) {
-            self.density_gradient(kernel);
-        }
-        if self.takes_part(EffectName::Viscosity) {
-            self.viscous_stress(kernel);
-        }
-        let mut sums = std::mem::take(&mut self.sums);
-        self.rates(kernel, Effects::of(self), &mut sums);
-        self.wall_rates(kernel, &mut sums);
-        self.sums = sums;
-    }
-
-    fn density_gradient<K: Kernel<D>>(&mut self, kernel: K) {
-        self.gradient_known = true;
-        let law = GradientLaw { kernel, fluid: &self.columns.now };
-        pair::pass_into(self.isa, &law, &self.fluid_list, GradientSum::solve, &mut self.gradient);
-    }
-
-    fn viscous_stress<K: Kernel<D>>(&mut self, kernel: K) {
-        let fluid = &self.columns.now;
-        let law = viscosity::GradientLaw { kernel, targets: fluid, sources: fluid };
-        pair::pass(self.isa, &law, &self.fluid_list, &mut self.velocity_gradients);
-        if let Some(walls) = &self.walls {
-            let law = viscosity::GradientLaw { kernel, targets: fluid, sources: &walls.shown };
-            pair::pass_adding(self.isa, &law, &self.wall_list, &mut self.velocity_gradients);
-        }
-        self.stress.set(self.viscosity, &self.velocity_gradients, &fluid.density);
-    }
-
-    /// The rate pass over the fluid; returns the name of the composition that ran.
-    fn rates<K: Kernel<D>>(&self, kernel: K, effects: Effects<'_, D>, sums: &mut [RateSum<D>]) -> &'static str {
-        effects.composition(OverFluid { kernel, fluid: self, sums })
-    }
-
-    /// Adds the rates by the walls.
-    fn wall_rates<K: Kernel<D>>(&self, kernel: K, sums: &mut [RateSum<D>]) {
-        let Some(walls) = &self.walls else { return };
-        let damping = WallViscosity {
-            smoothing_length: self.smoothing_length,
-            linear: &walls.damping,
-            quadratic: self.quadratic,
-        };
-        let (targets, sources) = (&self.columns.now, &walls.shown);
-        if self.takes_part(EffectName::Viscosity) {
-            let effects = (damping, (ViscosityAtWall(&self.stress), ()));
-            let law = RateLaw { kernel, effects, targets, sources };
-            pair::pass_adding(self.isa, &law, &self.wall_list, sums);
-        } else {
-            let law = RateLaw { kernel, effects: (damping, ()), targets, sources };
-            pair::pass_adding(self.isa, &law, &self.wall_list, sums);
-        }
-    }
-
     /// An effect of the list takes part.
     pub(crate) fn takes_part(&self, effect: EffectName) -> bool {
         self.effects.contains(&effect)
     }
 
-    fn needs_gradient(&self) -> bool {
+    pub(crate) fn needs_gradient(&self) -> bool {
         self.diffusion == DensityDiffusion::DeltaSph && self.takes_part(EffectName::DensityDiffusion)
-    }
-
-    fn passes_over_fluid(&self) -> u64 {
-        1 + u64::from(self.needs_gradient()) + u64::from(self.takes_part(EffectName::Viscosity))
     }
 
     /// Number of wall particles.
     pub fn wall_particles(&self) -> usize {
         self.walls.as_ref().map_or(0, |w| w.id.iter().filter(|&&i| i != PADDING).count())
-    }
-}
-
-struct OverFluid<'a, K, const D: usize> {
-    kernel: K,
-    fluid: &'a Fluid<D>,
-    sums: &'a mut [RateSum<D>],
-}
-
-impl<K: Kernel<D>, const D: usize> Pass<D> for OverFluid<'_, K, D> {
-    fn run<E: PairEffect<D>>(self, effects: E) {
-        let shown = &self.fluid.columns.now;
-        let law = RateLaw { kernel: self.kernel, effects, targets: shown, sources: shown };
-        pair::pass(self.fluid.isa, &law, &self.fluid.fluid_list, self.sums);
     }
 }
 
@@ -341,9 +262,6 @@ impl<const D: usize> Role for Fluid<D> {
 
     fn own_sums(&mut self) {
         with_kernel!(self.kernel, self.smoothing_length, D, |kernel| self.sums(kernel));
-        let walls = self.wall_list.entries() + self.list_of_walls.entries();
-        let listed = self.fluid_list.entries() as u64 * self.passes_over_fluid() + walls as u64;
-        self.pair_evaluations += listed * LANES as u64;
     }
 
     fn cross_sums(
@@ -395,6 +313,21 @@ impl<const D: usize> Role for Fluid<D> {
 
     fn state_hash(&self) -> u64 {
         self.hash()
+    }
+
+    fn bytes(&self) -> Option<usize> {
+        Some(self.allocated())
+    }
+
+    fn composition(&self) -> Option<&'static str> {
+        self.composition
+    }
+
+    fn costs(&mut self) -> Costs {
+        let before = self.pair_evaluations;
+        let costs = with_kernel!(self.kernel, self.smoothing_length, D, |kernel| Fluid::costs(self, kernel));
+        self.pair_evaluations = before;
+        costs
     }
 
     fn pair_evaluations(&self) -> u64 {

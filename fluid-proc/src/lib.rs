@@ -13,8 +13,10 @@ pub mod fluid;
 mod fluid_tests;
 pub mod interface;
 pub mod measure;
+mod memory;
 pub mod midpoint;
 pub mod momentum;
+mod passes;
 pub mod rates;
 #[cfg(test)]
 mod term_tests;

@@ -150,6 +150,10 @@ impl<const D: usize> FluidEffect<D> for Viscosity {
         };
         Decision::new(scene, EffectName::Viscosity, derived)
     }
+    fn bytes(_: &Scene) -> usize {
+        // tau_ab / rho² and dv_a / dx_b.
+        (D * (D + 1) / 2 + D * D) * size_of::<f64>()
+    }
     fn pair(fluid: &Fluid<D>) -> ViscousStress<'_, D> {
         ViscousStress(&fluid.stress)
     }

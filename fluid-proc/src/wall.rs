@@ -34,10 +34,10 @@ pub struct Walls<const D: usize> {
     /// Pressure shown, Pa.
     pub pressure: Vec<f64>,
     /// Own velocity u_w, m/s.
-    own_velocity: Vectors<D>,
-    normal: Vectors<D>,
+    pub(crate) own_velocity: Vectors<D>,
+    pub(crate) normal: Vectors<D>,
     /// 1 where all components are reversed (corner or no slip), else 0.
-    reverse_all: Vec<f64>,
+    pub(crate) reverse_all: Vec<f64>,
     /// A c0 of the artificial viscosity toward the fluid, m/s.
     pub damping: Vec<f64>,
     /// Order of the slots.

@@ -9,9 +9,25 @@
 use crate::rates::{FluidPair, PairEffect, PairRates};
 use halfstep_shared::artificial_viscosity::damping;
 use halfstep_shared::lane::{Arch, Lane};
+use halfstep_shared::scene::{Decision, Derived, EffectName, Phase, Scene};
 
 /// A of the guard.
 pub const GUARD: f64 = 1.0;
+
+/// Whether the guard acts.
+pub fn decide(scene: &Scene) -> Decision {
+    let derived = match &scene.fluid {
+        None => Derived::Impossible("the scene has no fluid".into()),
+        Some(_) if !scene.shapes.iter().any(|s| s.phase == Phase::Wall && s.free_slip) => {
+            Derived::Impossible("no free-slip walls".into())
+        }
+        Some(fluid) if fluid.artificial_viscosity.linear >= GUARD => {
+            Derived::Impossible(format!("A is {GUARD} or more everywhere"))
+        }
+        Some(_) => Derived::On("keeps single particles out of walls".into()),
+    };
+    Decision::new(scene, EffectName::WallGuard, derived)
+}
 
 /// The effect.
 #[derive(Clone, Copy, Debug)]

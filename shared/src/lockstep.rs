@@ -4,7 +4,7 @@ use crate::failure::{Diverged, Quantity, RoleName};
 use crate::latency::Latency;
 use crate::link::{Expect, LinkConfig, LinkError, PhaseLink, Processes, Transport};
 use crate::output::{FrameWriter, OutputError};
-use crate::protocol::{MAX_PROBE_VALUES, StateHeader, StateRecord, order, status};
+use crate::protocol::{MAX_PROBE_VALUES, StateHeader, StateRecord, farewell, order, status};
 use crate::role::{CoverageError, Role};
 use crate::scene::Scene;
 use std::path::PathBuf;
@@ -59,6 +59,8 @@ pub fn serve<S: Transport>(
         frames: 0,
         at: 0.0,
         compute: Duration::ZERO,
+        sums: Duration::ZERO,
+        cross: Duration::ZERO,
         output: Duration::ZERO,
         latency: Latency::default(),
     };
@@ -98,6 +100,9 @@ struct Server<S: Transport> {
     /// Time of the role's own state, s.
     at: f64,
     compute: Duration,
+    /// Parts of `compute`.
+    sums: Duration,
+    cross: Duration,
     output: Duration,
     latency: Latency,
 }
@@ -130,6 +135,7 @@ impl<S: Transport> Server<S> {
                 self.link.send_state(&self.header, &self.own)?;
                 let start = Instant::now();
                 role.own_sums();
+                self.sums += start.elapsed();
                 self.compute += start.elapsed();
                 if !std::mem::take(&mut have_peer) {
                     self.receive_peer(&expect)?;
@@ -138,6 +144,7 @@ impl<S: Transport> Server<S> {
                 let start = Instant::now();
                 role.cross_sums(&self.own, &self.peer, fluid_epoch)
                     .map_err(|lost| self.fastest(role.name(), &lost, step, stage))?;
+                self.cross += start.elapsed();
                 self.compute += start.elapsed();
 
                 // At stage 0 the answer brings the time step.
@@ -235,7 +242,7 @@ impl<S: Transport> Server<S> {
         }
     }
 
-    fn farewell(&self, role: &dyn Role, last: &StateHeader, frames_safe: u32) -> StateHeader {
+    fn farewell(&self, role: &mut dyn Role, last: &StateHeader, frames_safe: u32) -> StateHeader {
         let times = self.link.times();
         let mut header = StateHeader {
             status: status::FINISHED,
@@ -243,12 +250,17 @@ impl<S: Transport> Server<S> {
             frames_safe,
             state_hash: role.state_hash(),
             seconds: [self.compute, times.wait, times.exchange, self.output].map(|d| d.as_secs_f64()),
-            probe_count: 2,
+            probe_count: farewell::COUNT as u64,
             ..*last
         };
         header.probes = [0.0; MAX_PROBE_VALUES];
-        header.probes[0] = self.latency.percentile(0.5);
-        header.probes[1] = self.latency.percentile(0.99);
+        header.probes[farewell::ROUND_TRIP_P50] = self.latency.percentile(0.5);
+        header.probes[farewell::ROUND_TRIP_P99] = self.latency.percentile(0.99);
+        header.probes[farewell::PAIR_EVALUATIONS] = role.pair_evaluations() as f64;
+        let costs = role.costs().of(self.sums.as_secs_f64(), self.compute.as_secs_f64());
+        header.probes[farewell::WALLS] = costs.walls;
+        header.probes[farewell::INTERFACE] = self.cross.as_secs_f64();
+        header.probes[farewell::EFFECTS..farewell::COUNT].copy_from_slice(&costs.effects);
         header
     }
 

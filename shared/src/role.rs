@@ -3,6 +3,8 @@
 use crate::failure::{Diverged, RoleName};
 use crate::output::frame::Frame;
 use crate::protocol::{ForceRecord, MAX_PROBE_VALUES, StateRecord};
+use crate::scene::EffectName;
+use std::time::Instant;
 
 /// The numbers of [`Role::audit`] by place.
 pub mod audit {
@@ -18,6 +20,35 @@ pub mod audit {
     pub const GAP: usize = 6;
     /// Energy stored in the material, J; 0 for a fluid.
     pub const STORED_ENERGY: usize = 7;
+}
+
+/// What the effects take of a role's time: each measured by leaving the effect out.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Costs {
+    /// By [`EffectName`].
+    pub effects: [f64; EffectName::ALL.len()],
+    /// Walls toward this phase.
+    pub walls: f64,
+    /// The numbers are parts of one of the whole computing time; else of [`Role::own_sums`].
+    pub of_whole: bool,
+}
+
+impl Costs {
+    /// The same in seconds, for this much time in the sums and in all.
+    pub fn of(self, sums: f64, compute: f64) -> Self {
+        let seconds = if self.of_whole { compute } else { sums };
+        Self { effects: self.effects.map(|e| e * seconds), walls: self.walls * seconds, ..self }
+    }
+}
+
+/// Seconds of a piece of work: the fastest of three.
+pub fn fastest(mut work: impl FnMut()) -> f64 {
+    let once = |_| {
+        let start = Instant::now();
+        work();
+        start.elapsed().as_secs_f64()
+    };
+    (0..3).map(once).fold(f64::INFINITY, f64::min)
 }
 
 /// Owner of the fluid's or of the solid's particles.
@@ -67,6 +98,18 @@ pub trait Role: Send {
     fn state_hash(&self) -> u64;
     /// Pair evaluations so far (listed pairs, four targets each counted).
     fn pair_evaluations(&self) -> u64;
+    /// Bytes allocated for particles, walls and neighbour lists, where the role counts them.
+    fn bytes(&self) -> Option<usize> {
+        None
+    }
+    /// Which compiled composition of pair effects ran last, where there are several.
+    fn composition(&self) -> Option<&'static str> {
+        None
+    }
+    /// What each effect costs, measured on the present state, which does not change. For the end of a run.
+    fn costs(&mut self) -> Costs {
+        Costs::default()
+    }
 }
 
 /// The interface record lacks a particle that it needs.

@@ -2,6 +2,7 @@
 
 mod artificial_viscosity;
 mod columns;
+pub mod effects;
 pub mod hypoelastic;
 pub mod model;
 pub mod solid;

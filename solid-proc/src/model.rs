@@ -3,6 +3,7 @@
 use halfstep_shared::failure::Quantity;
 use halfstep_shared::output::{Frame, FramePoint};
 use halfstep_shared::protocol::StateRecord;
+use halfstep_shared::role::Costs;
 
 /// What the fluid does to the solid during one stage. One entry for each of the model's particles, by particle number;
 /// particles outside the interface set have zeros.
@@ -70,4 +71,9 @@ pub trait SolidModel<const D: usize>: Send {
     }
     /// Pair evaluations so far.
     fn pair_evaluations(&self) -> u64;
+    /// What the model's effects take of its time, measured on the present state, which does not change. A model without
+    /// effects that can be left out has none to name.
+    fn costs(&mut self) -> Costs {
+        Costs::default()
+    }
 }

@@ -10,7 +10,7 @@ use halfstep_shared::interface::{Interface, Parameters};
 use halfstep_shared::lane::Isa;
 use halfstep_shared::output::Frame;
 use halfstep_shared::protocol::{ForceRecord, MAX_PROBE_VALUES, StateRecord};
-use halfstep_shared::role::{CoverageError, Role, audit};
+use halfstep_shared::role::{Costs, CoverageError, Role, audit};
 use halfstep_shared::scene::{Phase, ProbeKind, Scene, SolidModelName, Treatment};
 use xxhash_rust::xxh3::Xxh3;
 
@@ -223,6 +223,10 @@ impl<const D: usize> Role for Solid<D> {
             hash.update(&r.density.to_le_bytes());
         }
         hash.digest()
+    }
+
+    fn costs(&mut self) -> Costs {
+        Costs { of_whole: true, ..self.model.costs() }
     }
 
     fn pair_evaluations(&self) -> u64 {

@@ -15,7 +15,7 @@ use crate::extrapolation::ExtrapolationSum;
 use crate::lane::{Isa, LANES, Lane};
 use crate::neighbours::{ClusterList, PADDING};
 use crate::protocol::StateRecord;
-use crate::scene::{EffectName, KernelName, Scene, Switch, Treatment};
+use crate::scene::{Decision, Derived, EffectName, KernelName, Phase, Scene, Treatment};
 use crate::state_equation::StateEquation;
 
 /// What the interface needs to know of the scene.
@@ -45,6 +45,19 @@ pub struct Parameters<const D: usize> {
     pub isa: Isa,
 }
 
+/// Whether walls, and the solid as the fluid's moving wall, only push: with negative pressures they would hold on to
+/// water that leaves them.
+pub fn non_negative_pressure(scene: &Scene) -> Decision {
+    let derived = match &scene.fluid {
+        None => Derived::Impossible("the scene has no fluid".into()),
+        Some(_) if scene.solid.is_none() && scene.shapes.iter().all(|s| s.phase != Phase::Wall) => {
+            Derived::Impossible("neither walls nor solid".into())
+        }
+        Some(_) => Derived::On("walls and solids push and do not pull".into()),
+    };
+    Decision::new(scene, EffectName::NonNegativeWallPressure, derived)
+}
+
 impl<const D: usize> Parameters<D> {
     /// From a scene with fluid and solid.
     pub fn new(scene: &Scene, isa: Isa) -> Option<Self> {
@@ -57,7 +70,7 @@ impl<const D: usize> Parameters<D> {
             solid_density: solid.density,
             solid_sound_speed: solid.sound_speed(),
             gravity: std::array::from_fn(|d| scene.gravity[d]),
-            non_negative_pressure: scene.switch(EffectName::NonNegativeWallPressure) != Switch::Off,
+            non_negative_pressure: non_negative_pressure(scene).on,
             resolution: scene.resolution,
             cross_viscosity: scene.interface.cross_viscosity,
             isa,

@@ -26,6 +26,14 @@ impl Chunk {
         self.index.clear();
     }
 
+    /// Makes room for the next lists to be somewhat longer without allocating.
+    fn keep_room(&mut self) {
+        let used = self.index.len();
+        if self.index.capacity() < used + used / 16 {
+            self.index.reserve_exact(used / 8 + 64);
+        }
+    }
+
     /// Neighbours of the chunk's cluster number `k`.
     #[inline(always)]
     pub(crate) fn of(&self, k: usize) -> &[u32] {
@@ -51,17 +59,13 @@ impl ClusterList {
         self.chunks[..used].par_iter_mut().enumerate().for_each(|(c, chunk)| {
             let first = c * CHUNK_CLUSTERS;
             let last = (first + CHUNK_CLUSTERS).min(clusters);
-            if chunk.index.capacity() == 0 {
-                // Enough for a dense packing, so that a later rebuild does not allocate.
-                chunk.start.reserve(CHUNK_CLUSTERS + 1);
-                chunk.index.reserve(CHUNK_CLUSTERS * 64);
-            }
             chunk.clear();
             chunk.start.push(0);
             for cluster in first..last {
                 push_neighbours(cluster * LANES, targets, sources, rows, reach, &mut chunk.index);
                 chunk.start.push(chunk.index.len() as u32);
             }
+            chunk.keep_room();
         });
     }
 

@@ -87,7 +87,7 @@ impl<const D: usize> Rows<D> {
         // Padding comes and goes with the shape of the whole: some ahead, so that a later sort does not allocate.
         let slots = self.permutation.len();
         if slots > self.room {
-            self.room = slots + slots / 8 + 64;
+            self.room = slots + slots / 32 + 64;
         }
         reserve(&mut self.permutation, self.room);
         reserve(&mut self.keys, self.room);
@@ -153,6 +153,21 @@ impl<const D: usize> Rows<D> {
             row = row * self.counts[d - 1] + self.coordinate(d, x[d]);
         }
         row
+    }
+
+    /// Allocated bytes.
+    pub fn bytes(&self) -> usize {
+        let of_rows = 8 * (self.origin.capacity() + self.counts.capacity() + self.scratch.capacity());
+        let of_slots = [
+            &self.start,
+            &self.filled,
+            &self.permutation,
+            &self.keys,
+            &self.sorted,
+            &self.cursor,
+            &self.id_scratch,
+        ];
+        of_rows + 4 * of_slots.iter().map(|c| c.capacity()).sum::<usize>()
     }
 
     /// Slots after the sort, padding included: a whole number of clusters.

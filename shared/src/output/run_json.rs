@@ -142,8 +142,10 @@ pub struct EffectReport {
     pub on: bool,
     /// The reason.
     pub why: String,
-    /// Its share of the computing time, 0 to 1.
+    /// Its share of the computing time of all roles, 0 to 1; `null` where it was not measured.
     pub share: Option<f64>,
+    /// Memory that it takes, bytes per particle of its phase; `null`: none of its own.
+    pub bytes_per_particle: Option<f64>,
 }
 
 impl RunReport {

@@ -11,6 +11,8 @@ use crate::wall::Touching;
 use halfstep_shared::kernel::Kernel;
 use halfstep_shared::lane::LANES;
 use halfstep_shared::neighbours::PADDING;
+use halfstep_shared::role::{Costs, fastest};
+use halfstep_shared::scene::EffectName;
 use halfstep_shared::{pair, with_kernel};
 use std::marker::PhantomData;
 
@@ -94,6 +96,38 @@ impl<const D: usize> Hypoelastic<D> {
             };
             walls.act(self.isa, kernel, self.gravity, solid);
         }
+    }
+
+    /// Parts of an evaluation's time, each effect's measured by leaving it out.
+    pub(super) fn costs_of_effects(&mut self) -> Costs {
+        let load = Load::none(self.points.len());
+        let before = self.pair_evaluations;
+        let evaluation = |model: &mut Self| {
+            fastest(|| {
+                model.apply_state_equation();
+                model.compute_rates(&load);
+            })
+        };
+        let mut costs = Costs::default();
+        let whole = evaluation(self);
+        let mut note = |effect: EffectName, without: f64| {
+            costs.effects[effect as usize] = (1.0 - without / whole).max(0.0);
+        };
+        if let Some(exponent) = self.artificial_stress.take() {
+            note(EffectName::ArtificialStress, evaluation(self));
+            self.artificial_stress = Some(exponent);
+        }
+        if std::mem::take(&mut self.renormalised) {
+            note(EffectName::RenormalisedGradient, evaluation(self));
+            self.renormalised = true;
+        }
+        if let Some(walls) = self.walls.take() {
+            note(EffectName::WallContact, evaluation(self));
+            self.walls = Some(walls);
+        }
+        self.apply_state_equation();
+        self.pair_evaluations = before;
+        costs
     }
 
     /// Rates of the present state under a load.

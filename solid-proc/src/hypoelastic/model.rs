@@ -3,6 +3,7 @@
 use super::columns::{Rates, State};
 use super::rates::SolidSum;
 use crate::columns::{Tensors, tensors};
+use crate::effects::takes_part;
 use crate::model::{Load, OutOfBounds, SolidModel};
 use crate::surface::surface_set;
 use crate::wall::Walls;
@@ -13,7 +14,8 @@ use halfstep_shared::interface::wire_component;
 use halfstep_shared::lane::Isa;
 use halfstep_shared::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_shared::protocol::StateRecord;
-use halfstep_shared::scene::{EffectName, KernelName, Scene, Solid, Switch};
+use halfstep_shared::role::Costs;
+use halfstep_shared::scene::{EffectName, KernelName, Scene, Solid};
 use halfstep_shared::wide;
 
 const SKIN: f64 = 0.3;
@@ -68,9 +70,8 @@ impl<const D: usize> Hypoelastic<D> {
         let h = material.smoothing_ratio * scene.resolution;
         let n = layout.solid.len();
         let exponent = material.artificial_stress.exponent.round() as u32;
-        let artificial = material.artificial_stress.strength > 0.0
-            && scene.switch(EffectName::ArtificialStress) != Switch::Off;
-        let walls = (scene.switch(EffectName::WallContact) != Switch::Off)
+        let artificial = takes_part(scene, EffectName::ArtificialStress);
+        let walls = takes_part(scene, EffectName::WallContact)
             .then(|| Walls::new(&layout.wall, (2.0 + SKIN) * h))
             .flatten();
         let domain = geometry::domain(scene);
@@ -84,7 +85,7 @@ impl<const D: usize> Hypoelastic<D> {
             resolution: scene.resolution,
             gravity: std::array::from_fn(|d| scene.gravity[d]),
             domain: (std::array::from_fn(|d| domain.min[d]), std::array::from_fn(|d| domain.max[d])),
-            renormalised: scene.switch(EffectName::RenormalisedGradient) == Switch::On,
+            renormalised: takes_part(scene, EffectName::RenormalisedGradient),
             artificial_stress: artificial.then_some(exponent),
             mass: material.density * scene.resolution.powi(D as i32),
             material,
@@ -312,6 +313,10 @@ impl<const D: usize> SolidModel<D> for Hypoelastic<D> {
                 self.volume[s] * (self.pressure[s].powi(2) / (2.0 * k) + norm / (4.0 * g))
             })
             .sum()
+    }
+
+    fn costs(&mut self) -> Costs {
+        self.costs_of_effects()
     }
 
     fn pair_evaluations(&self) -> u64 {

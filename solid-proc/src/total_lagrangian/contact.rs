@@ -7,6 +7,7 @@
 //! (see `crate::wall`), with the smoothing length of the interface.
 
 use crate::columns::{Vectors, vectors};
+use crate::effects::takes_part;
 use crate::surface::surface_set;
 use crate::wall::{Touching, Walls};
 use halfstep_shared::geometry::{self, Layout, SolidPoint};
@@ -14,7 +15,7 @@ use halfstep_shared::kernel::Kernel;
 use halfstep_shared::lane::{Arch, Isa, LANES, Lane};
 use halfstep_shared::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_shared::pair::{self, PairLaw, distance};
-use halfstep_shared::scene::{EffectName, Scene, Solid, Switch};
+use halfstep_shared::scene::{EffectName, Scene, Solid};
 
 /// Distance, in smoothing lengths of the interface, that lists hold beyond reach.
 const SKIN: f64 = 0.3;
@@ -54,7 +55,7 @@ impl<const D: usize> Contact<D> {
     /// `None` where nothing can touch. `body` has a number for each particle's body.
     pub(super) fn new(scene: &Scene, solid: &Solid, layout: &Layout<D>, body: &[u32]) -> Option<Self> {
         let h = scene.smoothing_ratio * scene.resolution;
-        let walls = (scene.switch(EffectName::WallContact) != Switch::Off)
+        let walls = takes_part(scene, EffectName::WallContact)
             .then(|| Walls::new(&layout.wall, (2.0 + SKIN) * h))
             .flatten();
         let several = body.iter().any(|&b| b != body[0]);

@@ -9,6 +9,7 @@ use super::hourglass;
 use super::material::{Law, Matrix};
 use super::pass::{Acceleration, DeformationSum, Fixed, Matrices};
 use crate::columns::{Vectors, vectors};
+use crate::effects::takes_part;
 use crate::model::{Load, OutOfBounds, SolidModel};
 use crate::surface::surface_set;
 use halfstep_shared::failure::Quantity;
@@ -17,7 +18,7 @@ use halfstep_shared::interface::wire_component;
 use halfstep_shared::lane::{Isa, LANES};
 use halfstep_shared::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_shared::protocol::StateRecord;
-use halfstep_shared::scene::{EffectName, KernelName, Scene, Solid, Switch};
+use halfstep_shared::scene::{EffectName, KernelName, Scene, Solid};
 use halfstep_shared::{wide, with_kernel};
 
 /// What time integration advances, and the inner acceleration that belongs to it.
@@ -124,7 +125,7 @@ impl<const D: usize> TotalLagrangian<D> {
                 velocity[d][slot] = point.velocity[d];
             }
         }
-        let rigid_clamps = scene.switch(EffectName::ClampFace) != Switch::Off;
+        let rigid_clamps = takes_part(scene, EffectName::ClampFace);
         let excess_gain = if rigid_clamps {
             clamp::excess_gain(scene, points, &id, &list, reach)
         } else {

@@ -1,0 +1,63 @@
+//! Memory of the fluid.
+
+use crate::columns::{Columns, Shown};
+use crate::fluid::Fluid;
+use crate::wall::Walls;
+
+fn of<T>(column: &Vec<T>) -> usize {
+    column.capacity() * size_of::<T>()
+}
+
+fn of_each<T, const D: usize>(columns: &[Vec<T>; D]) -> usize {
+    columns.iter().map(of).sum()
+}
+
+impl<const D: usize> Shown<D> {
+    fn bytes(&self) -> usize {
+        of_each(&self.position) + of_each(&self.velocity) + of(&self.density) + of(&self.sources)
+    }
+}
+
+impl<const D: usize> Columns<D> {
+    fn bytes(&self) -> usize {
+        self.now.bytes()
+            + of(&self.id)
+            + of(&self.pressure)
+            + of_each(&self.position_n)
+            + of_each(&self.velocity_n)
+            + of(&self.density_n)
+            + of_each(&self.reference)
+    }
+}
+
+impl<const D: usize> Walls<D> {
+    fn bytes(&self) -> usize {
+        self.shown.bytes()
+            + of(&self.id)
+            + of(&self.pressure)
+            + of_each(&self.own_velocity)
+            + of_each(&self.normal)
+            + of(&self.reverse_all)
+            + of(&self.damping)
+            + self.rows.bytes()
+    }
+}
+
+impl<const D: usize> Fluid<D> {
+    /// Bytes allocated for particles, sums, walls and neighbour lists.
+    pub(crate) fn allocated(&self) -> usize {
+        let stress: usize = self.stress.0.iter().map(of_each).sum();
+        self.columns.bytes()
+            + self.walls.as_ref().map_or(0, Walls::bytes)
+            + self.rows.bytes()
+            + [&self.fluid_list, &self.wall_list, &self.list_of_walls]
+                .map(|l| l.bytes())
+                .iter()
+                .sum::<usize>()
+            + of(&self.sums)
+            + of(&self.extrapolations)
+            + of(&self.gradient)
+            + of(&self.velocity_gradients)
+            + stress
+    }
+}

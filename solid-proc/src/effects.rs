@@ -1,0 +1,52 @@
+//! The solid's effects: what takes part in a scene with solid, and why.
+
+use halfstep_shared::scene::{Decision, Derived, EffectName, Scene, SolidModelName};
+
+/// What a scene with solid decides about each of its effects.
+pub fn decide(scene: &Scene) -> Vec<Decision> {
+    [
+        EffectName::ArtificialStress,
+        EffectName::RenormalisedGradient,
+        EffectName::ClampFace,
+        EffectName::WallContact,
+    ]
+    .map(|effect| Decision::new(scene, effect, derive(scene, effect)))
+    .into()
+}
+
+/// An effect of the solid takes part.
+pub(crate) fn takes_part(scene: &Scene, effect: EffectName) -> bool {
+    Decision::new(scene, effect, derive(scene, effect)).on
+}
+
+fn derive(scene: &Scene, effect: EffectName) -> Derived {
+    let Some(solid) = &scene.solid else { return Derived::Impossible("the scene has no solid".into()) };
+    let hypoelastic = solid.model == SolidModelName::Hypoelastic;
+    match effect {
+        EffectName::ArtificialStress if !hypoelastic => {
+            Derived::Impossible("neighbours of the reference configuration: no tensile instability".into())
+        }
+        EffectName::ArtificialStress if solid.artificial_stress.strength == 0.0 => {
+            Derived::Impossible("solid.artificial_stress.strength is zero".into())
+        }
+        EffectName::ArtificialStress => Derived::On(format!(
+            "the hypoelastic solid is unstable in tension; strength {}",
+            solid.artificial_stress.strength
+        )),
+        EffectName::RenormalisedGradient if hypoelastic => {
+            Derived::Off("the plain gradient is the method's own".into())
+        }
+        EffectName::RenormalisedGradient => {
+            Derived::Impossible("part of the total-Lagrangian solid, corrected once for all".into())
+        }
+        EffectName::ClampFace if hypoelastic => {
+            Derived::Impossible("only the total-Lagrangian solid corrects its clamps".into())
+        }
+        EffectName::ClampFace if scene.shapes.iter().all(|s| s.clamp.is_empty()) => {
+            Derived::Impossible("nothing is clamped".into())
+        }
+        EffectName::ClampFace => Derived::On("clamps hold at their boxes' faces".into()),
+        _ if scene.shapes.iter().any(|s| s.contact) => Derived::On("a wall has contact = true".into()),
+        _ => Derived::Impossible("no wall has contact = true".into()),
+    }
+}
