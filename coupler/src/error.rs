@@ -36,6 +36,15 @@ pub enum RunError {
         /// What the coupler saw.
         link: LinkError,
     },
+    /// Nobody started a solid.
+    #[error("no solid came within {seconds} s (--solid-wait)")]
+    NoSolid {
+        /// How long was waited, s.
+        seconds: f64,
+    },
+    /// Somebody stopped the run before its roles had met.
+    #[error("stopped before the start")]
+    StoppedEarly,
     /// The solid changed the size of its interface set.
     #[error(
         "the solid published {now} interface particles at step {step} and {first} before; the number is fixed"

@@ -16,10 +16,15 @@ use halfstep_shared::output::run_json::{Percentiles, RoleSeconds};
 use halfstep_shared::output::{self, FrameWriter, RunDirectory, RunReport};
 use halfstep_shared::protocol::{StateHeader, farewell};
 use halfstep_shared::scene::Scene;
+use std::fmt::Display;
+use std::path::Path;
 use std::process::{Command, ExitStatus};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
+
+/// File in the run's folder with the variables of a solid that is started by hand.
+const SOLID_VARIABLES: &str = "solid.env";
 
 /// What a coupled run needs, whatever carries its messages.
 pub(crate) struct Session<'a> {
@@ -63,7 +68,15 @@ impl Session<'_> {
             }
         });
         drop(claim);
-        let outcome = outcome??;
+        if self.options.solid == SolidSource::ByHand {
+            // A solid that comes too late shall not look for a run that is gone.
+            let _ = std::fs::remove_file(self.directory.file(SOLID_VARIABLES));
+        }
+        let outcome = match outcome? {
+            // Nothing has happened yet that could have an outcome.
+            Err(RunError::StoppedEarly) => return Ok(true),
+            other => other?,
+        };
         let hash = outcome.fluid.state_hash ^ outcome.solid.state_hash.rotate_left(1);
         report.audit.state_hash = Some(format!("{hash:016x}"));
         report.audit.action_reaction = Some(outcome.action_reaction);
@@ -99,13 +112,7 @@ impl Session<'_> {
             SolidSource::Command(line) => {
                 children.spawn_shell(RoleName::Solid, line, config, &scene_file)?;
             }
-            SolidSource::ByHand => {
-                eprintln!("waiting {} s for a solid; start it with", self.options.solid_wait);
-                for (key, value) in config.to_env() {
-                    eprintln!("  export {key}={value}");
-                }
-                eprintln!("  export {SCENE_VARIABLE}={}", scene_file.display());
-            }
+            SolidSource::ByHand => self.invite(config, &scene_file, &folder)?,
         }
         for role in built_in {
             let mut command = Command::new(&program);
@@ -119,13 +126,21 @@ impl Session<'_> {
             children.spawn(role, command)?;
         }
         let abort = Arc::new(AtomicBool::new(false));
-        let done = AtomicBool::new(false);
+        let (done, connected) = (AtomicBool::new(false), AtomicBool::new(false));
+        let started = Instant::now();
+        let by_hand = self.options.solid == SolidSource::ByHand;
         let watched = std::thread::scope(|scope| {
             // Before the handshake nobody else notices a child that could not even start.
             let watcher = scope.spawn(|| watch(&mut children, &abort, &done, self.stop));
             let result = CouplerLink::<Processes>::open(config, Some(Arc::clone(&abort)))
                 .map_err(RunError::from)
-                .inspect(|_| done.store(true, Ordering::Relaxed))
+                .inspect(|_| {
+                    done.store(true, Ordering::Relaxed);
+                    connected.store(true, Ordering::Relaxed);
+                    if by_hand {
+                        eprintln!("the solid is connected");
+                    }
+                })
                 .and_then(|link| self.lockstep(link, clock, recorder));
             done.store(true, Ordering::Relaxed);
             let early = watcher.join().unwrap_or(None);
@@ -149,7 +164,14 @@ impl Session<'_> {
                 };
                 let cause = children.culprit(missed);
                 children.stop(Duration::from_secs(1));
+                let waiting = !connected.load(Ordering::Relaxed);
+                let seconds = self.options.solid_wait;
                 Err(match (error, cause) {
+                    _ if waiting && self.stop.load(Ordering::Relaxed) => RunError::StoppedEarly,
+                    // The fluid waits for the solid, too, and may be the first to give up.
+                    _ if waiting && by_hand && started.elapsed().as_secs_f64() >= seconds => {
+                        RunError::NoSolid { seconds }
+                    }
                     (RunError::Link(link), Some((role, status))) => {
                         RunError::RoleEnded { role, status, link }
                     }
@@ -157,6 +179,24 @@ impl Session<'_> {
                 })
             }
         }
+    }
+
+    /// Tells how to start a solid by hand: with the variables of a file, ready for a shell.
+    fn invite(&self, config: &LinkConfig, scene: &Path, folder: &Path) -> Result<(), RunError> {
+        let quoted = |path: &dyn Display| format!("'{}'", path.to_string().replace('\'', r"'\''"));
+        let mut text = String::new();
+        for (key, value) in config.to_env() {
+            text += &format!("export {key}={}\n", quoted(&value));
+        }
+        text += &format!("export {SCENE_VARIABLE}={}\n", quoted(&scene.display()));
+        let file = folder.join(SOLID_VARIABLES);
+        output::atomic::replace_bytes(&file, text.as_bytes())?;
+        eprintln!(
+            "waiting up to {} s for a solid; start yours in another terminal:\n  . {} && COMMAND",
+            self.options.solid_wait,
+            quoted(&file.display())
+        );
+        Ok(())
     }
 
     fn lockstep<S: link::Transport>(

@@ -5,6 +5,9 @@
 //! literature goes 41-49 mm at 0.23-0.26 s (`tests/reference/dam-break-plate`). The hypoelastic plate does not: it is
 //! too soft, 72 mm and rising at 0.3 s with three particles across and 85 mm @ 0.28 s with six. The figure is printed
 //! beside the published ones and nothing is asserted about it.
+//!
+//! The paper's scheme (`preset = "kayaki"`) has a plate of five rows, 10 mm. Its time step of 1e-5 s is 1.77 dx / c_P for
+//! E = 0.22 GPa, where the plate blows up (`tests/tests/divergence.rs`): 5e-6 s there.
 
 use halfstep_tests::{Curve, Finished, RunBuilder, scene};
 
@@ -50,6 +53,27 @@ fn a_stiff_plate_hardly_moves_and_a_softer_one_moves_more() {
     assert!(soft.between(0.0, IMPACT).values.iter().all(|x| x.abs() < 0.1));
     // Eighteen times softer; not as far as the literature's plate, which is softer still.
     assert!(soft_peak.1 > 5.0 * peak.1 && soft_peak.1 < 41.0, "{soft_peak:?}");
+}
+
+/// Static deflection of a cantilever's end, mm: q L^4 / (8 D) with 4 kPa over 80 mm.
+fn beam(youngs_modulus: f64, thickness: f64) -> f64 {
+    let bending_stiffness = youngs_modulus * thickness.powi(3) / (12.0 * (1.0 - 0.32 * 0.32));
+    1e3 * 4000.0 * 0.08_f64.powi(4) / (8.0 * bending_stiffness)
+}
+
+#[test]
+#[ignore = "many minutes: the paper's interface at full resolution"]
+fn plates_with_the_paper_scheme_at_full_resolution() {
+    let paper = |youngs_modulus, time_step: f64| {
+        plate(0.002, youngs_modulus).set("preset", "kayaki").set("time_step", time_step)
+    };
+    let (curve, peak) = tip("paper's scheme, E 0.22 GPa, 2 mm", &paper(0.22e9, 5e-6).until(0.2).run());
+    println!("beam theory {:.2} mm", beam(0.22e9, 0.01));
+    stiff(&curve, peak);
+    let (_, peak) = tip("paper's scheme, E 12 MPa, 2 mm", &paper(12e6, 1e-5).until(0.21).run());
+    println!("beam theory {:.1} mm", beam(12e6, 0.01));
+    // More than the load at rest, less than the literature's plate, which is twelve times softer.
+    assert!((beam(12e6, 0.012)..41.0).contains(&peak.1), "{peak:?}");
 }
 
 #[test]

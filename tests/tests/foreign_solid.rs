@@ -1,8 +1,10 @@
 //! A solid in another language, end to end: fluid process, coupler and a Python script that knows only the protocol.
 
 use halfstep_shared::output::series::Series;
+use halfstep_tests::conformance::link::eventually;
 use halfstep_tests::curve::Curve;
-use halfstep_tests::run::{repository, scene};
+use halfstep_tests::process::{kill, leftovers};
+use halfstep_tests::run::{repository, scene, whole_machine};
 use std::process::Command;
 
 const STIFFNESS: f64 = 2e4;
@@ -12,6 +14,12 @@ fn python() -> String {
     let output = Command::new("sh").arg(repository().join("tests/python/setup.sh")).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8(output.stdout).unwrap().trim().into()
+}
+
+/// The line that starts the script.
+fn command() -> String {
+    let script = repository().join("tests/python/spring_block.py");
+    format!("{} {} {STIFFNESS}", python(), script.display())
 }
 
 /// Displacement x at which the spring carries the thrust of the water, whose volume is kept: k x = rho g H(x)² / 2.
@@ -26,9 +34,7 @@ fn equilibrium() -> f64 {
 
 #[test]
 fn a_block_on_a_spring_in_python_swings_as_the_formula_says() {
-    let script = repository().join("tests/python/spring_block.py");
-    let command = format!("{} {} {STIFFNESS}", python(), script.display());
-    let run = scene("spring-block").argument("--solid").argument(command).run();
+    let run = scene("spring-block").argument("--solid").argument(command()).run();
     let curve = run.curve("block.x");
 
     // Westergaard 1933, as von Karman's estimate for a rigid wall: added mass 0.543 rho H² per metre of width.
@@ -50,4 +56,48 @@ fn a_block_on_a_spring_in_python_swings_as_the_formula_says() {
         Series::of_run(run.dir(), "fluid").unwrap().len()
     );
     assert!(run.report.audit.action_reaction.unwrap() <= 1e-12);
+}
+
+#[test]
+fn a_block_started_by_hand_moves_as_one_that_the_run_starts() {
+    let started = scene("spring-block").until(0.05).argument("--solid").argument(command()).run();
+    let _machine = whole_machine();
+    let running = scene("spring-block").until(0.05).argument("--solid").start();
+    let launcher = running.pid();
+    let variables = running.dir().join("solid.env");
+    eventually(30.0, "the variables of the solid", || variables.exists());
+    // As the message on the terminal says.
+    let line = format!(". '{}' && {}", variables.canonicalize().unwrap().display(), command());
+    let mut by_hand = Command::new("sh").arg("-c").arg(&line).spawn().unwrap();
+    let run = running.wait().finished();
+    assert!(by_hand.wait().unwrap().success());
+    assert_eq!(run.probes, started.probes, "who starts it makes no difference, to the last bit");
+    assert_eq!(run.state_hash(), started.state_hash());
+    let said = &run.outcome.stderr;
+    let told = line.split(" && ").next().unwrap();
+    assert!(said.contains("waiting up to 60 s for a solid") && said.contains(told), "{said}");
+    assert!(said.contains("the solid is connected"), "{said}");
+    assert!(!variables.exists(), "they belong to a run that is over");
+    assert_eq!(leftovers(launcher), Vec::<String>::new());
+}
+
+#[test]
+fn a_solid_that_nobody_starts_is_missed_by_name() {
+    let outcome =
+        scene("spring-block").argument("--solid").argument("--solid-wait").argument("0.5").outcome();
+    assert_eq!(outcome.code(), Some(2));
+    let error = outcome.report().error.unwrap();
+    assert_eq!(error, "no solid came within 0.5 s (--solid-wait)");
+    assert!(outcome.stderr.contains(&error), "{}", outcome.stderr);
+}
+
+#[test]
+fn waiting_for_a_solid_can_be_stopped() {
+    let _machine = whole_machine();
+    let running = scene("spring-block").argument("--solid").start();
+    eventually(30.0, "the variables of the solid", || running.dir().join("solid.env").exists());
+    kill(running.pid(), libc::SIGINT);
+    let outcome = running.wait();
+    assert_eq!(outcome.code(), Some(130), "{}", outcome.stderr);
+    assert_eq!(outcome.report().error, None);
 }

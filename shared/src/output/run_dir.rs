@@ -4,7 +4,7 @@ use super::{OutputError, series};
 use std::path::{Path, PathBuf};
 
 /// Files that a run leaves in its folder, beside the frames.
-pub const FILES: [&str; 8] = [
+pub const FILES: [&str; 9] = [
     "run.json",
     "probes.csv",
     "plot.png",
@@ -13,6 +13,7 @@ pub const FILES: [&str; 8] = [
     "checkpoint-b.hdf",
     "log.txt",
     "scene.json",
+    "solid.env",
 ];
 
 /// A folder that is ready for a run: nothing of an earlier one is in it.
