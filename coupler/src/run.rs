@@ -14,9 +14,9 @@ use halfstep_shared::geometry;
 use halfstep_shared::lane::Isa;
 use halfstep_shared::link::{self, Claim, CouplerLink, LinkConfig, LinkError, Processes, Threads};
 use halfstep_shared::lockstep::{self, FOLDER_VARIABLE, RoleError, SCENE_VARIABLE, THREADS_VARIABLE};
-use halfstep_shared::output::run_json::{Particles, RoleSeconds, RunStatus};
+use halfstep_shared::output::run_json::{PairEvaluations, Particles, RoleSeconds, RunStatus};
 use halfstep_shared::output::{self, FrameWriter, RunDirectory, RunReport};
-use halfstep_shared::protocol::StateHeader;
+use halfstep_shared::protocol::{StateHeader, farewell};
 use halfstep_shared::scene::Scene;
 use std::path::PathBuf;
 use std::process::{Command, ExitStatus};
@@ -181,10 +181,13 @@ fn solo(
     let outcome = result?;
     report.audit.state_hash = Some(format!("{:016x}", outcome.state_hash));
     let seconds = Some(outcome.seconds);
+    let evaluations = Some(outcome.pair_evaluations);
     if name == RoleName::Fluid {
-        report.roles.fluid = seconds
+        report.roles.fluid = seconds;
+        report.work.pair_evaluations.fluid = evaluations;
     } else {
-        report.roles.solid = seconds
+        report.roles.solid = seconds;
+        report.work.pair_evaluations.solid = evaluations;
     }
     Ok(outcome.stopped)
 }
@@ -237,9 +240,14 @@ impl Session<'_> {
         report.roles.fluid = Some(seconds(&outcome.fluid));
         report.roles.solid = Some(seconds(&outcome.solid));
         report.roles.coupler = Some(outcome.seconds);
+        report.work.pair_evaluations = PairEvaluations {
+            fluid: pair_evaluations(&outcome.fluid),
+            solid: pair_evaluations(&outcome.solid),
+            coupler: Some(outcome.pair_evaluations),
+        };
         report.round_trip_us = Some(output::run_json::Percentiles {
-            p50: outcome.fluid.probes[0],
-            p99: outcome.fluid.probes[1],
+            p50: outcome.fluid.probes[farewell::ROUND_TRIP_P50],
+            p99: outcome.fluid.probes[farewell::ROUND_TRIP_P99],
         });
         Ok(outcome.stopped)
     }
@@ -417,6 +425,12 @@ fn watch(
         std::thread::sleep(Duration::from_millis(20));
     }
     None
+}
+
+/// What a phase counted, where its last message says so.
+fn pair_evaluations(last: &StateHeader) -> Option<u64> {
+    let told = last.probe_count > farewell::PAIR_EVALUATIONS as u64;
+    told.then(|| last.probes[farewell::PAIR_EVALUATIONS] as u64)
 }
 
 fn seconds(header: &StateHeader) -> RoleSeconds {

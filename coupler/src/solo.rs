@@ -19,6 +19,8 @@ pub struct SoloOutcome {
     pub state_hash: u64,
     /// Where the time went.
     pub seconds: RoleSeconds,
+    /// See [`Role::pair_evaluations`].
+    pub pair_evaluations: u64,
 }
 
 /// Runs a role to the clock's end or until `stop`.
@@ -61,7 +63,12 @@ pub fn run_solo(
         let written = Instant::now();
         seconds.output += (written - computed).as_secs_f64();
         let Some(dt) = tick.dt else {
-            return Ok(SoloOutcome { stopped, state_hash: role.state_hash(), seconds });
+            return Ok(SoloOutcome {
+                stopped,
+                state_hash: role.state_hash(),
+                seconds,
+                pair_evaluations: role.pair_evaluations(),
+            });
         };
         for stage in 0..2 {
             if stage == 1 {

@@ -375,7 +375,9 @@ impl<const D: usize> Role for Fluid<D> {
 
     fn own_sums(&mut self) {
         with_kernel!(self.kernel, self.smoothing_length, D, |kernel| self.sums(kernel));
-        let walls = self.wall_list.entries() + self.list_of_walls.entries();
+        // The velocity gradients of the viscosity take a pass over fluid and walls, the density's one over the fluid.
+        let passes_over_walls = 1 + usize::from(self.viscosity.is_some());
+        let walls = self.wall_list.entries() * passes_over_walls + self.list_of_walls.entries();
         let listed = self.fluid_list.entries() as u64 * self.passes_over_fluid() + walls as u64;
         self.pair_evaluations += listed * LANES as u64;
     }

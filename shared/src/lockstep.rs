@@ -4,7 +4,7 @@ use crate::failure::{Diverged, RoleName};
 use crate::latency::Latency;
 use crate::link::{Expect, LinkConfig, LinkError, PhaseLink, Processes, Transport};
 use crate::output::{FrameWriter, OutputError};
-use crate::protocol::{MAX_PROBE_VALUES, StateHeader, StateRecord, order, status};
+use crate::protocol::{MAX_PROBE_VALUES, StateHeader, StateRecord, farewell, order, status};
 use crate::role::{CoverageError, Role};
 use crate::scene::Scene;
 use std::path::PathBuf;
@@ -213,12 +213,13 @@ impl<S: Transport> Server<S> {
             frames_safe,
             state_hash: role.state_hash(),
             seconds: [self.compute, times.wait, times.exchange, self.output].map(|d| d.as_secs_f64()),
-            probe_count: 2,
+            probe_count: farewell::COUNT as u64,
             ..*last
         };
         header.probes = [0.0; MAX_PROBE_VALUES];
-        header.probes[0] = self.latency.percentile(0.5);
-        header.probes[1] = self.latency.percentile(0.99);
+        header.probes[farewell::ROUND_TRIP_P50] = self.latency.percentile(0.5);
+        header.probes[farewell::ROUND_TRIP_P99] = self.latency.percentile(0.99);
+        header.probes[farewell::PAIR_EVALUATIONS] = role.pair_evaluations() as f64;
         header
     }
 

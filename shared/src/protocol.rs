@@ -74,6 +74,18 @@ pub mod order {
     pub const STOP: u32 = 8;
 }
 
+/// What the `probes` of a last message hold, by place. A phase may leave them out.
+pub mod farewell {
+    /// Median time from publishing a state to having the forces, µs.
+    pub const ROUND_TRIP_P50: usize = 0;
+    /// The one that one in a hundred exceeds, µs.
+    pub const ROUND_TRIP_P99: usize = 1;
+    /// Pair evaluations of the run: a whole number, exact up to 2^53.
+    pub const PAIR_EVALUATIONS: usize = 2;
+    /// How many there are.
+    pub const COUNT: usize = 3;
+}
+
 /// Heads every state message.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, ZeroCopySend)]
@@ -126,7 +138,7 @@ pub struct StateHeader {
     pub particles: u64,
     /// Number of probe values.
     pub probe_count: u64,
-    /// Probe values of this phase, in the scene's order (stage 0).
+    /// Probe values of this phase, in the scene's order (stage 0); of a last message, see [`farewell`].
     pub probes: [f64; MAX_PROBE_VALUES],
 }
 

@@ -23,6 +23,7 @@ pub struct Solid<const D: usize> {
     taken: u32,
     density: f64,
     limit: f64,
+    cross_pairs: u64,
 }
 
 enum Measurement {
@@ -80,6 +81,7 @@ impl<const D: usize> Solid<D> {
             max_sub_steps,
             taken: 1,
             density: scene.solid.as_ref().map_or(1.0, |s| s.density),
+            cross_pairs: 0,
         }
     }
 
@@ -153,6 +155,7 @@ impl<const D: usize> Role for Solid<D> {
     ) -> Result<(), CoverageError> {
         let Some(interface) = &mut self.interface else { return Ok(()) };
         interface.update(peer, own, epoch);
+        self.cross_pairs += interface.pairs() as u64;
         let n = self.model.particles();
         self.load.density_rate.resize(n, 0.0);
         self.load.gradient.resize(n, [[0.0; D]; D]);
@@ -260,6 +263,6 @@ impl<const D: usize> Role for Solid<D> {
     }
 
     fn pair_evaluations(&self) -> u64 {
-        self.model.pair_evaluations()
+        self.model.pair_evaluations() + self.cross_pairs
     }
 }

@@ -260,6 +260,8 @@ impl<const D: usize> Hypoelastic<D> {
             };
             pair::pass(self.isa, &law, &walls.neighbours, &mut forces);
             walls.forces = forces;
+            let listed = walls.sources.entries() + walls.neighbours.entries();
+            self.pair_evaluations += (listed * LANES) as u64;
             self.walls = Some(walls);
         }
     }
