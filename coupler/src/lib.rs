@@ -11,4 +11,5 @@ pub mod recorder;
 pub mod roles;
 pub mod run;
 pub mod solo;
+pub mod study;
 pub mod supervise;

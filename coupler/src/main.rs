@@ -2,6 +2,7 @@
 
 use clap::{Parser, Subcommand};
 use halfstep::run::{RunOptions, SolidSource};
+use halfstep::study::command::{StudyArguments, study};
 use halfstep::supervise::abort_flag;
 use halfstep::{roles, run};
 use halfstep_shared::failure::RoleName;
@@ -27,6 +28,7 @@ enum Command {
     Run(RunArguments),
     /// Validates a scene; prints counts, time steps, memory and expected time
     Check(SceneArguments),
+    Study(StudyArguments),
     /// A role's process; started by `run`
     #[command(hide = true)]
     Role {
@@ -84,6 +86,7 @@ fn main() -> ExitCode {
             }
             Err(code) => code,
         },
+        Command::Study(arguments) => study(arguments),
         Command::Role { name } => serve_role(&name),
     }
 }
