@@ -1,6 +1,6 @@
 # What people run. Every target first installs what is missing (setup.sh) and then calls cargo.
 
-.PHONY: gate test validate docs setup
+.PHONY: gate test validate prices docs setup
 
 # Where rustup puts cargo, for shells that were open before.
 export PATH := $(PATH):$(HOME)/.cargo/bin
@@ -19,6 +19,11 @@ test: setup
 # The benchmarks of the literature at full resolution: long.
 validate: setup
 	cargo test --release -p halfstep-tests -- --ignored --nocapture
+
+# What accuracy costs in the shipped scenes, docs/price-lists.md: minutes to an hour. SCENES="..." renews some of them.
+prices: setup
+	cargo build --release
+	sh docs/price-lists.sh $(BIN) $(SCENES)
 
 # The documentation of the crates, in target/doc.
 docs: setup

@@ -34,6 +34,8 @@ pub struct CoupledOutcome {
     pub action_reaction: f64,
     /// Consistency checks passed.
     pub checks: u64,
+    /// Pairs listed in the coupler's sums.
+    pub pair_evaluations: u64,
 }
 
 /// State of the coupler.
@@ -46,6 +48,7 @@ pub struct Coupler<S: Transport, const D: usize> {
     half_steps: u64,
     action_reaction: f64,
     checks: u64,
+    pair_evaluations: u64,
     compute: Duration,
     frame: u64,
     solid_count: Option<usize>,
@@ -66,6 +69,7 @@ impl<S: Transport, const D: usize> Coupler<S, D> {
             half_steps: 0,
             action_reaction: 0.0,
             checks: 0,
+            pair_evaluations: 0,
             compute: Duration::ZERO,
             frame: 0,
             solid_count: None,
@@ -188,6 +192,7 @@ impl<S: Transport, const D: usize> Coupler<S, D> {
         self.solid_forces.clear();
         self.solid_forces.extend(solid.records().iter().map(|r| blank(r.id)));
         self.interface.update(fluid.records(), solid.records(), fluid.header().epoch);
+        self.pair_evaluations += self.interface.pairs() as u64;
         let forces = &mut self.solid_forces;
         self.interface.act_on_solid(|record, force| forces[record].stress_force = wide(force));
         self.cross.on_solid(&self.interface, |record, a| forces[record].cross_viscosity = wide(a));
@@ -235,6 +240,7 @@ impl<S: Transport, const D: usize> Coupler<S, D> {
             },
             action_reaction: self.action_reaction,
             checks: self.checks,
+            pair_evaluations: self.pair_evaluations,
         }
     }
 }

@@ -14,4 +14,5 @@ pub mod roles;
 pub mod run;
 mod session;
 pub mod solo;
+pub mod study;
 pub mod supervise;

@@ -2,6 +2,7 @@
 
 use clap::{Parser, Subcommand};
 use halfstep::run::{RunOptions, SolidSource};
+use halfstep::study::command::{StudyArguments, study};
 use halfstep::supervise::abort_flag;
 use halfstep::{roles, run};
 use halfstep_shared::failure::RoleName;
@@ -35,6 +36,7 @@ enum Command {
         #[arg(long)]
         json: bool,
     },
+    Study(StudyArguments),
     /// A role's process; started by `run`
     #[command(hide = true)]
     Role {
@@ -93,6 +95,7 @@ fn main() -> ExitCode {
             Err(code) => code,
         },
         Command::Explain { scene, json } => explain_scene(&scene, json),
+        Command::Study(arguments) => study(arguments),
         Command::Role { name } => serve_role(&name),
     }
 }

@@ -159,10 +159,13 @@ fn solo(
     report.audit.state_hash = Some(format!("{:016x}", outcome.state_hash));
     effects::share_solo(report, &outcome);
     let seconds = Some(outcome.seconds);
+    let evaluations = Some(outcome.pair_evaluations);
     if name == RoleName::Fluid {
-        report.roles.fluid = seconds
+        report.roles.fluid = seconds;
+        report.work.pair_evaluations.fluid = evaluations;
     } else {
-        report.roles.solid = seconds
+        report.roles.solid = seconds;
+        report.work.pair_evaluations.solid = evaluations;
     }
     Ok(outcome.stopped)
 }

@@ -12,7 +12,7 @@ use crate::supervise::Children;
 use halfstep_shared::failure::RoleName;
 use halfstep_shared::link::{self, Claim, CouplerLink, LinkConfig, LinkError, Processes, Threads};
 use halfstep_shared::lockstep::{self, FOLDER_VARIABLE, RoleError, SCENE_VARIABLE, THREADS_VARIABLE};
-use halfstep_shared::output::run_json::{Percentiles, RoleSeconds};
+use halfstep_shared::output::run_json::{PairEvaluations, Percentiles, RoleSeconds};
 use halfstep_shared::output::{self, FrameWriter, RunDirectory, RunReport};
 use halfstep_shared::protocol::{StateHeader, farewell};
 use halfstep_shared::scene::Scene;
@@ -84,6 +84,11 @@ impl Session<'_> {
         report.roles.fluid = Some(seconds(&outcome.fluid));
         report.roles.solid = Some(seconds(&outcome.solid));
         report.roles.coupler = Some(outcome.seconds);
+        report.work.pair_evaluations = PairEvaluations {
+            fluid: pair_evaluations(&outcome.fluid),
+            solid: pair_evaluations(&outcome.solid),
+            coupler: Some(outcome.pair_evaluations),
+        };
         report.round_trip_us = Some(Percentiles {
             p50: outcome.fluid.probes[farewell::ROUND_TRIP_P50],
             p99: outcome.fluid.probes[farewell::ROUND_TRIP_P99],
@@ -292,6 +297,12 @@ fn watch(
         std::thread::sleep(Duration::from_millis(20));
     }
     None
+}
+
+/// What a phase counted, where its last message says so.
+fn pair_evaluations(last: &StateHeader) -> Option<u64> {
+    let told = last.probe_count > farewell::PAIR_EVALUATIONS as u64;
+    told.then(|| last.probes[farewell::PAIR_EVALUATIONS] as u64)
 }
 
 fn seconds(header: &StateHeader) -> RoleSeconds {

@@ -21,6 +21,8 @@ pub struct SoloOutcome {
     pub seconds: RoleSeconds,
     /// What the effects took of it, s.
     pub costs: Costs,
+    /// See [`Role::pair_evaluations`].
+    pub pair_evaluations: u64,
 }
 
 /// Runs a role to the clock's end or until `stop`.
@@ -69,6 +71,7 @@ pub fn run_solo(
                 state_hash: role.state_hash(),
                 seconds,
                 costs: role.costs().of(sums, seconds.compute),
+                pair_evaluations: role.pair_evaluations(),
             });
         };
         for stage in 0..2 {

@@ -168,6 +168,6 @@ impl<const D: usize> Coupling<D> {
 
     /// Pairs listed between the phases, four targets each.
     pub fn pairs(&self) -> usize {
-        4 * (self.interface.fluid_list.entries() + self.interface.solid_list.entries())
+        self.interface.pairs()
     }
 }

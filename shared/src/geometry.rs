@@ -28,7 +28,8 @@ pub struct FluidPoint<const D: usize> {
     pub position: [f64; D],
     /// Velocity, m/s.
     pub velocity: [f64; D],
-    /// Pressure, Pa: rho g times the depth below its shape's highest point, or zero.
+    /// Pressure, Pa, above the background's: rho g times the depth below its shape's highest point, or zero; and what
+    /// belongs to its velocity field.
     pub pressure: f64,
 }
 
@@ -128,8 +129,8 @@ pub fn layout<const D: usize>(scene: &Scene) -> Layout<D> {
                 })),
                 Phase::Fluid => layout.fluid.extend(kept.iter().map(|p| FluidPoint {
                     position: p.position,
-                    velocity,
-                    pressure: if shape.hydrostatic { hydrostatic(scene, shape, &p.position) } else { 0.0 },
+                    velocity: added(velocity, field_velocity(scene, shape, &p.position)),
+                    pressure: initial_pressure(scene, shape, &p.position),
                 })),
             }
         }
@@ -238,6 +239,26 @@ pub fn cantilever_velocity(mode: &CantileverMode, sound_speed: f64, x: f64) -> f
     };
     let along = ((x - mode.root) / mode.length * end).max(0.0);
     mode.fraction * sound_speed * shape(along) / shape(end)
+}
+
+fn in_plane<const D: usize>(position: &[f64; D]) -> [f64; 2] {
+    [position[0], position[1]]
+}
+
+fn field_velocity<const D: usize>(scene: &Scene, shape: &Shape, position: &[f64; D]) -> [f64; 2] {
+    let gravity = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+    shape.velocity_field.map_or([0.0; 2], |field| field.velocity(in_plane(position), gravity))
+}
+
+fn added<const D: usize>(mut velocity: [f64; D], field: [f64; 2]) -> [f64; D] {
+    velocity.iter_mut().zip(field).for_each(|(v, f)| *v += f);
+    velocity
+}
+
+fn initial_pressure<const D: usize>(scene: &Scene, shape: &Shape, position: &[f64; D]) -> f64 {
+    let at_rest = if shape.hydrostatic { hydrostatic(scene, shape, position) } else { 0.0 };
+    let density = scene.fluid.as_ref().map_or(0.0, |fluid| fluid.density);
+    at_rest + shape.velocity_field.map_or(0.0, |field| field.pressure(in_plane(position), density))
 }
 
 /// rho g times the depth below the shape's highest point.

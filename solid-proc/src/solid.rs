@@ -25,6 +25,7 @@ pub struct Solid<const D: usize> {
     taken: u32,
     density: f64,
     limit: f64,
+    cross_pairs: u64,
 }
 
 enum Measurement {
@@ -72,6 +73,7 @@ impl<const D: usize> Solid<D> {
             sub_steps: SubStepping::of(scene),
             taken: 1,
             density: scene.solid.as_ref().map_or(1.0, |s| s.density),
+            cross_pairs: 0,
         }
     }
 
@@ -119,6 +121,7 @@ impl<const D: usize> Role for Solid<D> {
     ) -> Result<(), CoverageError> {
         let Some(interface) = &mut self.interface else { return Ok(()) };
         interface.update(peer, own, epoch);
+        self.cross_pairs += interface.pairs() as u64;
         let n = self.model.particles();
         self.load.density_rate.resize(n, 0.0);
         self.load.gradient.resize(n, [[0.0; D]; D]);
@@ -230,6 +233,6 @@ impl<const D: usize> Role for Solid<D> {
     }
 
     fn pair_evaluations(&self) -> u64 {
-        self.model.pair_evaluations()
+        self.model.pair_evaluations() + self.cross_pairs
     }
 }

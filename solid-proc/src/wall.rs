@@ -71,6 +71,11 @@ impl<const D: usize> Walls<D> {
         self.forces.resize(self.neighbours.clusters(), WallForce::default());
     }
 
+    /// Pairs listed between walls and solid, four targets each.
+    pub(crate) fn pairs(&self) -> usize {
+        LANES * (self.sources.entries() + self.neighbours.entries())
+    }
+
     /// Evaluates the push on every solid particle.
     pub(crate) fn act<K: Kernel<D>>(
         &mut self,

@@ -11,6 +11,9 @@ fn same_bits(until: f64, treatment: &str) {
     let reference = run().run();
     let (hash, tip) = (reference.state_hash(), reference.curve("tip.x"));
     assert!(tip.at(until) > 1e-4, "something has moved");
+    // Work is counted, not timed.
+    let work = reference.report.work.pair_evaluations;
+    assert!([work.fluid, work.solid, work.coupler].iter().all(|n| n.is_some_and(|n| n > 0)), "{work:?}");
     for (what, other) in [
         ("threads of one process", run().in_process()),
         ("one process, two threads", run().in_process().threads(2)),
@@ -20,6 +23,7 @@ fn same_bits(until: f64, treatment: &str) {
         let other = other.run();
         assert_eq!(other.state_hash(), hash, "{treatment}: {what}");
         assert_eq!(other.report.steps, reference.report.steps);
+        assert_eq!(other.report.work, reference.report.work, "{treatment}: {what}");
         // Not only the end: every row in between.
         assert_eq!(other.probes, reference.probes, "{treatment}: {what}");
     }

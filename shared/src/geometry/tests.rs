@@ -42,6 +42,7 @@ fn scene(shapes: Vec<Shape>) -> Scene {
         shapes,
         probes: Vec::new(),
         references: Vec::new(),
+        metrics: Vec::new(),
         effects: BTreeMap::new(),
         numerics: Numerics {
             kernel: KernelName::CubicSpline,
@@ -63,6 +64,7 @@ fn shape(phase: Phase, geometry: Geometry) -> Shape {
         geometry,
         velocity: [0.0; 3],
         cantilever_mode: None,
+        velocity_field: None,
         clamp: Vec::new(),
         contact: false,
         free_slip: true,
@@ -281,6 +283,26 @@ fn hydrostatic_pressure_grows_from_the_shapes_highest_point() {
     assert_relative_eq!(layout::<2>(&s).fluid[0].pressure, want, max_relative = 1e-12);
     s.shapes[0].hydrostatic = false;
     assert_eq!(layout::<2>(&s).fluid[0].pressure, 0.0);
+}
+
+#[test]
+fn a_velocity_field_adds_to_the_shapes_velocity_and_brings_its_pressure() {
+    let mut water = a_box(Phase::Fluid, [0.0, 0.0], [1.0, 1.0]);
+    water.velocity = [0.5, 0.0, 0.0];
+    let field = VelocityField::TaylorGreen { speed: 2.0, origin: [0.0; 3], half_wave: 1.0 };
+    water.velocity_field = Some(field);
+    water.hydrostatic = true;
+    let fluid = layout::<2>(&scene(vec![water])).fluid;
+    for p in &fluid {
+        let [u, v] = field.velocity(p.position, 10.0);
+        assert_eq!(p.velocity, [0.5 + u, v]);
+        let at_rest = 1000.0 * 10.0 * (1.0 - p.position[1]);
+        let want = at_rest + field.pressure(p.position, 1000.0);
+        assert_relative_eq!(p.pressure, want, max_relative = 1e-12);
+    }
+    let energy: f64 = fluid.iter().map(|p| (p.velocity[0] - 0.5).powi(2) + p.velocity[1].powi(2)).sum();
+    // The mean of u² + v² over a cell is U² / 2.
+    assert_relative_eq!(energy / fluid.len() as f64, 2.0, max_relative = 1e-12);
 }
 
 #[test]

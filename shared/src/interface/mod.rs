@@ -132,6 +132,11 @@ impl<const D: usize> Interface<D> {
         }
     }
 
+    /// Pairs listed between the phases, four targets each.
+    pub fn pairs(&self) -> usize {
+        LANES * (self.fluid_list.entries() + self.solid_list.entries())
+    }
+
     fn skin(&self) -> f64 {
         0.3 * self.parameters.smoothing_length
     }

@@ -8,12 +8,12 @@ use std::path::Path;
 use std::sync::Once;
 
 /// Drawing surface of [`Canvas::draw`].
-pub(crate) type Area<'a> = DrawingArea<BitMapBackend<'a>, Shift>;
+pub type Area<'a> = DrawingArea<BitMapBackend<'a>, Shift>;
 /// What plotters' own errors become: their text.
-pub(crate) type Drawn = Result<(), Box<dyn std::error::Error>>;
+pub type Drawn = Result<(), Box<dyn std::error::Error>>;
 
 /// Name under which the font of this crate is registered.
-pub(crate) const FONT: &str = "halfstep";
+pub const FONT: &str = "halfstep";
 
 /// Makes [`FONT`] known to plotters.
 fn register() {
@@ -25,19 +25,23 @@ fn register() {
 }
 
 /// An RGB picture, white at first.
-pub(crate) struct Canvas {
+pub struct Canvas {
     pub(crate) width: u32,
     pub(crate) height: u32,
     pub(crate) rgb: Vec<u8>,
 }
 
 impl Canvas {
-    pub(crate) fn new(width: u32, height: u32) -> Self {
+    /// A white picture.
+    pub fn new(width: u32, height: u32) -> Self {
         Self { width, height, rgb: vec![255; width as usize * height as usize * 3] }
     }
 
     /// Draws with plotters.
-    pub(crate) fn draw(&mut self, draw: impl FnOnce(&Area<'_>) -> Drawn) -> Drawn {
+    ///
+    /// # Errors
+    /// What plotters says.
+    pub fn draw(&mut self, draw: impl FnOnce(&Area<'_>) -> Drawn) -> Drawn {
         register();
         let area = BitMapBackend::with_buffer(&mut self.rgb, (self.width, self.height)).into_drawing_area();
         draw(&area)?;
@@ -45,7 +49,7 @@ impl Canvas {
     }
 
     /// The picture at half its width and height, each pixel the mean of four: smooth lines.
-    pub(crate) fn halved(&self) -> Self {
+    pub fn halved(&self) -> Self {
         let mut half = Self::new(self.width / 2, self.height / 2);
         let row = self.width as usize * 3;
         for (y, line) in half.rgb.chunks_exact_mut(half.width as usize * 3).enumerate() {
@@ -60,7 +64,10 @@ impl Canvas {
     }
 
     /// Writes the picture as PNG.
-    pub(crate) fn save(&self, path: &Path) -> Result<(), OutputError> {
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn save(&self, path: &Path) -> Result<(), OutputError> {
         save_png(path, self.width, self.height, png::ColorType::Rgb, None, &self.rgb)
     }
 }

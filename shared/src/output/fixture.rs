@@ -46,6 +46,7 @@ pub(crate) fn scene() -> Scene {
                     .collect(),
             },
         ],
+        metrics: Vec::new(),
         effects: Default::default(),
         numerics: Numerics {
             kernel: KernelName::WendlandC2,

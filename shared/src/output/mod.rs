@@ -12,7 +12,7 @@
 //! leaves nothing half-written under a final name.
 
 pub mod atomic;
-mod canvas;
+pub mod canvas;
 pub mod contact;
 #[cfg(test)]
 mod fixture;
@@ -26,7 +26,7 @@ pub mod run_dir;
 pub mod run_json;
 pub mod series;
 mod stamp;
-mod units;
+pub mod units;
 mod view;
 pub mod vtkhdf;
 pub mod writer;

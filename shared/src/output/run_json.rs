@@ -32,6 +32,8 @@ pub struct RunReport {
     pub sub_steps: Option<u32>,
     /// Where each process spent its time.
     pub roles: Roles,
+    /// Work counted, which no other program on the machine changes.
+    pub work: Work,
     /// From publishing a state to having the forces, µs.
     pub round_trip_us: Option<Percentiles>,
     /// What the run checked about itself.
@@ -100,6 +102,33 @@ pub struct RoleSeconds {
     pub exchange: f64,
     /// Handing over what is written, s.
     pub output: f64,
+}
+
+/// Work done.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Work {
+    /// Pairs of particles listed in all passes of a run that reached its end or was stopped.
+    pub pair_evaluations: PairEvaluations,
+}
+
+/// Pair evaluations of each process.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct PairEvaluations {
+    /// Of the fluid.
+    pub fluid: Option<u64>,
+    /// Of the solid.
+    pub solid: Option<u64>,
+    /// Of the coupler.
+    pub coupler: Option<u64>,
+}
+
+impl PairEvaluations {
+    /// All of them; `None` where nothing was counted.
+    pub fn total(&self) -> Option<u64> {
+        [self.fluid, self.solid, self.coupler].into_iter().flatten().reduce(|a, b| a + b)
+    }
 }
 
 /// Percentiles of a duration, µs.
@@ -202,6 +231,7 @@ mod tests {
             "/roles/fluid/exchange /roles/fluid/output /roles/solid /roles/coupler /round_trip_us/p50",
             "/round_trip_us/p99 /audit/momentum_drift /audit/energy_drift /audit/action_reaction",
             "/audit/density_error /audit/min_gap /audit/checks /audit/isa",
+            "/work/pair_evaluations/fluid /work/pair_evaluations/solid /work/pair_evaluations/coupler",
             "/effects/0/name /effects/0/on /effects/0/why /effects/0/share",
         ]
         .iter()

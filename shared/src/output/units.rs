@@ -2,7 +2,7 @@
 
 /// Factor and unit in which values of `unit` up to `largest` (in absolute value) are shown: a tip that moves by
 /// 0.03 m is shown in mm.
-pub(crate) fn shown(unit: &str, largest: f64) -> (f64, String) {
+pub fn shown(unit: &str, largest: f64) -> (f64, String) {
     let scales: &[(f64, f64, &str)] = match unit {
         "m" => &[(1e-4, 1e6, "µm"), (0.1, 1e3, "mm")],
         "s" => &[(0.05, 1e3, "ms")],
@@ -36,7 +36,7 @@ fn round_up(value: f64, steps: &[f64]) -> f64 {
 }
 
 /// A number with three significant digits and no superfluous zeros.
-pub(crate) fn number(value: f64) -> String {
+pub fn number(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return if value == 0.0 { "0".into() } else { value.to_string() };
     }

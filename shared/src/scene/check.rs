@@ -30,6 +30,7 @@ impl Check<'_> {
         self.not_yet();
         self.probes();
         self.references();
+        self.metrics();
     }
 
     fn wrong(&self, key: &str, reason: impl Into<String>) {
@@ -81,7 +82,7 @@ impl Check<'_> {
         self.unique("shape", &names);
     }
 
-    fn unique(&self, array: &str, names: &[&str]) {
+    pub(super) fn unique(&self, array: &str, names: &[&str]) {
         for (index, name) in names.iter().enumerate() {
             if !name.is_empty() && names[..index].contains(name) {
                 // By index: by name the first would be found.
@@ -280,27 +281,32 @@ impl Check<'_> {
         if self.report.has_any(&["reference", "probe"]) {
             return;
         }
-        let components: Vec<String> = self
-            .scene
-            .probes
-            .iter()
-            .flat_map(|p| {
-                let (parts, _) = p.kind.components(self.scene.dimension);
-                parts.iter().map(move |part| format!("{}.{part}", p.name))
-            })
-            .collect();
-        let known = || components.iter().map(String::as_str);
         for (index, reference) in self.scene.references.iter().enumerate() {
-            if components.contains(&reference.probe) {
-                continue;
-            }
-            let key = format!("reference.{index}.probe");
-            let note = self.report.value(&key, self.root.origin_of(&key), "is no component of a probe");
-            match nearest(&reference.probe, known()) {
-                Some(near) => note.help(format!("did you mean `{near}`?")),
-                None if components.is_empty() => note.help("the scene has no probes"),
-                None => note.help(format!("the components are {}", listed(known(), "and"))),
-            }
+            self.component(&format!("reference.{index}.probe"), &reference.probe);
         }
+    }
+
+    /// Notes that the value of a key is no component of a probe, where it is none.
+    pub(super) fn component(&self, key: &str, name: &str) {
+        let of_probe = |p: &Probe| {
+            let (parts, _) = p.kind.components(self.scene.dimension);
+            parts.iter().map(|part| format!("{}.{part}", p.name)).collect::<Vec<_>>()
+        };
+        let components: Vec<String> = self.scene.probes.iter().flat_map(of_probe).collect();
+        if components.iter().any(|component| component == name) {
+            return;
+        }
+        let known = || components.iter().map(String::as_str);
+        let note = self.report.value(key, self.root.origin_of(key), "is no component of a probe");
+        match nearest(name, known()) {
+            Some(near) => note.help(format!("did you mean `{near}`?")),
+            None if components.is_empty() => note.help("the scene has no probes"),
+            None => note.help(format!("the components are {}", listed(known(), "and"))),
+        }
+    }
+
+    /// Whether a key's value comes from an override.
+    pub(super) fn is_overridden(&self, key: &str) -> bool {
+        self.report.is_override(self.root.origin_of(key))
     }
 }

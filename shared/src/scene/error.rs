@@ -190,6 +190,11 @@ impl Report {
         Note { report: self }
     }
 
+    /// Whether something was written in an override.
+    pub(super) fn is_override(&self, origin: Origin) -> bool {
+        self.sources[origin.source].0.is_override
+    }
+
     /// The text of a short value.
     fn snippet(&self, origin: Origin) -> Option<String> {
         let text = self.sources[origin.source].0.text.get(origin.start..origin.end)?;

@@ -5,24 +5,30 @@
 //! file's errors at once. Vectors have three components; a two-dimensional scene leaves the third at zero.
 
 mod check;
+mod check_metric;
 mod document;
 mod effect;
 mod error;
 mod load;
+mod metric;
 mod overrides;
 mod preset;
 mod probe;
 mod read;
+mod read_metric;
 mod read_probe;
 mod read_shape;
 mod resources;
 mod section;
+mod velocity_field;
 
 pub use effect::{Decision, Derived, EffectName, Switch};
 pub use error::{Place, SceneError, SceneErrors};
 pub use load::{load, parse};
+pub use metric::{Metric, MetricKind, MetricReference};
 pub use probe::{Probe, ProbeKind, Reference};
 pub use resources::{BYTES_PER_PARTICLE, memory_available, memory_needed};
+pub use velocity_field::VelocityField;
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -63,6 +69,9 @@ pub struct Scene {
     pub probes: Vec<Probe>,
     /// Curves of the literature drawn beside the probes.
     pub references: Vec<Reference>,
+    /// Numbers that a study compares.
+    #[serde(default)]
+    pub metrics: Vec<Metric>,
     /// Effects that the user forces on or off; those absent are `auto`.
     pub effects: BTreeMap<EffectName, Switch>,
     /// Numerical parameters that are no physics.
@@ -268,6 +277,9 @@ pub struct Shape {
     pub velocity: [f64; 3],
     /// Initial velocity field of a vibrating cantilever, added to `velocity`.
     pub cantilever_mode: Option<CantileverMode>,
+    /// Fluid only: initial velocity field, added to `velocity`.
+    #[serde(default)]
+    pub velocity_field: Option<VelocityField>,
     /// Solid only: particles inside this box keep zero velocity.
     pub clamp: Vec<Block>,
     /// Wall only: the solid may touch this wall.

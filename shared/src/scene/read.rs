@@ -5,7 +5,7 @@ use super::error::{Report, listed, nearest};
 use super::preset::Defaults;
 use super::section::{Range, Section};
 use super::*;
-use super::{read_probe, read_shape};
+use super::{read_metric, read_probe, read_shape};
 use std::path::Path;
 
 /// What a scene's file holds, before the sound speed `auto` is resolved.
@@ -69,6 +69,7 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report) -> Draft {
             let folder = path.parent().unwrap_or(Path::new(""));
             top.tables("reference").into_iter().filter_map(|r| read_probe::reference(r, folder)).collect()
         },
+        metrics: top.tables("metric").into_iter().filter_map(read_metric::metric).collect(),
         effects: effects(&top),
         numerics,
     };

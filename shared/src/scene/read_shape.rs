@@ -26,6 +26,7 @@ pub(super) fn shape(section: Section<'_>, dimension: usize) -> Shape {
         geometry: geometry(&section, dimension, phase),
         velocity: section.vector("velocity", dimension, Some([0.0; 3])),
         cantilever_mode: cantilever_mode(&section),
+        velocity_field: velocity_field(&section, dimension),
         clamp: clamp(&section, dimension),
         contact: section.boolean("contact", false),
         free_slip: section.choice("slip", Some(true), &[("free", true), ("none", false)]).unwrap_or(true),
@@ -36,6 +37,7 @@ pub(super) fn shape(section: Section<'_>, dimension: usize) -> Shape {
     for (key, owner, article) in [
         ("cantilever_mode", Phase::Solid, "a solid"),
         ("clamp", Phase::Solid, "a solid"),
+        ("velocity_field", Phase::Fluid, "a fluid"),
         ("contact", Phase::Wall, "a wall"),
         ("slip", Phase::Wall, "a wall"),
         ("pressure", Phase::Fluid, "a fluid"),
@@ -135,6 +137,42 @@ fn cantilever_mode(section: &Section<'_>) -> Option<CantileverMode> {
     };
     mode.finish();
     Some(read)
+}
+
+fn velocity_field(section: &Section<'_>, dimension: usize) -> Option<VelocityField> {
+    #[derive(Clone, Copy)]
+    enum Kind {
+        TaylorGreen,
+        StandingWave,
+    }
+    const KINDS: [(&str, Kind); 2] =
+        [("taylor-green", Kind::TaylorGreen), ("standing-wave", Kind::StandingWave)];
+    const SPEED: Range = Range::at_least(-1e6).up_to(1e6);
+    const LENGTH: Range = Range::at_least(1e-9).up_to(1e9);
+    let table = section.section("velocity_field");
+    if !table.is_present() {
+        return None;
+    }
+    // Without a kind its other keys mean nothing: they are not looked at.
+    let kind = table.choice("kind", None, &KINDS)?;
+    let origin = table.vector("origin", dimension, None);
+    let half_wave = table.number("half_wave", None, LENGTH);
+    let field = match kind {
+        Kind::TaylorGreen => {
+            VelocityField::TaylorGreen { speed: table.number("speed", None, SPEED), origin, half_wave }
+        }
+        Kind::StandingWave => {
+            let depth = table.number("depth", None, LENGTH);
+            // Steeper waves break, and no wave is higher than its water.
+            let most = (0.2 * half_wave).min(0.5 * depth);
+            let why = "linear theory has no steeper waves: a fifth of half a wave, half the depth";
+            let range = Range::at_least(0.0).up_to(if most > 0.0 { most } else { f64::MAX }).why(why);
+            let amplitude = table.number("amplitude", None, range);
+            VelocityField::StandingWave { amplitude, origin, half_wave, depth }
+        }
+    };
+    table.finish();
+    Some(field)
 }
 
 fn clamp(section: &Section<'_>, dimension: usize) -> Vec<Block> {

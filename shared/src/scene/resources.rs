@@ -88,12 +88,13 @@ pub(super) fn check_clamps(scene: &Scene, root: &Node, report: &Report) {
 }
 
 /// The sound speed that keeps a fluid weakly compressible: ten times the expected speed, which is the larger of the
-/// speed of a fall through the fluid's height, sqrt(2 g H), and the fastest shape's initial speed.
+/// speed of a fall through the fluid's height, sqrt(2 g H), and the fastest shape's initial speed, or field's.
 pub(super) fn sound_speed(scene: &Scene, root: &Node, report: &Report) -> Option<f64> {
     let speed = |v: &[f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
     let g = speed(&scene.gravity);
     let height = if g > 0.0 { fluid_extent(scene, scene.gravity.map(|c| c / g)) } else { 0.0 };
-    let fastest = scene.shapes.iter().map(|s| speed(&s.velocity)).fold(0.0, f64::max);
+    let field = |s: &Shape| s.velocity_field.map_or(0.0, |field| field.fastest(g));
+    let fastest = scene.shapes.iter().map(|s| speed(&s.velocity) + field(s)).fold(0.0, f64::max);
     let expected = (2.0 * g * height).sqrt().max(fastest);
     if expected > 0.0 && (10.0 * expected).is_finite() {
         return Some(10.0 * expected);

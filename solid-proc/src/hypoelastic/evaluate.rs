@@ -95,6 +95,7 @@ impl<const D: usize> Hypoelastic<D> {
                 quadratic: self.material.artificial_viscosity.quadratic,
             };
             walls.act(self.isa, kernel, self.gravity, solid);
+            self.pair_evaluations += walls.pairs() as u64;
         }
     }
 

@@ -1,0 +1,167 @@
+//! `halfstep study` from end to end: a tiny scene, interrupted and resumed, and asked for errors it can and cannot reach.
+
+use halfstep_tests::process::{is_alive, kill};
+use halfstep_tests::run::program;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant, SystemTime};
+
+/// Water that slumps in a tank: a tenth of a second a run.
+const SCENE: &str = r#"
+resolution = 0.025
+end_time = 0.3
+
+[fluid]
+density = 1000.0
+
+[[shape]]
+name = "water"
+phase = "fluid"
+box = { min = [0.0, 0.0], max = [0.2, 0.2] }
+pressure = "hydrostatic"
+
+[[shape]]
+name = "tank"
+phase = "wall"
+tank = { min = [0.0, 0.0], max = [0.6, 0.3], open = ["top"] }
+
+[[probe]]
+name = "front"
+kind = "front"
+
+[[metric]]
+name = "reach"
+probe = "front.x"
+kind = "value"
+at = 0.15
+reference = 0.4
+source = "made up"
+
+[[metric]]
+name = "late"
+probe = "front.x"
+kind = "mean"
+to = 0.3
+"#;
+
+struct Study {
+    dir: tempfile::TempDir,
+}
+
+impl Study {
+    fn new() -> Self {
+        let dir = tempfile::tempdir().unwrap();
+        std::fs::write(dir.path().join("pool.toml"), SCENE).unwrap();
+        Self { dir }
+    }
+
+    fn out(&self) -> PathBuf {
+        self.dir.path().join("study")
+    }
+
+    fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(program());
+        command
+            .arg("study")
+            .arg(self.dir.path().join("pool.toml"))
+            .arg("--quiet")
+            .arg("--out")
+            .arg(self.out());
+        command.args(arguments).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        command
+    }
+
+    fn run(&self, arguments: &[&str]) -> Output {
+        self.command(arguments).output().unwrap()
+    }
+
+    /// Folders of finished runs with the time of their report.
+    fn done(&self) -> Vec<(PathBuf, SystemTime)> {
+        let Ok(runs) = self.out().join("runs").read_dir() else { return Vec::new() };
+        let folders = runs.map(|entry| entry.unwrap().path()).filter(|dir| dir.join("done.json").exists());
+        let time = |dir: &Path| dir.join("run.json").metadata().unwrap().modified().unwrap();
+        let mut found: Vec<_> = folders.map(|dir| (dir.clone(), time(&dir))).collect();
+        found.sort();
+        found
+    }
+
+    fn json(&self) -> serde_json::Value {
+        serde_json::from_slice(&std::fs::read(self.out().join("study.json")).unwrap()).unwrap()
+    }
+}
+
+const LADDER: [&str; 4] = ["--vary", "resolution=0.025,0.02,0.0125,0.01", "--vary", "numerics.cfl=0.4"];
+
+#[test]
+fn a_study_is_interrupted_and_resumed() {
+    let study = Study::new();
+    let child = study.command(&LADDER).spawn().unwrap();
+    let start = Instant::now();
+    while study.done().is_empty() {
+        assert!(start.elapsed() < Duration::from_secs(60), "no run finished");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    kill(child.id(), libc::SIGINT);
+    let pid = child.id();
+    let stopped = child.wait_with_output().unwrap();
+    assert_eq!(stopped.status.code(), Some(130), "{stopped:?}");
+    assert!(!is_alive(pid));
+    let first = study.done();
+    assert!((1..5).contains(&first.len()), "{first:?}");
+    assert!(!study.out().join("study.json").exists(), "nothing is concluded from a part");
+
+    let resumed = study.run(&LADDER);
+    assert_eq!(resumed.status.code(), Some(0), "{resumed:?}");
+    let all = study.done();
+    assert_eq!(all.len(), 5);
+    assert!(first.iter().all(|run| all.contains(run)), "finished runs are not repeated");
+
+    let json = study.json();
+    let rows = json["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 5);
+    let work: Vec<u64> = rows.iter().map(|row| row["pair_evaluations"].as_u64().unwrap()).collect();
+    assert!(work[0] < work[1] && work[1] < work[2] && work[2] < work[3] && work[4] < work[0], "{work:?}");
+    let error = json["metrics"][0]["errors"][0]["reference"].as_f64().unwrap();
+    let value = rows[0]["values"][0].as_f64().unwrap();
+    assert!((error - (value / 0.4 - 1.0).abs()).abs() < 1e-12 && value > 0.25, "{error} {value}");
+    assert!(json["metrics"][1]["reference"].is_null());
+    let table = std::fs::read_to_string(study.out().join("study.csv")).unwrap();
+    assert_eq!(table.lines().count(), 1 + 2 * 5);
+    for picture in ["work-precision.png", "convergence.png", "time-share.png"] {
+        assert!(study.out().join(picture).metadata().unwrap().len() > 5000, "{picture}");
+    }
+    let text = String::from_utf8(resumed.stdout).unwrap();
+    assert!(
+        text.contains("reach: reference 0.4000 m, made up") && text.contains("numerics.cfl=0.4"),
+        "{text}"
+    );
+
+    // With all runs there, goals are a matter of reading: one that a run has reached, and one that nothing can.
+    let worst =
+        json["metrics"][0]["errors"].as_array().unwrap().iter().filter_map(|e| e["reference"].as_f64());
+    let enough = format!("{}", worst.fold(0.0, f64::max));
+    let with = |more: &[&'static str]| [&LADDER[..], more].concat();
+    let reached = study.run(&[&LADDER[..], &["--error", &enough]].concat());
+    assert_eq!(reached.status.code(), Some(0), "{reached:?}");
+    assert!(String::from_utf8_lossy(&reached.stdout).contains("settings that reach it: "), "{reached:?}");
+    assert_eq!(study.done(), all);
+    let beyond = study.run(&with(&["--budget", "1e-6s"]));
+    assert_eq!(beyond.status.code(), Some(3), "{beyond:?}");
+    assert!(String::from_utf8_lossy(&beyond.stderr).starts_with("not reached: "), "{beyond:?}");
+}
+
+#[test]
+fn what_cannot_be_studied_is_said_before_anything_runs() {
+    let study = Study::new();
+    for (arguments, message) in [
+        (&["--vary", "numerics.cfl=0.25,7"][..], "must be greater than 0 and at most 1"),
+        (&["--until", "0.1"], "ends before its metrics"),
+        (&["--metric", "speed", "--error", "1%"], "the scene has no such metric; it has reach, late"),
+    ] {
+        let refused = study.run(arguments);
+        assert_eq!(refused.status.code(), Some(1), "{refused:?}");
+        let said = String::from_utf8_lossy(&refused.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(said.contains(message), "{said}");
+        assert!(study.done().is_empty());
+    }
+}
