@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what building and testing halfstep needs and this machine lacks: a C compiler, make, pkg-config, HDF5's
-# headers (1.10.7 or later) and Python's venv module (only the tests use Python). Does nothing where all of it is there.
+# headers (1.10.7 or later), and for the tests alone Python's venv module and valgrind. Does nothing where all of it is there.
 # Works on Debian and its relatives, as root or with sudo; elsewhere it says what to install.
 # A HDF5 of your own is used where HDF5_DIR names its folder.
 set -euo pipefail
@@ -14,6 +14,7 @@ missing() {
     have make || echo make
     have pkg-config || echo pkg-config
     [ -n "${HDF5_DIR:-}" ] || pkg-config --atleast-version=1.10.7 hdf5 2>/dev/null || echo libhdf5-dev
+    have valgrind || echo valgrind
     python3 -c 'import ensurepip, venv' 2>/dev/null || printf '%s\n' python3 python3-venv
 }
 

@@ -91,7 +91,7 @@ mod tests {
         let scene = scene("auto");
         assert!(advised(&scene, 1e-5, 1e-5, &DIVERGED).contains("numerics.solid_cfl (now 0.6)"));
         let fluid = Diverged { role: RoleName::Fluid, ..DIVERGED };
-        assert!(advised(&scene, 1e-5, 1e-5, &fluid).contains("numerics.cfl (now 0.25)"));
+        assert!(advised(&scene, 1e-5, 1e-5, &fluid).contains("numerics.cfl (now 0.4)"));
         let dense = Diverged { quantity: Quantity::Density, ..DIVERGED };
         assert!(advised(&scene, 1e-5, 1e-5, &dense).contains("solid.youngs_modulus"));
     }

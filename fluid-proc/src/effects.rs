@@ -102,13 +102,14 @@ pub fn decide(scene: &Scene) -> Vec<Decision> {
 }
 
 /// A pass over whatever composition it is given.
-pub(crate) trait Pass<const D: usize> {
+pub trait Pass<const D: usize> {
+    /// Runs it.
     fn run<E: PairEffect<D>>(self, effects: E);
 }
 
 impl<'a, const D: usize> Effects<'a, D> {
     /// Runs a pass compiled for exactly these effects, or the complete law. Returns the composition's name.
-    pub(crate) fn composition(self, pass: impl Pass<D>) -> &'static str {
+    pub fn composition(self, pass: impl Pass<D>) -> &'static str {
         let Self { artificial_viscosity: damping, density_diffusion: diffusion, viscosity, .. } = self;
         match (self.on(), damping, diffusion, viscosity) {
             (1, Some(damping), None, None) => {

@@ -162,6 +162,7 @@ impl<const D: usize> Fluid<D> {
             }
         }
         let reach = 2.0 * self.smoothing_length + self.skin;
+        // Rows two spacings high: four neighbours in a row are a square.
         self.rows.sort(&self.columns.now.position, &self.columns.id, 2.0 * self.resolution, low, high);
         self.columns.permute(&mut self.rows, &self.state);
         let x = &self.columns.now.position;

@@ -114,11 +114,17 @@ impl<const D: usize> Coupling<D> {
             }
         }
         self.slots.sort_unstable_by_key(|&s| fluid.id[s as usize]);
+        // Room for a ribbon that grows, so that later choices do not allocate.
+        let used = self.slots.len();
+        if self.slots.capacity() < used + used / 8 {
+            self.slots.reserve_exact(used / 2 + 256);
+        }
     }
 
     /// The record of the present state.
     pub fn record(&self, fluid: &Columns<D>, out: &mut Vec<StateRecord>) {
         out.clear();
+        out.reserve_exact(self.slots.capacity());
         for &slot in &self.slots {
             let s = slot as usize;
             let mut r = StateRecord {

@@ -1,5 +1,6 @@
 //! Monaghan's artificial viscosity between two particles of the solid, or of solid and wall.
 
+use halfstep_shared::artificial_viscosity::damping;
 use halfstep_shared::lane::{Arch, Lane};
 
 /// Pi_ij, Kayaki's eqs. (23) and (24).
@@ -12,6 +13,5 @@ pub(crate) fn artificial_viscosity<A: Arch>(
     r2: Lane,
     density_sum: Lane,
 ) -> Lane {
-    let theta = approach.min(Lane::ZERO) * Lane::splat(h) / (r2 + Lane::splat(0.01 * h * h));
-    theta * A::mul_add(Lane::splat(quadratic), theta, Lane::splat(-linear)) * Lane::splat(2.0) / density_sum
+    damping::<A>(h, Lane::splat(linear), Lane::splat(quadratic), approach, r2, density_sum)
 }

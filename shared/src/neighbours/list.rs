@@ -29,8 +29,9 @@ impl Chunk {
     /// Makes room for the next lists to be somewhat longer without allocating.
     fn keep_room(&mut self) {
         let used = self.index.len();
-        if self.index.capacity() < used + used / 16 {
-            self.index.reserve_exact(used / 8 + 64);
+        if self.index.capacity() < used + used / 32 {
+            // Short lists, those of walls, change the most.
+            self.index.reserve_exact(if used < 16 * CHUNK_CLUSTERS { 2 * used + 1024 } else { used / 6 });
         }
     }
 
@@ -54,7 +55,10 @@ impl ClusterList {
         let clusters = self.clusters;
         let used = clusters.div_ceil(CHUNK_CLUSTERS);
         // Chunks that are not needed now keep their memory for when they are.
-        self.chunks.resize_with(used.max(self.chunks.len()), Chunk::default);
+        // One more stands ready: spreading particles need more padding.
+        self.chunks.resize_with((used + 1).max(self.chunks.len()), Chunk::default);
+        self.chunks[used].start.reserve(CHUNK_CLUSTERS + 1);
+        self.chunks[used].keep_room();
         self.chunks[used..].iter_mut().for_each(Chunk::clear);
         self.chunks[..used].par_iter_mut().enumerate().for_each(|(c, chunk)| {
             let first = c * CHUNK_CLUSTERS;

@@ -58,6 +58,31 @@ impl<const D: usize> State<D> {
     }
 }
 
+/// What the pair pass reads of one neighbour, side by side.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Source<const D: usize> {
+    /// Position, m.
+    pub position: [f64; D],
+    /// Velocity, m/s.
+    pub velocity: [f64; D],
+    /// Density rho, kg/m³.
+    pub density: f64,
+    /// m / rho, m³ (2D: m²).
+    pub volume: f64,
+    /// sigma / rho².
+    pub stress_term: [[f64; D]; D],
+}
+
+impl<const D: usize> Source<D> {
+    pub(super) const ZERO: Self = Self {
+        position: [0.0; D],
+        velocity: [0.0; D],
+        density: 0.0,
+        volume: 0.0,
+        stress_term: [[0.0; D]; D],
+    };
+}
+
 /// Rates of a [`State`].
 #[derive(Clone, Debug)]
 pub(super) struct Rates<const D: usize> {

@@ -1,11 +1,11 @@
 //! Rates of a state: equation of state, the pass, walls, stress rate.
 
 use super::artificial_stress;
+use super::columns::Source;
 use super::gradient::renormalise;
 use super::model::Hypoelastic;
 use super::rates::{ArtificialStress, Moment, Plain, Renormalised, SolidLaw, TensileCorrection};
 use super::stress_rate::jaumann;
-use crate::columns::tensors;
 use crate::model::Load;
 use crate::wall::Touching;
 use halfstep_shared::kernel::Kernel;
@@ -28,23 +28,20 @@ impl<const D: usize> Hypoelastic<D> {
             let rho = self.now.density[slot];
             let p = k * (rho / rho0 - 1.0);
             self.pressure[slot] = p;
-            self.volume[slot] = self.mass / rho;
             let s = self.stress_at(slot);
             let sigma: [[f64; D]; D] =
                 std::array::from_fn(|a| std::array::from_fn(|b| if a == b { s[a][b] - p } else { s[a][b] }));
             let inverse = 1.0 / (rho * rho);
-            for a in 0..D {
-                for b in a..D {
-                    self.stress_term[a][b][slot] = sigma[a][b] * inverse;
-                }
-            }
+            self.sources[slot] = Source {
+                position: std::array::from_fn(|d| self.now.position[d][slot]),
+                velocity: std::array::from_fn(|d| self.now.velocity[d][slot]),
+                density: rho,
+                volume: self.mass / rho,
+                stress_term: sigma.map(|row| row.map(|s| s * inverse)),
+            };
             if self.artificial_stress.is_some() {
-                let r = artificial_stress::tensor(self.material.artificial_stress.strength, sigma, rho);
-                for a in 0..D {
-                    for b in a..D {
-                        self.artificial[a][b][slot] = r[a][b];
-                    }
-                }
+                let strength = self.material.artificial_stress.strength;
+                self.artificial[slot] = artificial_stress::tensor(strength, sigma, rho);
             }
         }
     }
@@ -57,8 +54,7 @@ impl<const D: usize> Hypoelastic<D> {
             correction,
             gradient: PhantomData::<M>,
             state: &self.now,
-            stress_term: &self.stress_term,
-            volume: &self.volume,
+            sources: &self.sources,
             mass: self.mass,
             linear: self.material.artificial_viscosity.linear * self.material.sound_speed(),
             quadratic: self.material.artificial_viscosity.quadratic,
@@ -69,7 +65,7 @@ impl<const D: usize> Hypoelastic<D> {
     }
 
     fn sums<K: Kernel<D>>(&mut self, kernel: K) {
-        let artificial = std::mem::replace(&mut self.artificial, tensors(0));
+        let artificial = std::mem::take(&mut self.artificial);
         let correction = self.artificial_stress.map(|exponent| ArtificialStress {
             tensors: &artificial,
             inverse_w0: 1.0 / kernel.at(self.resolution),

@@ -1,8 +1,7 @@
 //! The model behind [`SolidModel`]: time integration and neighbour lists.
 
-use super::columns::{Rates, State};
+use super::columns::{Rates, Source, State};
 use super::rates::SolidSum;
-use crate::columns::{Tensors, tensors};
 use crate::effects::takes_part;
 use crate::model::{Load, OutOfBounds, SolidModel};
 use crate::surface::surface_set;
@@ -51,9 +50,8 @@ pub struct Hypoelastic<const D: usize> {
     stage_start: Vec<[f64; D]>,
     courant: f64,
     pub(super) pressure: Vec<f64>,
-    pub(super) volume: Vec<f64>,
-    pub(super) stress_term: Tensors<D>,
-    pub(super) artificial: Tensors<D>,
+    pub(super) sources: Vec<Source<D>>,
+    pub(super) artificial: Vec<[[f64; D]; D]>,
     reference: [Vec<f64>; D],
     rows: Rows<D>,
     pub(super) list: ClusterList,
@@ -106,9 +104,8 @@ impl<const D: usize> Hypoelastic<D> {
             now,
             rates: Rates::new(),
             pressure: Vec::new(),
-            volume: Vec::new(),
-            stress_term: tensors(0),
-            artificial: tensors(0),
+            sources: Vec::new(),
+            artificial: Vec::new(),
             rows: Rows::default(),
             list: ClusterList::default(),
             sums: Vec::new(),
@@ -122,7 +119,8 @@ impl<const D: usize> Hypoelastic<D> {
 
     pub(super) fn sort(&mut self) {
         let reach = 2.0 * self.smoothing_length + self.skin;
-        self.rows.sort(&self.now.position, &self.id, reach, self.domain.0, self.domain.1);
+        // Rows two spacings high: four neighbours in a row are a square.
+        self.rows.sort(&self.now.position, &self.id, 2.0 * self.resolution, self.domain.0, self.domain.1);
         self.now.permute(&mut self.rows);
         self.at_n.permute(&mut self.rows);
         self.step_start.permute(&mut self.rows);
@@ -138,15 +136,12 @@ impl<const D: usize> Hypoelastic<D> {
         let slots = self.id.len();
         for d in 0..D {
             self.reference[d].clone_from(&self.now.position[d]);
-            for b in d..D {
-                self.stress_term[d][b].resize(slots, 0.0);
-                if self.artificial_stress.is_some() {
-                    self.artificial[d][b].resize(slots, 0.0);
-                }
-            }
         }
         self.pressure.resize(slots, 0.0);
-        self.volume.resize(slots, 0.0);
+        self.sources.resize(slots, Source::ZERO);
+        if self.artificial_stress.is_some() {
+            self.artificial.resize(slots, [[0.0; D]; D]);
+        }
         self.rates.resize(slots);
         self.list.build(&self.now.position, &self.now.position, &self.rows, reach);
         self.sums.resize(self.list.clusters(), SolidSum::default());
@@ -310,7 +305,7 @@ impl<const D: usize> SolidModel<D> for Hypoelastic<D> {
                 if D == 2 {
                     norm += (t[0][0] + t[1][1]).powi(2);
                 }
-                self.volume[s] * (self.pressure[s].powi(2) / (2.0 * k) + norm / (4.0 * g))
+                self.sources[s].volume * (self.pressure[s].powi(2) / (2.0 * k) + norm / (4.0 * g))
             })
             .sum()
     }

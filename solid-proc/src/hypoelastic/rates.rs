@@ -3,11 +3,10 @@
 //!   dv_a/dx_b = sum_j V_j (v_j - v_i)_a F x_ij,b                                        (and D rho / Dt = -rho tr)
 //!   D v_i / Dt = sum_j m_j [sigma_i/rho_i² + sigma_j/rho_j² - Pi_ij I + (R_i + R_j) f^n] . grad W    (eqs. 22 to 26)
 
-use super::columns::State;
+use super::columns::{Source, State};
 use crate::artificial_viscosity::artificial_viscosity;
-use crate::columns::Tensors;
 use halfstep_shared::kernel::Kernel;
-use halfstep_shared::lane::{Arch, Lane};
+use halfstep_shared::lane::{Arch, LANES, Lane};
 use halfstep_shared::pair::{PairLaw, distance, dot};
 use std::marker::PhantomData;
 
@@ -31,34 +30,47 @@ impl<const D: usize> TensileCorrection<D> for () {
 /// The artificial stress with its tensors R.
 #[derive(Clone, Copy)]
 pub(super) struct ArtificialStress<'a, const D: usize> {
-    pub tensors: &'a Tensors<D>,
+    pub tensors: &'a [[[f64; D]; D]],
     /// 1 / W(d0).
     pub inverse_w0: f64,
     pub exponent: u32,
 }
 
+/// A tensor of four consecutive slots.
 #[inline(always)]
-pub(super) fn load<const D: usize>(t: &Tensors<D>, slot: usize) -> [[Lane; D]; D] {
-    std::array::from_fn(|a| std::array::from_fn(|b| Lane::load(&t[a.min(b)][a.max(b)], slot)))
+fn load<const D: usize>(of: impl Fn(usize) -> [[f64; D]; D], slot: usize) -> [[Lane; D]; D] {
+    let four: [_; LANES] = std::array::from_fn(|k| of(slot + k));
+    std::array::from_fn(|a| std::array::from_fn(|b| Lane(std::array::from_fn(|k| four[k][a][b]))))
+}
+
+/// The n-th power, n >= 1. The usual 4 takes no loop.
+#[inline(always)]
+fn power(x: Lane, n: u32) -> Lane {
+    if n == 4 {
+        let square = x * x;
+        return square * square;
+    }
+    let mut power = x;
+    for _ in 1..n {
+        power = power * x;
+    }
+    power
 }
 
 impl<const D: usize> TensileCorrection<D> for ArtificialStress<'_, D> {
     type Own = [[Lane; D]; D];
     #[inline(always)]
     fn own(&self, slot: usize) -> Self::Own {
-        load(self.tensors, slot)
+        load(|s| self.tensors[s], slot)
     }
     #[inline(always)]
     fn add<A: Arch>(&self, own: &Self::Own, j: usize, w: impl Fn() -> Lane, bracket: &mut [[Lane; D]; D]) {
         let ratio = w() * Lane::splat(self.inverse_w0);
-        let mut power = ratio;
-        for _ in 1..self.exponent {
-            power = power * ratio;
-        }
+        let power = power(ratio, self.exponent);
+        let other = &self.tensors[j];
         for a in 0..D {
             for b in 0..D {
-                let rj = Lane::splat(self.tensors[a.min(b)][a.max(b)][j]);
-                bracket[a][b] = A::mul_add(own[a][b] + rj, power, bracket[a][b]);
+                bracket[a][b] = A::mul_add(own[a][b] + Lane::splat(other[a][b]), power, bracket[a][b]);
             }
         }
     }
@@ -102,10 +114,8 @@ pub(super) struct SolidLaw<'a, K, T, M, const D: usize> {
     /// Whether the moment matrix is summed.
     pub gradient: PhantomData<M>,
     pub state: &'a State<D>,
-    /// sigma / rho².
-    pub stress_term: &'a Tensors<D>,
-    /// m / rho.
-    pub volume: &'a [f64],
+    /// The same as neighbours read it.
+    pub sources: &'a [Source<D>],
     pub mass: f64,
     /// A c_s.
     pub linear: f64,
@@ -136,32 +146,33 @@ impl<K: Kernel<D>, T: TensileCorrection<D>, M: Moment, const D: usize> PairLaw<D
         Target {
             velocity: std::array::from_fn(|d| Lane::load(&self.state.velocity[d], slot)),
             density: Lane::load(&self.state.density, slot),
-            stress_term: load(self.stress_term, slot),
+            stress_term: load(|s| self.sources[s].stress_term, slot),
             own: self.correction.own(slot),
         }
     }
     #[inline(always)]
     fn source_position(&self, j: usize) -> [f64; D] {
-        std::array::from_fn(|d| self.state.position[d][j])
+        self.sources[j].position
     }
     #[inline(always)]
     fn add<A: Arch>(&self, i: &Self::Target, j: usize, dx: [Lane; D], r2: Lane, sum: &mut SolidSum<D>) {
+        let source = &self.sources[j];
         let h = self.kernel.smoothing_length();
         let r = distance(r2, h);
         let f = self.kernel.gradient_over_r::<A>(r);
-        let dv: [Lane; D] = std::array::from_fn(|d| i.velocity[d] - Lane::splat(self.state.velocity[d][j]));
+        let dv: [Lane; D] = std::array::from_fn(|d| i.velocity[d] - Lane::splat(source.velocity[d]));
         let approach = dot::<D, A>(dv, dx);
-        let density_sum = i.density + Lane::splat(self.state.density[j]);
+        let density_sum = i.density + Lane::splat(source.density);
         let pi = artificial_viscosity::<A>(h, self.linear, self.quadratic, approach, r2, density_sum);
         let mut bracket: [[Lane; D]; D] = std::array::from_fn(|a| {
             std::array::from_fn(|b| {
-                let t = i.stress_term[a][b] + Lane::splat(self.stress_term[a.min(b)][a.max(b)][j]);
+                let t = i.stress_term[a][b] + Lane::splat(source.stress_term[a][b]);
                 if a == b { t - pi } else { t }
             })
         });
         self.correction.add::<A>(&i.own, j, || self.kernel.value::<A>(r), &mut bracket);
         let mf = Lane::splat(self.mass) * f;
-        let vf = Lane::splat(self.volume[j]) * f;
+        let vf = Lane::splat(source.volume) * f;
         for a in 0..D {
             sum.acceleration[a] = A::mul_add(mf, dot::<D, A>(bracket[a], dx), sum.acceleration[a]);
             let row = -(vf * dv[a]);

@@ -7,10 +7,10 @@ use halfstep_shared::scene::{self, Scene};
 use std::path::Path;
 
 /// Settings of the fluid step that the targets are stated for: pressure, artificial viscosity, simple diffusion.
-pub const LEAN: &[&str] = &["fluid.density_diffusion=simple", "numerics.kernel=wendland-c2"];
+pub(crate) const LEAN: &[&str] = &["fluid.density_diffusion=simple", "numerics.kernel=wendland-c2"];
 
 /// Water 1.4 times as wide as high, at rest in a tank, with about `particles` particles.
-pub fn tank(particles: usize, overrides: &[&str]) -> Scene {
+pub(crate) fn tank(particles: usize, overrides: &[&str]) -> Scene {
     let high = (particles as f64 / 1.4).sqrt().round();
     let (width, height) = (1.4 * high * 1e-3, high * 1e-3);
     parse(
@@ -27,7 +27,7 @@ pub fn tank(particles: usize, overrides: &[&str]) -> Scene {
 }
 
 /// The same water, 100 wide and 140 high, beside an empty half of its tank: it collapses and splashes up the far wall.
-pub fn collapse(overrides: &[&str]) -> Scene {
+pub(crate) fn collapse(overrides: &[&str]) -> Scene {
     parse(
         "resolution = 0.001\nend_time = 10.0\ngravity = [0.0, -9.81]\n[fluid]\ndensity = 1000.0\n\
          [[shape]]\nname = \"water\"\nphase = \"fluid\"\npressure = \"hydrostatic\"\n\
@@ -44,22 +44,22 @@ fn parse(text: &str, overrides: &[&str]) -> Scene {
 }
 
 /// A fluid on its way.
-pub struct Running {
-    pub fluid: Fluid<2>,
+pub(crate) struct Running {
+    pub(crate) fluid: Fluid<2>,
     step: u64,
 }
 
 impl Running {
-    pub fn new(scene: &Scene, isa: Isa) -> Self {
+    pub(crate) fn new(scene: &Scene, isa: Isa) -> Self {
         Self { fluid: Fluid::new(scene, isa).expect("a fluid"), step: 0 }
     }
 
-    pub fn particles(&self) -> f64 {
+    pub(crate) fn particles(&self) -> f64 {
         self.fluid.particles() as f64
     }
 
     /// One step of two stages; returns its length, s.
-    pub fn step(&mut self) -> f64 {
+    pub(crate) fn step(&mut self) -> f64 {
         let dt = self.fluid.dt_limit();
         for stage in 0..2 {
             self.fluid.publish(&[], &mut Vec::new());
@@ -71,7 +71,7 @@ impl Running {
     }
 
     /// Steps until `time`, s.
-    pub fn run_until(&mut self, time: f64) {
+    pub(crate) fn run_until(&mut self, time: f64) {
         let mut t = 0.0;
         while t < time {
             t += self.step();
@@ -80,7 +80,7 @@ impl Running {
 }
 
 /// Seconds of each piece of work, the pieces in turn, `rounds` times: the medians.
-pub fn medians(rounds: usize, work: &mut [Box<dyn FnMut() + '_>]) -> Vec<f64> {
+pub(crate) fn medians(rounds: usize, work: &mut [Box<dyn FnMut() + '_>]) -> Vec<f64> {
     let mut seconds = vec![Vec::with_capacity(rounds); work.len()];
     for _ in 0..rounds {
         for (piece, seconds) in work.iter_mut().zip(&mut seconds) {
