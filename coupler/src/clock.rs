@@ -87,6 +87,11 @@ impl Clock {
         }
     }
 
+    /// Time of the state at n, s.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
     /// Looks at the state at n: what to do with it and how far to go next, given the limits of the phases.
     ///
     /// # Errors

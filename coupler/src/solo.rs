@@ -44,6 +44,7 @@ pub fn run_solo(
     loop {
         let start = Instant::now();
         let stopped = stop.load(Ordering::Relaxed);
+        role.set_time(clock.time());
         role.publish(&[], &mut scratch);
         let tick = clock.tick(&[Limit { role: role.name(), dt: role.dt_limit() }], stopped)?;
         let n = role.probes(&mut probes);
@@ -76,6 +77,7 @@ pub fn run_solo(
         };
         for stage in 0..2 {
             if stage == 1 {
+                role.set_time(tick.time + 0.5 * dt);
                 role.publish(&[], &mut scratch);
             }
             let start = Instant::now();

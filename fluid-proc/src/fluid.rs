@@ -6,6 +6,7 @@ use crate::density_diffusion::Strength;
 use crate::effects::{self};
 use crate::interface::Coupling;
 use crate::midpoint::{self, Extremes, Stage};
+use crate::moving_wall::motions;
 use crate::rates::RateSum;
 use crate::time_step::Limits;
 use crate::viscosity::{StressTerm, VelocityGradient};
@@ -88,8 +89,9 @@ impl<const D: usize> Fluid<D> {
         let plain = fluid.artificial_viscosity.linear;
         let guarded = if wall_guard::decide(scene).on { plain.max(GUARD) } else { plain };
         let damping = Damping { free_slip: guarded * fluid.sound_speed, plain: plain * fluid.sound_speed };
-        let walls = (!layout.wall.is_empty())
-            .then(|| Walls::new(&layout.wall, &state, volume, 2.0 * h + skin, non_negative, damping));
+        let walls = (!layout.wall.is_empty()).then(|| {
+            Walls::new(&layout.wall, &state, volume, 2.0 * h + skin, non_negative, damping, &motions(scene))
+        });
         let domain = geometry::domain(scene);
         let coupled = Parameters::new(scene, isa);
         Some(
@@ -167,7 +169,10 @@ impl<const D: usize> Fluid<D> {
         self.columns.permute(&mut self.rows, &self.state);
         let x = &self.columns.now.position;
         self.fluid_list.build(x, x, &self.rows, reach);
-        if let Some(walls) = &self.walls {
+        if let Some(walls) = &mut self.walls {
+            if walls.displacement() > 0.0 {
+                walls.sort();
+            }
             self.wall_list.build(x, &walls.shown.position, &walls.rows, reach);
             self.list_of_walls.build(&walls.shown.position, x, &self.rows, reach);
             self.extrapolations.resize(self.list_of_walls.clusters(), WallSum::default());
@@ -243,9 +248,18 @@ impl<const D: usize> Role for Fluid<D> {
         self.limits.time_step(self.largest_speed, self.largest_acceleration)
     }
 
+    fn set_time(&mut self, time: f64) {
+        if let Some(walls) = &mut self.walls {
+            walls.set_time(time);
+        }
+    }
+
     fn publish(&mut self, peer: &[StateRecord], out: &mut Vec<StateRecord>) -> u64 {
         out.clear();
-        if 2.0 * self.displacement > self.skin || self.coupling.as_ref().is_some_and(|c| c.is_stale(peer)) {
+        let walls = self.walls.as_ref().map_or(0.0, Walls::displacement);
+        if self.displacement + self.displacement.max(walls) > self.skin
+            || self.coupling.as_ref().is_some_and(|c| c.is_stale(peer))
+        {
             self.sort();
         }
         let Some(coupling) = &mut self.coupling else { return 0 };

@@ -16,6 +16,7 @@ pub mod measure;
 mod memory;
 pub mod midpoint;
 pub mod momentum;
+pub mod moving_wall;
 mod passes;
 pub mod rates;
 #[cfg(test)]

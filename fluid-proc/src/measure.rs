@@ -116,7 +116,7 @@ impl<const D: usize> Fluid<D> {
         for s in (0..walls.slots()).filter(|&s| walls.id[s] != PADDING) {
             frame.push(FramePoint {
                 position: wide(std::array::from_fn::<_, D, _>(|d| walls.shown.position[d][s])),
-                velocity: [0.0; 3],
+                velocity: wide(std::array::from_fn::<_, D, _>(|d| walls.own_velocity[d][s])),
                 density: walls.shown.density[s],
                 pressure: walls.pressure[s],
                 stress: [0.0; 6],

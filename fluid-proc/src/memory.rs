@@ -39,6 +39,8 @@ impl<const D: usize> Walls<D> {
             + of_each(&self.normal)
             + of(&self.reverse_all)
             + of(&self.damping)
+            + of(&self.dry)
+            + self.moving.as_ref().map_or(0, |m| of(&m.shape) + of_each(&m.initial) + of_each(&m.surface))
             + self.rows.bytes()
     }
 }

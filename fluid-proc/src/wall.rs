@@ -4,15 +4,18 @@
 //!   v~ = sum v_f W / sum W,   p_w = sum [ p_f + rho_f g . (x_w - x_f) ] W / sum W;
 //! the velocity shown to the fluid is 2 u_w - v~ along the normal and v~ (free slip) or 2 u_w - v~ (no slip) along the
 //! wall, u_w its own velocity; in a corner all components are reversed. The density shown is the equation of
-//! state's at p_w, the mass rho0 V. Without fluid around: p_w = 0, rho0, u_w.
+//! state's at p_w, the mass rho0 V. Without fluid around: p_w = 0, rho0, u_w. Of a wall that moves by prescription, g is
+//! less its own acceleration.
 
 use crate::columns::{Columns, Shown, Source, Vectors, vectors};
+use crate::moving_wall::Moving;
 use halfstep_shared::extrapolation::{Extrapolation, ExtrapolationSum};
 use halfstep_shared::geometry::WallPoint;
 use halfstep_shared::kernel::Kernel;
 use halfstep_shared::lane::{Arch, LANES, Lane};
 use halfstep_shared::neighbours::Rows;
 use halfstep_shared::pair::PairLaw;
+use halfstep_shared::scene::Motion;
 use halfstep_shared::state_equation::StateEquation;
 
 /// A c0 of the artificial viscosity toward the fluid, m/s.
@@ -24,7 +27,7 @@ pub struct Damping {
     pub plain: f64,
 }
 
-/// The wall particles, sorted once.
+/// The wall particles, sorted once, or with the fluid where some of them move.
 #[derive(Clone, Debug)]
 pub struct Walls<const D: usize> {
     /// Wall particle number of a slot, or padding.
@@ -42,6 +45,10 @@ pub struct Walls<const D: usize> {
     pub damping: Vec<f64>,
     /// Order of the slots.
     pub rows: Rows<D>,
+    /// Clusters that show nothing already.
+    pub(crate) dry: Vec<bool>,
+    pub(crate) moving: Option<Moving<D>>,
+    height: f64,
     non_negative: bool,
 }
 
@@ -54,6 +61,7 @@ impl<const D: usize> Walls<D> {
         height: f64,
         non_negative: bool,
         damping: Damping,
+        motions: &[Option<Motion>],
     ) -> Self {
         let n = points.len();
         let mut walls = Self {
@@ -63,8 +71,11 @@ impl<const D: usize> Walls<D> {
             own_velocity: vectors(n),
             normal: vectors(n),
             reverse_all: vec![0.0; n],
-            damping: Vec::new(),
+            damping: vec![0.0; n],
             rows: Rows::default(),
+            dry: Vec::new(),
+            moving: Moving::new(points, motions),
+            height,
             non_negative,
         };
         for (i, p) in points.iter().enumerate() {
@@ -73,26 +84,51 @@ impl<const D: usize> Walls<D> {
                 walls.own_velocity[d][i] = p.velocity[d];
                 walls.normal[d][i] = p.normal[d];
             }
-            walls.reverse_all[i] = if p.corner || !p.free_slip { 1.0 } else { 0.0 };
+            let reversed = p.corner || !p.free_slip;
+            walls.reverse_all[i] = f64::from(u8::from(reversed));
+            walls.damping[i] = if reversed { damping.plain } else { damping.free_slip };
         }
-        let (low, high) = bounds(&walls.shown.position);
-        walls.rows.sort(&walls.shown.position, &walls.id, height, low, high);
-        for d in 0..D {
-            walls.rows.permute(&mut walls.shown.position[d]);
-            walls.rows.permute(&mut walls.own_velocity[d]);
-            walls.rows.permute(&mut walls.normal[d]);
-            walls.shown.velocity[d].clone_from(&walls.own_velocity[d]);
-        }
-        walls.rows.permute(&mut walls.reverse_all);
-        walls.rows.permute_ids(&mut walls.id);
-        let of = |&reversed: &f64| if reversed > 0.0 { damping.plain } else { damping.free_slip };
-        walls.damping = walls.reverse_all.iter().map(of).collect();
-        let slots = walls.rows.slots();
-        walls.shown.density = vec![state.density; slots];
-        walls.shown.sources = vec![Source::ZERO; slots];
-        walls.pressure = vec![0.0; slots];
-        (0..slots).for_each(|slot| walls.show_nothing(slot, state));
+        walls.sort();
+        (0..walls.slots()).for_each(|slot| walls.show_nothing(slot, state));
         walls
+    }
+
+    /// Sorts the wall particles by where they are.
+    pub fn sort(&mut self) {
+        let (low, high) = bounds(&self.shown.position);
+        self.rows.sort(&self.shown.position, &self.id, self.height, low, high);
+        for d in 0..D {
+            self.rows.permute(&mut self.shown.position[d]);
+            self.rows.permute(&mut self.own_velocity[d]);
+            self.rows.permute(&mut self.normal[d]);
+        }
+        self.rows.permute(&mut self.reverse_all);
+        self.rows.permute(&mut self.damping);
+        if let Some(moving) = &mut self.moving {
+            moving.permute(&mut self.rows);
+        }
+        self.rows.permute_ids(&mut self.id);
+        let slots = self.rows.slots();
+        for column in &mut self.shown.velocity {
+            column.resize(slots, 0.0);
+        }
+        self.shown.density.resize(slots, 0.0);
+        self.shown.sources.resize(slots, Source::ZERO);
+        self.pressure.resize(slots, 0.0);
+        self.dry.clear();
+        self.dry.resize(slots / LANES, false);
+    }
+
+    /// Brings the walls that move to where they are at a time.
+    pub fn set_time(&mut self, time: f64) {
+        let Some(moving) = &mut self.moving else { return };
+        moving.place(time, &mut self.shown.position, &mut self.own_velocity);
+        self.dry.fill(false);
+    }
+
+    /// Largest displacement of a wall particle since the last sort, m.
+    pub fn displacement(&self) -> f64 {
+        self.moving.as_ref().map_or(0.0, |m| m.displacement)
     }
 
     /// Number of slots.
@@ -103,6 +139,11 @@ impl<const D: usize> Walls<D> {
     /// What the walls show, from the sums over the fluid.
     pub fn show(&mut self, sums: &[WallSum<D>], state: &StateEquation) {
         for (c, sum) in sums.iter().enumerate() {
+            let wet = (0..LANES).any(|k| sum.extrapolated.weight(k) > 0.0);
+            if !wet && self.dry[c] {
+                continue;
+            }
+            self.dry[c] = !wet;
             for k in 0..LANES {
                 let slot = c * LANES + k;
                 let Some(mut pressure) = sum.extrapolated.pressure(k) else {
@@ -122,6 +163,11 @@ impl<const D: usize> Walls<D> {
                     } else {
                         v[d] - 2.0 * along_normal * self.normal[d][slot]
                     };
+                }
+                if let Some(moving) = &self.moving {
+                    let a = moving.acceleration(slot);
+                    let lever = |d: usize| sum.lever[d].0[k] / weight;
+                    pressure -= (0..D).map(|d| a[d] * lever(d)).sum::<f64>();
                 }
                 if self.non_negative {
                     pressure = pressure.max(0.0);
@@ -160,11 +206,13 @@ pub fn bounds<const D: usize>(x: &Vectors<D>) -> ([f64; D], [f64; D]) {
 pub struct WallSum<const D: usize> {
     extrapolated: ExtrapolationSum,
     velocity: [Lane; D],
+    /// sum rho_f (x_w - x_f) W; only where walls move.
+    lever: [Lane; D],
 }
 
 impl<const D: usize> Default for WallSum<D> {
     fn default() -> Self {
-        Self { extrapolated: ExtrapolationSum::default(), velocity: [Lane::ZERO; D] }
+        Self { extrapolated: ExtrapolationSum::default(), velocity: [Lane::ZERO; D], lever: [Lane::ZERO; D] }
     }
 }
 
@@ -172,6 +220,7 @@ impl<const D: usize> Default for WallSum<D> {
 pub struct WallLaw<'a, K, const D: usize> {
     pressure: Extrapolation<'a, K, D>,
     velocity: &'a Vectors<D>,
+    moving: bool,
 }
 
 impl<'a, K: Kernel<D>, const D: usize> WallLaw<'a, K, D> {
@@ -185,7 +234,7 @@ impl<'a, K: Kernel<D>, const D: usize> WallLaw<'a, K, D> {
             density: &fluid.now.density,
             pressure: &fluid.pressure,
         };
-        Self { pressure, velocity: &fluid.now.velocity }
+        Self { pressure, velocity: &fluid.now.velocity, moving: walls.moving.is_some() }
     }
 }
 
@@ -208,6 +257,12 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for WallLaw<'_, K, D> {
         let w = self.pressure.add_source::<A>(j, dx, r2, &mut sum.extrapolated);
         for d in 0..D {
             sum.velocity[d] = A::mul_add(Lane::splat(self.velocity[d][j]), w, sum.velocity[d]);
+        }
+        if self.moving {
+            let weight = Lane::splat(self.pressure.density[j]) * w;
+            for d in 0..D {
+                sum.lever[d] = A::mul_add(weight, dx[d], sum.lever[d]);
+            }
         }
     }
 }

@@ -75,7 +75,11 @@ fn flow_speed(scene: &Scene) -> f64 {
         let fractions = scene.shapes.iter().filter_map(|s| s.cantilever_mode).map(|m| m.fraction.abs());
         solid.sound_speed() * fractions.fold(0.0, f64::max)
     });
-    scene.shapes.iter().map(|s| length(&s.velocity) + swing).fold((2.0 * fall).sqrt().max(sound), f64::max)
+    scene
+        .shapes
+        .iter()
+        .map(|s| length(&s.velocity) + s.motion.map_or(0.0, |m| m.fastest()) + swing)
+        .fold((2.0 * fall).sqrt().max(sound), f64::max)
 }
 
 #[cfg(test)]

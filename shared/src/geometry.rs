@@ -61,6 +61,8 @@ pub struct WallPoint<const D: usize> {
     pub free_slip: bool,
     /// Whether the solid may touch it.
     pub contact: bool,
+    /// Index of its shape in [`Scene::shapes`].
+    pub shape: u32,
 }
 
 /// All particles of a scene: shapes in the file's order, in a shape z outermost and x innermost.
@@ -126,6 +128,7 @@ pub fn layout<const D: usize>(scene: &Scene) -> Layout<D> {
                     corner: p.corner,
                     free_slip: shape.free_slip,
                     contact: shape.contact,
+                    shape: index as u32,
                 })),
                 Phase::Fluid => layout.fluid.extend(kept.iter().map(|p| FluidPoint {
                     position: p.position,

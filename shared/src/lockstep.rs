@@ -128,6 +128,7 @@ impl<S: Transport> Server<S> {
                     expect = expect.dt(dt);
                 }
                 let start = Instant::now();
+                role.set_time(if stage == 0 { time } else { time + 0.5 * dt });
                 let epoch = role.publish(&self.peer, &mut self.own);
                 self.describe(role, writer.as_ref(), step, stage, epoch, time, dt);
                 self.compute += start.elapsed();

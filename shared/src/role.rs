@@ -62,6 +62,8 @@ pub trait Role: Send {
     fn particles(&self) -> u64;
     /// Largest stable time step from the state at n, s.
     fn dt_limit(&self) -> f64;
+    /// The instant of the state that is published next, s: what moves by prescription goes there.
+    fn set_time(&mut self, _time: f64) {}
     /// Fills `out` with the interface record of the present state. `peer` is the other phase's record as last received.
     /// Returns the epoch.
     fn publish(&mut self, peer: &[StateRecord], out: &mut Vec<StateRecord>) -> u64;

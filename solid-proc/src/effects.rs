@@ -1,5 +1,6 @@
 //! The solid's effects: what takes part in a scene with solid, and why.
 
+use crate::sleep::TOLERANCE;
 use halfstep_shared::scene::{Decision, Derived, EffectName, Scene, SolidModelName};
 
 /// What a scene with solid decides about each of its effects.
@@ -9,6 +10,7 @@ pub fn decide(scene: &Scene) -> Vec<Decision> {
         EffectName::RenormalisedGradient,
         EffectName::ClampFace,
         EffectName::WallContact,
+        EffectName::SleepingSolid,
     ]
     .map(|effect| Decision::new(scene, effect, derive(scene, effect)))
     .into()
@@ -46,6 +48,13 @@ fn derive(scene: &Scene, effect: EffectName) -> Derived {
             Derived::Impossible("nothing is clamped".into())
         }
         EffectName::ClampFace => Derived::On("clamps hold at their boxes' faces".into()),
+        EffectName::SleepingSolid if scene.fluid.is_none() => {
+            Derived::Impossible("no fluid that could wake it".into())
+        }
+        EffectName::SleepingSolid => Derived::On(format!(
+            "until fluid reaches it, while it has moved by less than {} % of the spacing for half its slowest period",
+            100.0 * TOLERANCE
+        )),
         _ if scene.shapes.iter().any(|s| s.contact) => Derived::On("a wall has contact = true".into()),
         _ => Derived::Impossible("no wall has contact = true".into()),
     }

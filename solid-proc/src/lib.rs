@@ -5,6 +5,7 @@ mod columns;
 pub mod effects;
 pub mod hypoelastic;
 pub mod model;
+mod sleep;
 pub mod solid;
 mod sub_steps;
 mod surface;

@@ -1,7 +1,9 @@
 //! The solid as a [`Role`]: interface record, loads, sub-steps, probes.
 
+use crate::effects::takes_part;
 use crate::hypoelastic::Hypoelastic;
 use crate::model::{Load, SolidModel};
+use crate::sleep::{Rest, Sleep};
 use crate::sub_steps::SubStepping;
 use crate::total_lagrangian::TotalLagrangian;
 use halfstep_shared::failure::{Diverged, RoleName};
@@ -11,7 +13,7 @@ use halfstep_shared::lane::Isa;
 use halfstep_shared::output::Frame;
 use halfstep_shared::protocol::{ForceRecord, MAX_PROBE_VALUES, StateRecord};
 use halfstep_shared::role::{Costs, CoverageError, Role, audit};
-use halfstep_shared::scene::{Phase, ProbeKind, Scene, SolidModelName, Treatment};
+use halfstep_shared::scene::{EffectName, Phase, ProbeKind, Scene, SolidModelName, Treatment};
 use xxhash_rust::xxh3::Xxh3;
 
 /// A solid model with what the lock-step asks of it.
@@ -26,6 +28,7 @@ pub struct Solid<const D: usize> {
     density: f64,
     limit: f64,
     cross_pairs: u64,
+    sleep: Option<Sleep>,
 }
 
 enum Measurement {
@@ -64,7 +67,11 @@ impl<const D: usize> Solid<D> {
                 _ => None,
             })
             .collect();
+        let sleep = takes_part(scene, EffectName::SleepingSolid)
+            .then(|| scene.solid.as_ref().map(|solid| Sleep::new(scene, solid, model.as_ref())))
+            .flatten();
         Self {
+            sleep,
             load: Load::none(model.particles()),
             limit: model.sub_step_limit(),
             model,
@@ -143,7 +150,21 @@ impl<const D: usize> Role for Solid<D> {
         if stage == 0 {
             self.taken = self.sub_steps.choose(dt, self.limit);
         }
-        self.model.advance(stage, dt, self.taken, &self.load).map_err(|o| Diverged {
+        let rest = match &mut self.sleep {
+            Some(sleep) => sleep.decide(stage, dt, &self.load, self.model.as_ref()),
+            None => Rest::Awake,
+        };
+        let outcome = match rest {
+            Rest::Asleep => return Ok(()),
+            Rest::Awake => self.model.advance(stage, dt, self.taken, &self.load),
+            Rest::Woken => {
+                let none = Load::none(self.model.particles());
+                self.model
+                    .advance(0, dt, self.taken, &none)
+                    .and_then(|()| self.model.advance(1, dt, self.taken, &self.load))
+            }
+        };
+        outcome.map_err(|o| Diverged {
             role: RoleName::Solid,
             particle: o.particle,
             quantity: o.quantity,

@@ -66,6 +66,7 @@ fn shape(phase: Phase, geometry: Geometry) -> Shape {
         cantilever_mode: None,
         velocity_field: None,
         clamp: Vec::new(),
+        motion: None,
         contact: false,
         free_slip: true,
         hydrostatic: false,

@@ -38,6 +38,8 @@ macro_rules! effect_names {
             ClampFace "clamp-face",
             /// Rigid walls toward the solid.
             WallContact "wall-contact",
+            /// A solid that rests is not computed until fluid comes near.
+            SleepingSolid "sleeping-solid",
         }
     };
 }

@@ -11,6 +11,7 @@ mod effect;
 mod error;
 mod load;
 mod metric;
+mod motion;
 mod overrides;
 mod preset;
 mod probe;
@@ -26,6 +27,7 @@ pub use effect::{Decision, Derived, EffectName, Switch};
 pub use error::{Place, SceneError, SceneErrors};
 pub use load::{load, parse};
 pub use metric::{Metric, MetricKind, MetricReference};
+pub use motion::{Motion, Placement};
 pub use probe::{Probe, ProbeKind, Reference};
 pub use resources::{BYTES_PER_PARTICLE, memory_available, memory_needed};
 pub use velocity_field::VelocityField;
@@ -282,6 +284,9 @@ pub struct Shape {
     pub velocity_field: Option<VelocityField>,
     /// Solid only: particles inside this box keep zero velocity.
     pub clamp: Vec<Block>,
+    /// Wall only: prescribed motion.
+    #[serde(default)]
+    pub motion: Option<Motion>,
     /// Wall only: the solid may touch this wall.
     pub contact: bool,
     /// Wall only: free slip (true) or no slip (false) toward the fluid.

@@ -28,6 +28,7 @@ pub(super) fn shape(section: Section<'_>, dimension: usize) -> Shape {
         cantilever_mode: cantilever_mode(&section),
         velocity_field: velocity_field(&section, dimension),
         clamp: clamp(&section, dimension),
+        motion: motion(&section, dimension),
         contact: section.boolean("contact", false),
         free_slip: section.choice("slip", Some(true), &[("free", true), ("none", false)]).unwrap_or(true),
         hydrostatic: section
@@ -38,6 +39,7 @@ pub(super) fn shape(section: Section<'_>, dimension: usize) -> Shape {
         ("cantilever_mode", Phase::Solid, "a solid"),
         ("clamp", Phase::Solid, "a solid"),
         ("velocity_field", Phase::Fluid, "a fluid"),
+        ("motion", Phase::Wall, "a wall"),
         ("contact", Phase::Wall, "a wall"),
         ("slip", Phase::Wall, "a wall"),
         ("pressure", Phase::Fluid, "a fluid"),
@@ -48,8 +50,43 @@ pub(super) fn shape(section: Section<'_>, dimension: usize) -> Shape {
             section.wrong(key, node, format!("only {article} has `{key}`"));
         }
     }
+    if let (Some(node), true) = (section.node("motion"), shape.contact) {
+        section.wrong("motion", node, "a wall that the solid may touch (contact = true) cannot move yet");
+    }
     section.finish();
     shape
+}
+
+fn motion(section: &Section<'_>, dimension: usize) -> Option<Motion> {
+    let table = section.section("motion");
+    if !table.is_present() {
+        return None;
+    }
+    let instant = Range::at_least(0.0).up_to(1e12);
+    let start = table.number("start", Some(0.0), instant);
+    let motion = match (table.node("velocity"), table.node("amplitude")) {
+        (Some(_), None) => {
+            let end = table.number("end", Some(1e12), instant);
+            if end <= start {
+                table.whole(format!("must have an `end` after its `start`, {start} s"));
+            }
+            Motion::Steady { velocity: table.vector("velocity", dimension, None), start, end }
+        }
+        (None, Some(_)) => Motion::Oscillating {
+            amplitude: table.vector("amplitude", dimension, None),
+            period: table.number("period", None, Range::positive().up_to(1e12)),
+            start,
+            ramp: table.number("ramp", Some(0.0), instant),
+        },
+        _ => {
+            table.whole(
+                "needs either `velocity` (a steady motion) or `amplitude` and `period` (an oscillation)",
+            );
+            Motion::Steady { velocity: [0.0; 3], start, end: 1e12 }
+        }
+    };
+    table.finish();
+    Some(motion)
 }
 
 /// The name of a shape or a probe: a part of dotted keys and of column titles.

@@ -94,7 +94,11 @@ pub(super) fn sound_speed(scene: &Scene, root: &Node, report: &Report) -> Option
     let g = speed(&scene.gravity);
     let height = if g > 0.0 { fluid_extent(scene, scene.gravity.map(|c| c / g)) } else { 0.0 };
     let field = |s: &Shape| s.velocity_field.map_or(0.0, |field| field.fastest(g));
-    let fastest = scene.shapes.iter().map(|s| speed(&s.velocity) + field(s)).fold(0.0, f64::max);
+    let fastest = scene
+        .shapes
+        .iter()
+        .map(|s| speed(&s.velocity) + field(s) + s.motion.map_or(0.0, |m| m.fastest()))
+        .fold(0.0, f64::max);
     let expected = (2.0 * g * height).sqrt().max(fastest);
     if expected > 0.0 && (10.0 * expected).is_finite() {
         return Some(10.0 * expected);

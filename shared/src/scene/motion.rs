@@ -1,0 +1,143 @@
+//! Prescribed motion of a wall: a gate that opens, a wave paddle.
+
+use serde::{Deserialize, Serialize};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// How a wall moves.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Motion {
+    /// At constant velocity from `start` to `end`.
+    Steady {
+        /// Velocity, m/s.
+        velocity: [f64; 3],
+        /// When it begins, s.
+        start: f64,
+        /// When it ends, s.
+        end: f64,
+    },
+    /// x = e(t) amplitude sin(2 pi (t - start) / period), e = sin²(pi (t - start) / (2 ramp)) until `ramp` is over, then 1.
+    Oscillating {
+        /// Amplitude, m.
+        amplitude: [f64; 3],
+        /// Period, s.
+        period: f64,
+        /// When it begins, s.
+        start: f64,
+        /// How long it takes to reach its amplitude, s; 0: at once.
+        ramp: f64,
+    },
+}
+
+/// Where a moving wall is, relative to its place in the scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Placement {
+    /// Displacement, m.
+    pub displacement: [f64; 3],
+    /// Velocity, m/s.
+    pub velocity: [f64; 3],
+    /// Acceleration, m/s².
+    pub acceleration: [f64; 3],
+}
+
+impl Motion {
+    /// Where the wall is at a time, s.
+    pub fn at(&self, time: f64) -> Placement {
+        match *self {
+            Self::Steady { velocity, start, end } => {
+                let moved = (time.min(end) - start).max(0.0);
+                let moves = time >= start && time < end;
+                Placement {
+                    displacement: velocity.map(|v| v * moved),
+                    velocity: if moves { velocity } else { [0.0; 3] },
+                    acceleration: [0.0; 3],
+                }
+            }
+            Self::Oscillating { amplitude, period, start, ramp } => {
+                let t = time - start;
+                if t < 0.0 {
+                    return Placement::default();
+                }
+                let omega = 2.0 * PI / period;
+                let (s, c) = (omega * t).sin_cos();
+                let (e, e1, e2) = envelope(t, ramp);
+                let (x, v) = (e * s, e1 * s + e * omega * c);
+                let a = e2 * s + 2.0 * e1 * omega * c - e * omega * omega * s;
+                Placement {
+                    displacement: amplitude.map(|k| k * x),
+                    velocity: amplitude.map(|k| k * v),
+                    acceleration: amplitude.map(|k| k * a),
+                }
+            }
+        }
+    }
+
+    /// An upper bound of its speed, m/s.
+    pub fn fastest(&self) -> f64 {
+        let length = |v: &[f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        match self {
+            Self::Steady { velocity, .. } => length(velocity),
+            Self::Oscillating { amplitude, period, ramp, .. } => {
+                let rise = if *ramp > 0.0 { FRAC_PI_2 / ramp } else { 0.0 };
+                length(amplitude) * (2.0 * PI / period + rise)
+            }
+        }
+    }
+}
+
+/// The envelope and its first two derivatives.
+fn envelope(t: f64, ramp: f64) -> (f64, f64, f64) {
+    if t >= ramp {
+        return (1.0, 0.0, 0.0);
+    }
+    // sin² = (1 - cos 2x) / 2.
+    let rate = PI / ramp;
+    let (s, c) = (rate * t).sin_cos();
+    (0.5 * (1.0 - c), 0.5 * rate * s, 0.5 * rate * rate * c)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_gate_opens_by_hand() {
+        let gate = Motion::Steady { velocity: [0.0, 2.0, 0.0], start: 0.1, end: 0.4 };
+        assert_eq!(gate.at(0.05), Placement::default());
+        assert!((gate.at(0.2).displacement[1] - 0.2).abs() < 1e-15);
+        assert_eq!(gate.at(0.2).velocity, [0.0, 2.0, 0.0]);
+        assert!((gate.at(9.0).displacement[1] - 0.6).abs() < 1e-15);
+        assert_eq!(gate.at(9.0).velocity, [0.0; 3]);
+        assert_eq!(gate.fastest(), 2.0);
+    }
+
+    #[test]
+    fn a_paddle_swings_by_hand() {
+        // A quarter of its period after the ramp is over: at its amplitude, at rest, accelerated by omega² A.
+        let paddle = Motion::Oscillating { amplitude: [0.1, 0.0, 0.0], period: 2.0, start: 1.0, ramp: 2.0 };
+        let p = paddle.at(5.5);
+        assert!((p.displacement[0] - 0.1).abs() < 1e-15 && p.velocity[0].abs() < 1e-15);
+        assert!((p.acceleration[0] + 0.1 * PI * PI).abs() < 1e-14);
+        // Half the ramp: e = 1/2.
+        let half = paddle.at(1.0 + 0.5);
+        assert!((envelope(1.0, 2.0).0 - 0.5).abs() < 1e-15);
+        assert!((half.displacement[0] - 0.1 * envelope(0.5, 2.0).0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn velocity_and_acceleration_are_derivatives() {
+        let paddle = Motion::Oscillating { amplitude: [0.1, 0.2, 0.0], period: 0.7, start: 0.3, ramp: 1.1 };
+        for t in [0.31, 0.9, 1.3, 1.41, 2.0] {
+            let e = 1e-5;
+            let (before, at, after) = (paddle.at(t - e), paddle.at(t), paddle.at(t + e));
+            for d in 0..3 {
+                let v = (after.displacement[d] - before.displacement[d]) / (2.0 * e);
+                let a = (after.velocity[d] - before.velocity[d]) / (2.0 * e);
+                // The envelope's second derivative jumps where the ramp ends, at 1.4 s.
+                assert!((v - at.velocity[d]).abs() < 1e-6, "{t}: {v} {}", at.velocity[d]);
+                assert!((a - at.acceleration[d]).abs() < 1e-3, "{t}: {a} {}", at.acceleration[d]);
+                assert!(at.velocity[d].abs() <= paddle.fastest());
+            }
+        }
+    }
+}

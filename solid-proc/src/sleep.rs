@@ -1,0 +1,142 @@
+//! A solid that rests and that no fluid has reached is not computed until something comes near.
+//!
+//! An elastic body that is let go from rest goes farthest within half of its slowest period. If no particle was farther
+//! than [`TOLERANCE`] dx from its place in the reference configuration during all of that time, none will be later: the
+//! body sleeps in the state that it has. The first force that is not zero wakes it, in the same half-step. The slowest
+//! period is that of a cantilever as long as the longest and as thick as the shortest side of the solid's box:
+//! T = 1.787 L² / H sqrt(12 rho (1 - nu²) / E) (first bending mode, beta L = 1.875).
+
+use crate::model::{Load, SolidModel};
+use halfstep_shared::scene::{Scene, Solid};
+
+/// Largest displacement of a solid at rest, over the spacing.
+pub(crate) const TOLERANCE: f64 = 0.01;
+
+/// Whether a solid sleeps.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sleep {
+    /// Half the slowest period, s.
+    window: f64,
+    /// m.
+    tolerance: f64,
+    /// How long nothing has happened, s.
+    quiet: f64,
+    asleep: bool,
+}
+
+impl Sleep {
+    pub(crate) fn new<const D: usize>(scene: &Scene, solid: &Solid, model: &dyn SolidModel<D>) -> Self {
+        let mut sides = [(f64::INFINITY, f64::NEG_INFINITY); D];
+        for p in 0..model.particles() as u32 {
+            for (side, x) in sides.iter_mut().zip(model.reference(p)) {
+                *side = (side.0.min(x), side.1.max(x));
+            }
+        }
+        let lengths = sides.map(|(low, high)| high - low + scene.resolution);
+        let longest = lengths.iter().copied().fold(0.0, f64::max);
+        let shortest = lengths.iter().copied().fold(f64::INFINITY, f64::min);
+        Self {
+            window: 0.5 * slowest_period(solid, longest, shortest),
+            tolerance: TOLERANCE * scene.resolution,
+            quiet: 0.0,
+            asleep: false,
+        }
+    }
+
+    /// The solid is not to be computed in this stage. `woken`: it was not computed in stage 0 of this step either, and
+    /// stage 1 has to make up for that.
+    pub(crate) fn decide<const D: usize>(
+        &mut self,
+        stage: u32,
+        dt: f64,
+        load: &Load<D>,
+        model: &dyn SolidModel<D>,
+    ) -> Rest {
+        if !is_zero(load) {
+            self.quiet = 0.0;
+            let slept = std::mem::take(&mut self.asleep);
+            return if slept && stage == 1 { Rest::Woken } else { Rest::Awake };
+        }
+        if self.asleep {
+            return Rest::Asleep;
+        }
+        if stage == 0 {
+            self.quiet = if is_still(model, self.tolerance) { self.quiet + dt } else { 0.0 };
+            self.asleep = self.quiet > self.window;
+        }
+        if self.asleep { Rest::Asleep } else { Rest::Awake }
+    }
+}
+
+/// What a half-step asks of the solid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Rest {
+    /// To be computed.
+    Awake,
+    /// Nothing.
+    Asleep,
+    /// To be computed, stage 0 first.
+    Woken,
+}
+
+fn slowest_period(solid: &Solid, length: f64, thickness: f64) -> f64 {
+    let nu = solid.poissons_ratio;
+    let stiffness = solid.youngs_modulus / (12.0 * solid.density * (1.0 - nu * nu));
+    1.787 * length * length / thickness / stiffness.sqrt()
+}
+
+fn is_zero<const D: usize>(load: &Load<D>) -> bool {
+    load.force.as_flattened().iter().all(|&f| f == 0.0)
+        && load.density_rate.iter().all(|&r| r == 0.0)
+        && load.gradient.as_flattened().as_flattened().iter().all(|&g| g == 0.0)
+}
+
+fn is_still<const D: usize>(model: &dyn SolidModel<D>, tolerance: f64) -> bool {
+    (0..model.particles() as u32).all(|p| {
+        let (x, x0) = (model.record(p).position, model.reference(p));
+        (0..D).map(|d| (x[d] - x0[d]).powi(2)).sum::<f64>() <= tolerance * tolerance
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hypoelastic::Hypoelastic;
+    use halfstep_shared::lane::Isa;
+    use std::path::Path;
+
+    /// A plate 10 mm x 80 mm that stands clamped, without gravity.
+    fn scene() -> Scene {
+        let text = "resolution = 0.002\nend_time = 1.0\ngravity = [0.0, 0.0]\n[solid]\ndensity = 2500.0\n\
+                    youngs_modulus = 12e6\npoissons_ratio = 0.4\n[[shape]]\nname = \"plate\"\nphase = \"solid\"\n\
+                    box = { min = [0.0, 0.0], max = [0.01, 0.08] }\nclamp = { min = [0.0, 0.0], max = [0.01, 0.006] }\n";
+        halfstep_shared::scene::parse(text, Path::new("plate.toml"), &[]).unwrap()
+    }
+
+    #[test]
+    fn the_slowest_period_by_hand() {
+        // Thin cantilever, L = 1 m, H = 0.1 m, rho = 1200, E = 1.2e6, nu = 0: omega = 1.8751² sqrt(E H² / (12 rho)) =
+        // 3.516 * 0.9129 = 3.2097, T = 1.9576 s.
+        let mut solid = scene().solid.unwrap();
+        (solid.density, solid.youngs_modulus, solid.poissons_ratio) = (1200.0, 1.2e6, 0.0);
+        assert!((slowest_period(&solid, 1.0, 0.1) - 1.9576).abs() < 1e-3);
+    }
+
+    #[test]
+    fn it_falls_asleep_after_half_a_period_and_wakes_at_a_force() {
+        let scene = scene();
+        let solid = scene.solid.clone().unwrap();
+        let model = Hypoelastic::<2>::new(&scene, Isa::detect()).unwrap();
+        let mut sleep = Sleep::new(&scene, &solid, &model);
+        let window = 0.5 * slowest_period(&solid, 0.08, 0.01);
+        let mut load = Load::<2>::none(model.particles());
+        assert_eq!(sleep.decide(0, 0.6 * window, &load, &model), Rest::Awake);
+        assert_eq!(sleep.decide(1, 0.6 * window, &load, &model), Rest::Awake);
+        assert_eq!(sleep.decide(0, 0.6 * window, &load, &model), Rest::Asleep);
+        load.force[7] = [1e-9, 0.0];
+        assert_eq!(sleep.decide(1, 0.6 * window, &load, &model), Rest::Woken);
+        assert_eq!(sleep.decide(0, 0.6 * window, &load, &model), Rest::Awake);
+        load.force[7] = [0.0, 0.0];
+        assert_eq!(sleep.decide(0, 0.6 * window, &load, &model), Rest::Awake, "the window begins anew");
+    }
+}
