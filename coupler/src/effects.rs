@@ -2,7 +2,7 @@
 
 use halfstep_shared::geometry::Counts;
 use halfstep_shared::output::run_json::EffectReport;
-use halfstep_shared::scene::{DensityDiffusion, EffectName, Scene, Switch, Treatment};
+use halfstep_shared::scene::{DensityDiffusion, EffectName, Scene, SolidModelName, Switch, Treatment};
 
 /// The ledger of effects of a scene. Shares of the run time are not measured yet and stay empty.
 pub fn ledger(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
@@ -49,15 +49,30 @@ pub fn ledger(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
         add("non-negative-wall-pressure", on, why);
     }
     if let Some(solid) = &scene.solid {
-        let strength = solid.artificial_stress.strength;
-        let (on, why) = forced(EffectName::ArtificialStress).unwrap_or((
-            strength > 0.0,
-            format!("the hypoelastic solid is unstable in tension; strength {strength}"),
-        ));
-        add("artificial-stress", on && strength > 0.0, why);
-        let (on, why) = forced(EffectName::RenormalisedGradient)
-            .unwrap_or((false, "the plain gradient is the method's default".into()));
-        add("renormalised-gradient", on, why);
+        match solid.model {
+            SolidModelName::Hypoelastic => {
+                let strength = solid.artificial_stress.strength;
+                let (on, why) = forced(EffectName::ArtificialStress).unwrap_or((
+                    strength > 0.0,
+                    format!("the hypoelastic solid is unstable in tension; strength {strength}"),
+                ));
+                add("artificial-stress", on && strength > 0.0, why);
+                let (on, why) = forced(EffectName::RenormalisedGradient)
+                    .unwrap_or((false, "the plain gradient is the method's default".into()));
+                add("renormalised-gradient", on, why);
+            }
+            SolidModelName::TotalLagrangian => {
+                let why = match solid.hourglass {
+                    None => "alpha from the bending stiffness of the particles' cells".into(),
+                    Some(alpha) => format!("alpha = {alpha}"),
+                };
+                add("hourglass", solid.hourglass != Some(0.0), why);
+                let clamps = scene.shapes.iter().any(|s| !s.clamp.is_empty());
+                let (on, why) = forced(EffectName::ClampFace)
+                    .unwrap_or((clamps, "clamps hold at the faces of their boxes".into()));
+                add("clamp-face", on && clamps, why);
+            }
+        }
         let touching = scene.shapes.iter().any(|s| s.contact);
         let (on, why) = forced(EffectName::WallContact)
             .unwrap_or((touching, format!("contact is {touching} for the scene's walls")));
