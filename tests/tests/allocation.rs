@@ -141,6 +141,17 @@ fn solids_that_collide() {
 }
 
 #[test]
+fn total_lagrangian_solids_that_collide() {
+    let overrides = ["resolution=0.002", "solid.model=total-lagrangian"];
+    assert_eq!(alone(RoleName::Solid, &shipped("colliding-rings", &overrides)), 0);
+}
+
+#[test]
+fn both_phases_with_a_total_lagrangian_solid() {
+    assert_eq!(coupled(&shipped("elastic-gate", &["resolution=0.0025", "solid.model=total-lagrangian"])), 0);
+}
+
+#[test]
 fn both_phases_with_a_moving_wall() {
     assert_eq!(coupled(&shipped("elastic-gate", &["resolution=0.0025"])), 0);
 }

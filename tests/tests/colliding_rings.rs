@@ -54,6 +54,17 @@ fn bounce_or_crack(resolution: f64) {
 }
 
 #[test]
+fn total_lagrangian_rings_bounce() {
+    let run = scene("colliding-rings").set("resolution", 0.002).set("solid.model", "total-lagrangian").run();
+    let whole = end("total-Lagrangian, 0.002 m", 0.002, &run);
+    let half = run.report.particles.solid as usize / 2;
+    assert_eq!(whole.pieces[0], vec![half, half]);
+    assert!(whole.energy > 0.5);
+    let [left, right] = ["left-end.x", "right-end.x"].map(|name| run.curve(name).at(run.report.time));
+    assert!(left < 0.0 && (left + right).abs() < 1e-4 * left.abs(), "mirror images: {left} {right}");
+}
+
+#[test]
 fn rings_of_5_particles_across() {
     bounce_or_crack(0.002);
 }

@@ -26,6 +26,7 @@ impl Check<'_> {
         self.shape_names();
         self.sizes();
         self.interface();
+        self.solid_time_step();
         self.times();
         self.not_yet();
         self.probes();
@@ -164,6 +165,16 @@ impl Check<'_> {
             let why = "with h / dx = 1.0 the sums over both phases blow up at once";
             let reason = format!("must be at least 1.1 with phase-blind: {why}");
             self.report.among(self.root, "smoothing_ratio", &PHASE_BLIND_BY, reason);
+        }
+    }
+
+    /// The limit of the total-Lagrangian model is below what `numerics.solid_cfl` allows in general.
+    fn solid_time_step(&self) {
+        let key = "numerics.solid_cfl";
+        let cfl = self.scene.numerics.solid_cfl;
+        if self.total_lagrangian() && cfl > 0.9 && !self.report.has(key) {
+            let reason = "must be at most 0.9 with solid.model = \"total-lagrangian\": it is stable to 0.94";
+            self.report.among(self.root, key, &["solid.model"], reason);
         }
     }
 

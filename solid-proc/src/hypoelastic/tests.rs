@@ -1,4 +1,4 @@
-//! The hypoelastic solid: exact deformations, symmetries, sub-steps.
+//! The hypoelastic solid: exact deformations, symmetries. What every model must do is in `tests/src/conformance/solid.rs`.
 
 use crate::hypoelastic::Hypoelastic;
 use crate::model::{Load, SolidModel};
@@ -69,93 +69,6 @@ fn uniform_stretch_has_hookes_rate() {
         assert!((rate[1][1] + 2.0 / 3.0 * g).abs() < 1e-6 * g);
         assert!(rate[0][1].abs() < 1e-6 * g);
     }
-}
-
-#[test]
-fn a_block_at_rest_stays_at_rest() {
-    let mut solid = moving(&[], |_| [0.0; 2]);
-    let load = Load::none(solid.particles());
-    let before: Vec<_> = (0..solid.particles() as u32).map(|p| solid.record(p)).collect();
-    for _ in 0..10 {
-        let dt = solid.sub_step_limit();
-        solid.advance(0, dt, 1, &load).unwrap();
-        solid.advance(1, dt, 1, &load).unwrap();
-    }
-    for r in before {
-        let now = solid.record(r.id);
-        for d in 0..2 {
-            assert!((now.position[d] - r.position[d]).abs() < 1e-14);
-        }
-    }
-}
-
-#[test]
-fn a_force_accelerates_the_whole_block() {
-    // 1 N/m on every particle of mass 0.1 kg/m: 10 m/s² for 20 steps.
-    let mut solid = moving(&[], |_| [0.0; 2]);
-    let mut load = Load::none(solid.particles());
-    load.force.fill([1.0, 0.0]);
-    let dt = solid.sub_step_limit();
-    for _ in 0..20 {
-        solid.advance(0, dt, 1, &load).unwrap();
-        solid.advance(1, dt, 1, &load).unwrap();
-    }
-    for p in 0..solid.particles() as u32 {
-        assert!((solid.velocity(p)[0] - 10.0 * 20.0 * dt).abs() < 1e-12);
-        assert!(solid.velocity(p)[1].abs() < 1e-12);
-    }
-}
-
-#[test]
-fn sub_steps_agree_with_single_steps() {
-    // The same time with 4 sub-steps of a step four times as long: the same field up to the order of the scheme.
-    let bend = |x: [f64; 2]| [0.0, 0.3 * x[0] * x[0]];
-    let (mut one, mut four) = (moving(&[], bend), moving(&[], bend));
-    let load = Load::none(one.particles());
-    let dt = 0.25 * one.sub_step_limit();
-    for _ in 0..40 {
-        one.advance(0, dt, 1, &load).unwrap();
-        one.advance(1, dt, 1, &load).unwrap();
-    }
-    for _ in 0..10 {
-        four.advance(0, 4.0 * dt, 4, &load).unwrap();
-        four.advance(1, 4.0 * dt, 4, &load).unwrap();
-    }
-    // Without load the sub-steps of stage 1 are exactly the single steps.
-    for p in 0..one.particles() as u32 {
-        assert!((one.record(p).position[1] - four.record(p).position[1]).abs() < 1e-13);
-    }
-}
-
-#[test]
-fn clamped_particles_do_not_move() {
-    let clamp = "shape.block.clamp={min=[0.0,0.0],max=[0.05,0.2]}";
-    let mut solid = moving(&[clamp], |_| [0.0; 2]);
-    let mut load = Load::none(solid.particles());
-    load.force.fill([0.0, -1.0]);
-    let dt = solid.sub_step_limit();
-    for _ in 0..50 {
-        solid.advance(0, dt, 2, &load).unwrap();
-        solid.advance(1, dt, 2, &load).unwrap();
-    }
-    for p in 0..solid.particles() as u32 {
-        let (x0, r) = (solid.reference(p), solid.record(p));
-        if x0[0] < 0.05 {
-            assert_eq!(r.flags, 1);
-            assert_eq!([r.position[0], r.position[1]], x0);
-        } else {
-            assert!(r.position[1] < x0[1]);
-        }
-    }
-}
-
-#[test]
-fn the_interface_set_is_a_ribbon_under_the_surface() {
-    // 60 x 60 spacings, 2h = 2.66 dx: surface rows lie half a spacing under the surface, two more are within reach.
-    let solid = Hypoelastic::<2>::new(&block(&["shape.block.box.max=[0.6,0.6]"]), Isa::detect()).unwrap();
-    let expected = 60 * 60 - 54 * 54;
-    assert_eq!(solid.interface_set().len(), expected);
-    assert!(solid.interface_set().windows(2).all(|w| w[0] < w[1]));
 }
 
 proptest! {

@@ -77,7 +77,8 @@ impl<const D: usize> TotalLagrangian<D> {
             let h = at(&self.deformations[slot / LANES].gradient, slot % LANES) * correction;
             let f = Matrix::identity() + h;
             let j = tensor::determinant(&f);
-            if !VOLUME_RATIO.contains(&j) && self.failure.is_none() {
+            // What is no number shows in the speed as well, nearer to its cause.
+            if !VOLUME_RATIO.contains(&j) && !j.is_nan() && self.failure.is_none() {
                 self.failure = Some(OutOfBounds {
                     particle: self.id[slot],
                     quantity: Quantity::Density,
@@ -168,7 +169,7 @@ impl<const D: usize> TotalLagrangian<D> {
         inner + self.contact.as_ref().map_or(0.0, Contact::energy)
     }
 
-    /// sum_j V0 (-F) |e_ij|² = sum_j V0 (-F) |beta u_ij|² - H : H M, by the definition of H.
+    /// sum_j w |e_ij|² = sum_j w |beta u_ij|² - H : H M, by the definition of H.
     fn error_square(&self, slot: usize) -> f64 {
         let sum: &DeformationSum<D> = &self.deformations[slot / LANES];
         let h = self.gradient[slot] - Matrix::identity();

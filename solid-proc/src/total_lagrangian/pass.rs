@@ -1,12 +1,12 @@
-//! The two passes over the reference neighbours. X_ij = X_i - X_j reference positions, u displacement, grad W = F X_ij;
-//! beta_ij = 1, but between a free and a clamped particle the free one's gain (see `clamp`).
+//! The two passes over the reference neighbours. X_ij = X_i - X_j reference positions, u displacement, weights
+//! w = -V0 W'(R_ij) / R_ij; beta_ij = 1, but between a free and a clamped particle the free one's gain (see `clamp`).
 //!
-//!   M_i = -sum_j V0 F X_ij (x) X_ij,   L_i = M_i^-1                                     (Bonet and Lok 1999)
-//!   F_i = I + H_i,   H_i = -sum_j V0 F beta u_ij (x) X_ij L_i
-//!   rho0 D v_i / Dt = sum_j V0 F beta [ (B_i + B_j) X_ij + (a_i + a_j) beta u_ij ],   B = P L - a H
+//!   M_i = sum_j w X_ij (x) X_ij,   L_i = M_i^-1                                         (Bonet and Lok 1999)
+//!   F_i = I + H_i,   H_i = sum_j w beta u_ij (x) X_ij L_i
+//!   rho0 D v_i / Dt = -sum_j w beta [ (B_i + B_j) X_ij + (a_i + a_j) beta u_ij ],   B = P L - a H
 //!
-//! The first part of B is (P_i L_i + P_j L_j) grad W, the rest the hourglass force (see `hourglass`): the derivative of
-//! sum_i V0 psi(F_i) and of the hourglass energy. Momentum and angular momentum are therefore conserved.
+//! P L in B is the stress, the rest the hourglass force (see `hourglass`): the derivatives of sum_i V0 psi(F_i) and of the
+//! hourglass energy. Momentum and angular momentum are therefore conserved.
 
 use crate::artificial_viscosity::artificial_viscosity;
 use crate::columns::Vectors;
@@ -49,7 +49,7 @@ pub(super) struct DeformationSum<const D: usize> {
     pub gradient: [[Lane; D]; D],
     /// M; a <= b filled.
     pub moment: [[Lane; D]; D],
-    /// sum V0 (-F) |beta u_ij|².
+    /// sum w |beta u_ij|².
     pub square: Lane,
 }
 
@@ -110,7 +110,7 @@ pub(super) trait Damping<const D: usize>: Copy + Send + Sync {
     /// What it loads of four targets.
     type Own: Copy;
     fn own(&self, slot: usize) -> Self::Own;
-    /// -m Pi_ij rho0 / V0 for a pair at x_ij: coefficient of F x_ij beside the brackets of the pass.
+    /// -m Pi_ij rho0 / V0 for a pair at x_ij: coefficient of -w x_ij beside the brackets of the pass.
     fn coefficient<A: Arch>(&self, own: &Self::Own, j: usize, h: f64, x: [Lane; D]) -> Lane;
     const ACTS: bool;
 }

@@ -1,0 +1,335 @@
+//! What every [`SolidModel`] must do: the lock-step, prescribed particles, contact, conservation, bounds.
+
+use halfstep_shared::failure::Quantity;
+use halfstep_shared::geometry;
+use halfstep_shared::lane::Isa;
+use halfstep_shared::lockstep::on_threads;
+use halfstep_shared::scene::{self, Scene};
+use halfstep_solid::{Load, SolidModel};
+use std::path::Path;
+
+/// Makes the model of a scene.
+pub type Make = fn(&Scene, Isa) -> Option<Box<dyn SolidModel<2>>>;
+type Model = Box<dyn SolidModel<2>>;
+
+const MATERIAL: &str = r#"
+    resolution = 0.01
+    end_time = 1.0
+    gravity = [0.0, 0.0]
+    [solid]
+    density = 1000.0
+    youngs_modulus = 1e6
+    poissons_ratio = 0.3
+"#;
+const BLOCK: &str = r#"
+    [[shape]]
+    name = "block"
+    phase = "solid"
+    box = { min = [0.0, 0.0], max = [0.2, 0.15] }
+"#;
+/// Thrown at the block from the right.
+const BALL: &str = r#"
+    [[shape]]
+    name = "ball"
+    phase = "solid"
+    disc = { center = [0.29, 0.075], radius = 0.05 }
+    velocity = [-4.0, 0.0]
+"#;
+const FLOOR: &str = r#"
+    [[shape]]
+    name = "floor"
+    phase = "wall"
+    box = { min = [-0.1, -0.08], max = [0.3, -0.02] }
+    contact = true
+"#;
+
+fn parse(parts: &[&str], overrides: &[&str]) -> Scene {
+    let overrides: Vec<String> = overrides.iter().map(|&o| o.into()).collect();
+    scene::parse(&parts.concat(), Path::new("solid.toml"), &overrides).expect("a right scene")
+}
+
+fn model(make: Make, parts: &[&str], overrides: &[&str]) -> Model {
+    make(&parse(parts, overrides), Isa::detect()).expect("a solid")
+}
+
+fn all(model: &Model) -> impl Iterator<Item = u32> + use<> {
+    0..model.particles() as u32
+}
+
+/// One step of the lock-step under one load.
+fn step(model: &mut Model, dt: f64, sub_steps: u32, load: &Load<2>) {
+    for stage in 0..2 {
+        model.advance(stage, dt, sub_steps, load).expect("within bounds");
+    }
+}
+
+fn momentum(model: &Model) -> [f64; 2] {
+    all(model).fold([0.0; 2], |sum, p| {
+        let (m, v) = (model.mass(p), model.velocity(p));
+        [sum[0] + m * v[0], sum[1] + m * v[1]]
+    })
+}
+
+fn angular_momentum(model: &Model) -> f64 {
+    let of = |p| {
+        let (x, v) = (model.record(p).position, model.velocity(p));
+        model.mass(p) * (x[0] * v[1] - x[1] * v[0])
+    };
+    all(model).map(of).sum()
+}
+
+fn kinetic_energy(model: &Model) -> f64 {
+    let of = |p| 0.5 * model.mass(p) * model.velocity(p).iter().map(|v| v * v).sum::<f64>();
+    all(model).map(of).sum()
+}
+
+/// Particles are the scene's, numbered in its order; the record of the first state shows the reference configuration.
+pub fn identity(make: Make) {
+    let scene = parse(&[MATERIAL, BLOCK, BALL], &[]);
+    let model = make(&scene, Isa::detect()).expect("a solid");
+    let layout = geometry::layout::<2>(&scene);
+    assert_eq!(model.particles(), layout.solid.len());
+    for p in all(&model) {
+        let (record, point) = (model.record(p), layout.solid[p as usize]);
+        assert_eq!((record.id, record.flags), (p, 0));
+        assert_eq!([record.position[0], record.position[1]], point.position);
+        assert_eq!(model.reference(p), point.position);
+        assert_eq!([record.velocity[0], record.velocity[1]], point.velocity);
+        assert_eq!((record.density, record.pressure), (1000.0, 0.0));
+        assert_eq!((record.mass, record.deviatoric_stress), (0.1, [0.0; 6]));
+        assert_eq!(model.mass(p), 0.1);
+    }
+    assert_eq!(model.strain_energy(), 0.0);
+}
+
+/// 60 x 60 spacings, 2h = 2.66 dx: surface rows lie half a spacing under the surface, two more are within reach.
+pub fn interface_set(make: Make) {
+    let model = model(make, &[MATERIAL, BLOCK], &["shape.block.box.max=[0.6,0.6]"]);
+    assert_eq!(model.interface_set().len(), 60 * 60 - 54 * 54);
+    assert!(model.interface_set().windows(2).all(|w| w[0] < w[1]));
+}
+
+/// A block at rest stays at rest.
+pub fn rest(make: Make) {
+    let mut model = model(make, &[MATERIAL, BLOCK], &[]);
+    let load = Load::none(model.particles());
+    for _ in 0..10 {
+        let dt = model.sub_step_limit();
+        step(&mut model, dt, 1, &load);
+    }
+    for p in all(&model) {
+        let (x, x0) = (model.record(p).position, model.reference(p));
+        assert!((x[0] - x0[0]).abs() < 1e-14 && (x[1] - x0[1]).abs() < 1e-14);
+    }
+}
+
+/// A block that flies and turns about nothing: 1 N/m on every particle of 0.1 kg/m makes 10 m/s² everywhere.
+pub fn uniform_force(make: Make) {
+    for sub_steps in [1, 4] {
+        let mut model = model(make, &[MATERIAL, BLOCK], &[]);
+        let mut load = Load::none(model.particles());
+        load.force.fill([1.0, 0.0]);
+        let dt = f64::from(sub_steps) * model.sub_step_limit();
+        for _ in 0..20 {
+            step(&mut model, dt, sub_steps, &load);
+        }
+        let time = 20.0 * dt;
+        for p in all(&model) {
+            let (v, x) = (model.velocity(p), model.record(p).position[0] - model.reference(p)[0]);
+            assert!((v[0] - 10.0 * time).abs() < 1e-12 && v[1].abs() < 1e-12);
+            assert!((x - 5.0 * time * time).abs() < 1e-12, "{x}");
+        }
+    }
+}
+
+/// Stage 0 leads to n + 1/2 under its load, and leaves no trace in n + 1.
+pub fn stage_0_is_forgotten(make: Make) {
+    let mut loads = [0, 1, 2].map(|_| Load::none(300));
+    loads[1].force.iter_mut().enumerate().for_each(|(k, f)| *f = [0.3 * (k % 7) as f64, 0.1]);
+    loads[2].force.fill([-5.0, 3.0]);
+    for sub_steps in [1, 6] {
+        // One goes to the middle under the load of stage 1, the other under a wild one.
+        let ends = [&loads[1], &loads[2]].map(|first| {
+            let mut model = model(make, &[MATERIAL, BLOCK], &[]);
+            assert_eq!(model.particles(), 300);
+            let dt = f64::from(sub_steps) * model.sub_step_limit();
+            let start = model.record(7).position;
+            for _ in 0..5 {
+                model.advance(0, dt, sub_steps, first).unwrap();
+                let middle = model.record(7).position;
+                model.advance(1, dt, sub_steps, &loads[1]).unwrap();
+                assert_ne!(middle, model.record(7).position);
+            }
+            assert_ne!(start, model.record(7).position);
+            all(&model).map(|p| (model.record(p).position, model.velocity(p))).collect::<Vec<_>>()
+        });
+        // With one sub-step, midpoint's stage 1 takes its rates from the state in the middle.
+        if sub_steps > 1 {
+            assert!(ends[0] == ends[1]);
+        }
+    }
+}
+
+/// The same time with 4 sub-steps of a step four times as long: without load the sub-steps are the single steps.
+pub fn sub_steps(make: Make) {
+    let swing = ["shape.block.cantilever_mode={fraction=0.01,root=0.0,length=0.2}"];
+    let [mut one, mut four] = [(); 2].map(|()| model(make, &[MATERIAL, BLOCK], &swing));
+    let load = Load::none(one.particles());
+    let dt = 0.25 * one.sub_step_limit();
+    for _ in 0..10 {
+        (0..4).for_each(|_| step(&mut one, dt, 1, &load));
+        let before: Vec<_> = all(&four).map(|p| four.record(p).position).collect();
+        step(&mut four, 4.0 * dt, 4, &load);
+        // What it shows is the mean velocity on the way from n.
+        for p in all(&four) {
+            let r = four.record(p);
+            let mean = (r.position[1] - before[p as usize][1]) / (4.0 * dt);
+            assert!((r.velocity[1] - mean).abs() < 1e-9);
+        }
+    }
+    for p in all(&one) {
+        assert!((one.record(p).position[1] - four.record(p).position[1]).abs() < 1e-13);
+        assert!((one.velocity(p)[1] - four.velocity(p)[1]).abs() < 1e-9);
+    }
+    assert!(all(&one).any(|p| (one.record(p).position[1] - one.reference(p)[1]).abs() > 1e-4));
+}
+
+/// Clamped particles say so and never move; the others bend away.
+pub fn clamps(make: Make) {
+    let clamp = "shape.block.clamp={min=[0.0,0.0],max=[0.05,0.2]}";
+    let mut model = model(make, &[MATERIAL, BLOCK], &[clamp, "gravity=[0.0,-10.0]"]);
+    let mut load = Load::none(model.particles());
+    load.force.fill([0.0, -1.0]);
+    let dt = model.sub_step_limit();
+    for _ in 0..50 {
+        step(&mut model, dt, 2, &load);
+    }
+    for p in all(&model) {
+        let (x0, r) = (model.reference(p), model.record(p));
+        if x0[0] < 0.05 {
+            assert_eq!((r.flags, r.velocity), (1, [0.0; 3]));
+            assert_eq!([r.position[0], r.position[1]], x0);
+        } else {
+            assert_eq!(r.flags, 0);
+            assert!(r.position[1] < x0[1]);
+        }
+    }
+}
+
+/// Inner forces and contacts change neither momentum nor, but for what the scheme loses, angular momentum.
+pub fn conservation(make: Make) {
+    let swing =
+        ["shape.block.cantilever_mode={fraction=0.02,root=0.0,length=0.2}", "shape.block.velocity=[1,2]"];
+    let mut model = model(make, &[MATERIAL, BLOCK, BALL], &swing);
+    let load = Load::none(model.particles());
+    let (p0, l0) = (momentum(&model), angular_momentum(&model));
+    let scale: f64 =
+        all(&model).map(|p| model.mass(p) * model.velocity(p)[0].hypot(model.velocity(p)[1])).sum();
+    let dt = model.sub_step_limit();
+    for _ in 0..150 {
+        step(&mut model, dt, 1, &load);
+    }
+    let (p1, l1) = (momentum(&model), angular_momentum(&model));
+    for d in 0..2 {
+        assert!((p1[d] - p0[d]).abs() < 1e-12 * scale, "{p0:?} {p1:?}");
+    }
+    assert!((l1 - l0).abs() < 5e-3 * scale * 0.2, "{l0} {l1}, scale {}", 0.2 * scale);
+}
+
+/// A ball thrown at a block bounces off: it pushes the block and does not enter it.
+pub fn bodies_collide(make: Make) {
+    let mut model = model(make, &[MATERIAL, BLOCK, BALL], &[]);
+    let load = Load::none(model.particles());
+    let dt = model.sub_step_limit();
+    let start = kinetic_energy(&model);
+    let is_ball = |model: &Model, p| model.reference(p)[0] > 0.21;
+    let mut closest = f64::INFINITY;
+    for k in 0..(0.06 / dt) as usize {
+        step(&mut model, dt, 1, &load);
+        if k % 20 == 0 {
+            for i in all(&model).filter(|&p| is_ball(&model, p)) {
+                for j in all(&model).filter(|&p| !is_ball(&model, p)) {
+                    let (a, b) = (model.record(i).position, model.record(j).position);
+                    closest = f64::min(closest, (a[0] - b[0]).hypot(a[1] - b[1]));
+                }
+            }
+        }
+    }
+    let mean = |ball: bool| {
+        let speeds: Vec<f64> =
+            all(&model).filter(|&p| is_ball(&model, p) == ball).map(|p| model.velocity(p)[0]).collect();
+        speeds.iter().sum::<f64>() / speeds.len() as f64
+    };
+    println!("closest {:.2} dx, ball {:.2} m/s, block {:.2} m/s", closest / 0.01, mean(true), mean(false));
+    assert!(closest > 0.4 * 0.01 && closest < 0.015, "they met, and kept apart: {closest}");
+    assert!(mean(false) < -0.5 && mean(true) > mean(false), "{} {}", mean(true), mean(false));
+    assert!(kinetic_energy(&model) < start);
+}
+
+/// A wall stops a block that is thrown at it before its first row is reached (how elastic that is, is the model's
+/// affair); a wall that it may not touch lets it in.
+pub fn wall_contact(make: Make) {
+    let lowest = |overrides: &[&str]| {
+        let all_of = [&["shape.block.velocity=[0,-1]"], overrides].concat();
+        let mut model = model(make, &[MATERIAL, BLOCK, FLOOR], &all_of);
+        let load = Load::none(model.particles());
+        let dt = model.sub_step_limit();
+        let mut lowest = f64::INFINITY;
+        for _ in 0..(0.06 / dt) as usize {
+            step(&mut model, dt, 1, &load);
+            lowest = all(&model).map(|p| model.record(p).position[1]).fold(lowest, f64::min);
+        }
+        println!("lowest {lowest:.4} m, momentum {:.2}", momentum(&model)[1]);
+        (lowest, momentum(&model)[1])
+    };
+    // The wall's first row is at -0.025.
+    let (depth, away) = lowest(&[]);
+    // It came with 30 kg m/s.
+    assert!(depth > -0.02 && away > -0.03, "{depth} {away}");
+    let (depth, away) = lowest(&["effects.wall-contact=\"off\""]);
+    assert!(depth < -0.05 && away < 0.0, "{depth} {away}");
+}
+
+/// A time step far beyond the limit, and a load that is no number, end as errors that name a particle and a quantity.
+pub fn bounds(make: Make) {
+    let swing = ["shape.block.cantilever_mode={fraction=0.01,root=0.0,length=0.2}"];
+    let mut unstable = model(make, &[MATERIAL, BLOCK], &swing);
+    let load = Load::none(unstable.particles());
+    let dt = 4.0 * unstable.sub_step_limit();
+    let failure = (0..100)
+        .find_map(|_| (0..2).find_map(|stage| unstable.advance(stage, dt, 1, &load).err()))
+        .expect("unstable");
+    assert!([Quantity::Density, Quantity::Speed].contains(&failure.quantity), "{failure:?}");
+    assert!((failure.particle as usize) < unstable.particles());
+
+    let mut poisoned = model(make, &[MATERIAL, BLOCK], &[]);
+    let mut load = Load::none(poisoned.particles());
+    load.force[17] = [f64::NAN, 0.0];
+    let dt = poisoned.sub_step_limit();
+    let failure = poisoned.advance(0, dt, 1, &load).expect_err("no number");
+    assert_eq!(failure.quantity, Quantity::Speed);
+    let (named, cause) = (poisoned.reference(failure.particle), poisoned.reference(17));
+    // In one evaluation it spreads to whatever is listed together with a neighbour.
+    assert!((named[0] - cause[0]).hypot(named[1] - cause[1]) < 0.06, "{failure:?}");
+}
+
+/// The same bits for any number of threads; large enough for several chunks of the pass.
+pub fn threads(make: Make) {
+    let big =
+        ["shape.block.box.max=[0.4,0.4]", "shape.block.cantilever_mode={fraction=0.02,root=0.0,length=0.4}"];
+    let run = |threads| {
+        on_threads(threads, || {
+            let mut model = model(make, &[MATERIAL, BLOCK, FLOOR], &big);
+            assert!(model.particles() > 1500);
+            let load = Load::none(model.particles());
+            let dt = model.sub_step_limit();
+            for _ in 0..40 {
+                step(&mut model, dt, 2, &load);
+            }
+            all(&model).map(|p| (model.record(p), model.velocity(p))).collect::<Vec<_>>()
+        })
+        .expect("threads")
+    };
+    let one = run(1);
+    assert!(run(2) == one && run(3) == one);
+}
