@@ -1,6 +1,6 @@
 # What people run. Every target first installs what is missing (setup.sh) and then calls cargo.
 
-.PHONY: gate test validate prices docs setup
+.PHONY: gate test validate bench prices docs setup
 
 # Where rustup puts cargo, for shells that were open before.
 export PATH := $(PATH):$(HOME)/.cargo/bin
@@ -24,6 +24,11 @@ validate: setup
 prices: setup
 	cargo build --release
 	sh docs/price-lists.sh $(BIN) $(SCENES)
+
+# Criterion's benchmarks, then the table of ratios (also in target/bench.json).
+bench: setup
+	cargo bench -p halfstep-tests --bench criterion
+	cargo bench -p halfstep-tests --bench table
 
 # The documentation of the crates, in target/doc.
 docs: setup

@@ -1,59 +1,219 @@
-//! Quick table (work in progress).
+//! The table of ratios: `cargo bench --bench table [-- huge]`. One line a figure; `target/bench.json` has the same numbers.
+//!
+//! "Mstep/s" is million fluid particles times whole steps (two stages, walls and neighbour lists included) per second.
+//! One-thread figures are CPU time, which other programs on the machine change little; all are medians of interleaved
+//! rounds. `huge` adds 4 million particles (2 GB).
+
 mod support;
+
 use halfstep_shared::lane::Isa;
 use halfstep_shared::lockstep::on_threads;
-use support::{LEAN, Running, collapse, medians, tank};
+use serde_json::{Value, json};
+use support::{Clock, LEAN, Patch, Running, collapse, medians, tank};
+
+const STEPS: usize = 10;
+const ROUNDS: usize = 15;
 
 fn main() {
-    let isa = Isa::detect();
-    for threads in [1] {
-        on_threads(threads, || {
-            let with = |extra: &[&'static str]| [LEAN, extra].concat();
-            let variants: Vec<(&str, Vec<&str>)> = vec![
-                ("lean", with(&[])),
-                ("hydrostatic", with(&["fluid.density_diffusion=hydrostatic"])),
-                ("delta-sph", with(&["fluid.density_diffusion=delta-sph"])),
-                ("cubic", with(&["numerics.kernel=cubic-spline"])),
-                ("cubic+delta-sph", vec![]),
-            ];
-            let mut running: Vec<Running> =
-                variants.iter().map(|(_, o)| Running::new(&tank(14000, o), isa)).collect();
-            for r in &mut running {
-                for _ in 0..50 {
-                    r.step();
-                }
-            }
-            let n = running[0].particles();
-            let mut work: Vec<Box<dyn FnMut() + '_>> = running
-                .iter_mut()
-                .map(|r| -> Box<dyn FnMut() + '_> {
-                    Box::new(move || {
-                        for _ in 0..10 {
-                            r.step();
-                        }
-                    })
-                })
-                .collect();
-            let m = medians(15, &mut work);
-            for ((name, _), s) in variants.iter().zip(&m) {
-                println!("{threads} {name:<20}{:.2} Mstep/s  {:.2}", n * 10.0 / s * 1e-6, s / m[0]);
-            }
-        })
-        .unwrap();
+    let mut report = json!({});
+    one(|| passes(&mut report));
+    steps(&mut report);
+    violent(&mut report);
+    let huge = std::env::args().any(|a| a == "huge");
+    one(|| sizes(&mut report, huge));
+    one(|| solids(&mut report));
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../target/bench.json");
+    std::fs::write(path, format!("{report:#}\n")).expect("target/bench.json can be written");
+    println!("\nwritten to target/bench.json");
+}
+
+fn one<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    on_threads(1, work).expect("a thread")
+}
+
+fn line(what: &str, text: String) {
+    println!("{what:<44}{text}");
+}
+
+/// The pass beside a naive one, by instruction set.
+fn passes(report: &mut Value) {
+    println!("pair pass, 14 000 particles, pressure + artificial viscosity + simple diffusion, one thread");
+    let mut patch = Patch::new();
+    Patch::effects().composition(&mut patch);
+    let difference = patch.difference();
+    // The engine softens distances by 1e-12 h².
+    assert!(difference < 1e-11, "the engine and the naive pass agree: {difference}");
+    let best = patch.isa;
+    let levels: Vec<(&str, Isa)> =
+        [("AVX-512VL", Isa::Avx512vl), ("AVX2", Isa::Avx2), ("baseline", Isa::Baseline)]
+            .into_iter()
+            .filter(|&(_, isa)| best == Isa::Avx512vl || isa != Isa::Avx512vl)
+            .filter(|&(_, isa)| best != Isa::Baseline || isa == Isa::Baseline)
+            .collect();
+    let cell = std::cell::RefCell::new(patch);
+    let mut work: Vec<Box<dyn FnMut() + '_>> = vec![Box::new(|| {
+        let patch = cell.borrow();
+        std::hint::black_box(patch.pass.run(&patch.naive, &patch.grid));
+    })];
+    for &(_, isa) in &levels {
+        let cell = &cell;
+        work.push(Box::new(move || {
+            let mut patch = cell.borrow_mut();
+            patch.isa = isa;
+            Patch::effects().composition(&mut *patch);
+        }));
     }
-    if std::env::args().any(|a| a == "violent") {
-        on_threads(2, || {
-            let mut r = Running::new(&collapse(LEAN), isa);
-            r.run_until(0.35);
-            let n = r.particles();
-            let mut work: Vec<Box<dyn FnMut() + '_>> = vec![Box::new(|| {
-                for _ in 0..10 {
-                    r.step();
-                }
-            })];
-            let m = medians(15, &mut work);
-            println!("violent {:.2}", n * 10.0 / m[0] * 1e-6);
+    let seconds = medians(Clock::Cpu, 41, &mut work);
+    let of_particle = |s: f64| 1e9 * s / 14_000.0;
+    line("  naive: structs of vectors, cells", format!("{:7.1} ns a particle", of_particle(seconds[0])));
+    report["pass"]["naive_ns"] = json!(of_particle(seconds[0]));
+    for ((name, _), s) in levels.iter().zip(&seconds[1..]) {
+        line(
+            &format!("  engine, {name}"),
+            format!("{:7.1} ns a particle, {:4.1} times faster", of_particle(*s), seconds[0] / s),
+        );
+        report["pass"][name] = json!({ "ns": of_particle(*s), "times_faster": seconds[0] / s });
+    }
+}
+
+/// Whole steps of a tank at rest, by effects and threads.
+fn steps(report: &mut Value) {
+    let with = |extra: &[&'static str]| [LEAN, extra].concat();
+    let variants: Vec<(&str, Vec<&str>)> = vec![
+        ("lean: Wendland C2, simple diffusion", with(&[])),
+        ("no diffusion", with(&["fluid.density_diffusion=none"])),
+        ("hydrostatic diffusion", with(&["fluid.density_diffusion=hydrostatic"])),
+        ("delta-SPH", with(&["fluid.density_diffusion=delta-sph"])),
+        (
+            "delta-SPH, gradient at both stages",
+            with(&["fluid.density_diffusion=delta-sph", "effects.frozen-diffusion=off"]),
+        ),
+        ("cubic spline", with(&["numerics.kernel=cubic-spline"])),
+        ("viscosity (complete law)", with(&["fluid.viscosity=1.0", "effects.viscosity=on"])),
+        ("the defaults: cubic spline, delta-SPH", vec![]),
+    ];
+    for threads in [1, 2] {
+        println!("\nwhole step, 14 000 particles in a tank, {threads} thread(s)");
+        let clock = if threads == 1 { Clock::Cpu } else { Clock::Wall };
+        let (seconds, n) = on_threads(threads, || {
+            let mut running: Vec<Running> =
+                variants.iter().map(|(_, o)| Running::fluid(&tank(14_000, o), Isa::detect())).collect();
+            let n = running[0].particles();
+            (timed(clock, &mut running), n)
         })
-        .unwrap();
+        .expect("threads");
+        for ((name, _), s) in variants.iter().zip(&seconds) {
+            let rate = n * STEPS as f64 / s * 1e-6;
+            line(
+                &format!("  {name}"),
+                format!("{rate:6.2} Mstep/s, {:5.2} times the lean step", s / seconds[0]),
+            );
+            report["step"][format!("{threads} threads")][*name] =
+                json!({ "mstep_per_s": rate, "over_lean": s / seconds[0] });
+        }
+    }
+}
+
+fn timed(clock: Clock, running: &mut [Running]) -> Vec<f64> {
+    for r in running.iter_mut() {
+        (0..50).for_each(|_| {
+            r.step();
+        });
+    }
+    let mut work: Vec<Box<dyn FnMut() + '_>> = running
+        .iter_mut()
+        .map(|r| -> Box<dyn FnMut() + '_> {
+            Box::new(move || {
+                (0..STEPS).for_each(|_| {
+                    r.step();
+                });
+            })
+        })
+        .collect();
+    medians(clock, ROUNDS, &mut work)
+}
+
+/// A collapsed column 0.35 s after its release, splashing.
+fn violent(report: &mut Value) {
+    println!("\nwhole step, violent flow, 14 000 particles");
+    for threads in [1, 2] {
+        let clock = if threads == 1 { Clock::Cpu } else { Clock::Wall };
+        let rate = on_threads(threads, || {
+            let mut running = [Running::fluid(&collapse(LEAN), Isa::detect())];
+            running[0].run_until(0.35);
+            let n = running[0].particles();
+            n * STEPS as f64 / timed(clock, &mut running)[0] * 1e-6
+        })
+        .expect("threads");
+        line(&format!("  lean, {threads} thread(s)"), format!("{rate:6.2} Mstep/s"));
+        report["violent"][format!("{threads} threads")] = json!(rate);
+    }
+}
+
+/// Cost and memory of a particle by the number of particles.
+fn sizes(report: &mut Value, huge: bool) {
+    println!("\ncost of a particle's step by size, lean and with the defaults, one thread");
+    let mut sizes = vec![14_000, 100_000, 1_000_000];
+    if huge {
+        sizes.push(4_000_000);
+    }
+    let mut first = [0.0; 2];
+    for n in sizes {
+        let mut costs = [0.0; 2];
+        let mut bytes = [0.0; 2];
+        for (k, overrides) in [LEAN, &[]].into_iter().enumerate() {
+            let mut running = Running::fluid(&tank(n, overrides), Isa::detect());
+            let particles = running.particles();
+            let steps = (1_400_000 / n).clamp(2, 100);
+            (0..2).for_each(|_| {
+                running.step();
+            });
+            let mut work: Vec<Box<dyn FnMut() + '_>> = vec![Box::new(|| {
+                (0..steps).for_each(|_| {
+                    running.step();
+                });
+            })];
+            let rounds = if n > 200_000 { 3 } else { 7 };
+            costs[k] = 1e9 * medians(Clock::Cpu, rounds, &mut work)[0] / (particles * steps as f64);
+            drop(work);
+            bytes[k] = running.bytes_per_particle();
+        }
+        if first == [0.0; 2] {
+            first = costs;
+        }
+        let [lean, full] = costs;
+        line(
+            &format!("  {n} particles"),
+            format!(
+                "{lean:6.1} ns ({:4.2}), {:3.0} bytes; {full:6.1} ns ({:4.2}), {:3.0} bytes",
+                lean / first[0],
+                bytes[0],
+                full / first[1],
+                bytes[1]
+            ),
+        );
+        report["size"][n.to_string()] = json!({
+            "lean": { "ns": lean, "over_14000": lean / first[0], "bytes": bytes[0] },
+            "defaults": { "ns": full, "over_14000": full / first[1], "bytes": bytes[1] },
+        });
+    }
+}
+
+/// A solid step by model.
+fn solids(report: &mut Value) {
+    println!("\nsolid step (two evaluations), oscillating plate 20 across, one thread");
+    let path = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/oscillating-plate.toml"));
+    let scene = |model: &str| {
+        let overrides = ["resolution=0.001".to_owned(), format!("solid.model={model}")];
+        halfstep_shared::scene::load(path, &overrides).unwrap_or_else(|e| panic!("{e:?}"))
+    };
+    let models = ["hypoelastic", "total-lagrangian"];
+    let mut running: Vec<Running> = models.iter().map(|m| Running::solid(&scene(m))).collect();
+    let n = running[0].particles();
+    let seconds = timed(Clock::Cpu, &mut running);
+    for (model, s) in models.iter().zip(&seconds) {
+        let rate = n * STEPS as f64 / s * 1e-6;
+        line(&format!("  {model}"), format!("{rate:6.2} Mstep/s, {:4.2} times hypoelastic", s / seconds[0]));
+        report["solid"][*model] = json!({ "mstep_per_s": rate, "over_hypoelastic": s / seconds[0] });
     }
 }

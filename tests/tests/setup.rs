@@ -21,7 +21,7 @@ impl Machine {
             let from = ["/bin", "/usr/bin"].map(|folder| PathBuf::from(folder).join(tool));
             symlink(from.iter().find(|path| path.exists()).unwrap(), machine.bin().join(tool)).unwrap();
         }
-        for tool in ["cargo", "cc", "make", "pkg-config", "python3"] {
+        for tool in ["cargo", "cc", "make", "pkg-config", "valgrind", "python3"] {
             machine.program(tool, "exit 0");
         }
         machine.program("id", "echo 0");
@@ -95,6 +95,7 @@ fn each_missing_program_asks_for_its_packages() {
         ("make", "make"),
         ("pkg-config", "pkg-config libhdf5-dev"),
         ("python3", "python3 python3-venv"),
+        ("valgrind", "valgrind"),
     ] {
         let (status, said, calls) = Machine::complete().without(program).set_up();
         assert!(calls[1].ends_with(&format!("--no-install-recommends {packages}")), "{calls:?}");

@@ -191,6 +191,7 @@ impl<const D: usize> Hypoelastic<D> {
                 self.now.velocity[d][slot] = at[d];
             }
         }
+        self.apply_state_equation();
     }
 
     /// Rate of the deviatoric stress of every particle.

@@ -1,12 +1,25 @@
-//! Fluids to measure, and a clock that takes medians.
+//! Fluids and solids to measure, and clocks that take medians.
+// Two benchmarks share this; each uses a part.
+#![allow(dead_code)]
+
+pub(crate) mod naive;
 
 use halfstep_fluid::Fluid;
-use halfstep_shared::lane::Isa;
+use halfstep_fluid::artificial_viscosity::ArtificialViscosity;
+use halfstep_fluid::columns::{Shown, Source};
+use halfstep_fluid::density_diffusion::{Diffusion, Simple, Strength};
+use halfstep_fluid::effects::{Effects, Pass};
+use halfstep_fluid::rates::{PairEffect, RateLaw, RateSum};
+use halfstep_shared::kernel::{Kernel, WendlandC2};
+use halfstep_shared::lane::{Isa, LANES};
+use halfstep_shared::neighbours::{ClusterList, PADDING, Rows};
+use halfstep_shared::pair;
 use halfstep_shared::role::Role;
-use halfstep_shared::scene::{self, Scene};
+use halfstep_shared::scene::{self, ArtificialViscosity as Coefficients, Scene};
 use std::path::Path;
+use std::time::Instant;
 
-/// Settings of the fluid step that the targets are stated for: pressure, artificial viscosity, simple diffusion.
+/// Settings that the targets of the fluid step are stated for: pressure, artificial viscosity, simple diffusion.
 pub(crate) const LEAN: &[&str] = &["fluid.density_diffusion=simple", "numerics.kernel=wendland-c2"];
 
 /// Water 1.4 times as wide as high, at rest in a tank, with about `particles` particles.
@@ -26,7 +39,7 @@ pub(crate) fn tank(particles: usize, overrides: &[&str]) -> Scene {
     )
 }
 
-/// The same water, 100 wide and 140 high, beside an empty half of its tank: it collapses and splashes up the far wall.
+/// 14 000 particles, 100 wide and 140 high, beside the empty rest of their tank: they collapse and splash up its wall.
 pub(crate) fn collapse(overrides: &[&str]) -> Scene {
     parse(
         "resolution = 0.001\nend_time = 10.0\ngravity = [0.0, -9.81]\n[fluid]\ndensity = 1000.0\n\
@@ -43,28 +56,39 @@ fn parse(text: &str, overrides: &[&str]) -> Scene {
     scene::parse(text, Path::new("bench.toml"), &overrides).unwrap_or_else(|e| panic!("{e:?}"))
 }
 
-/// A fluid on its way.
+/// A role on its way, alone.
 pub(crate) struct Running {
-    pub(crate) fluid: Fluid<2>,
+    role: Box<dyn Role>,
     step: u64,
 }
 
 impl Running {
-    pub(crate) fn new(scene: &Scene, isa: Isa) -> Self {
-        Self { fluid: Fluid::new(scene, isa).expect("a fluid"), step: 0 }
+    pub(crate) fn fluid(scene: &Scene, isa: Isa) -> Self {
+        Self { role: Box::new(Fluid::<2>::new(scene, isa).expect("a fluid")), step: 0 }
+    }
+
+    pub(crate) fn solid(scene: &Scene) -> Self {
+        Self {
+            role: Box::new(halfstep_solid::Solid::<2>::new(scene, Isa::detect()).expect("a solid")),
+            step: 0,
+        }
     }
 
     pub(crate) fn particles(&self) -> f64 {
-        self.fluid.particles() as f64
+        self.role.particles() as f64
+    }
+
+    pub(crate) fn bytes_per_particle(&self) -> f64 {
+        self.role.bytes().unwrap_or(0) as f64 / self.particles()
     }
 
     /// One step of two stages; returns its length, s.
     pub(crate) fn step(&mut self) -> f64 {
-        let dt = self.fluid.dt_limit();
+        let dt = self.role.dt_limit();
         for stage in 0..2 {
-            self.fluid.publish(&[], &mut Vec::new());
-            self.fluid.own_sums();
-            self.fluid.advance(self.step, stage, dt, &[]).expect("a stable flow");
+            self.role.publish(&[], &mut Vec::new());
+            self.role.own_sums();
+            self.role.advance(self.step, stage, dt, &[]).expect("a stable step");
         }
         self.step += 1;
         dt
@@ -79,21 +103,126 @@ impl Running {
     }
 }
 
+/// 14 000 particles on a disturbed lattice of spacing 1, as the engine and as the naive pass hold them.
+pub(crate) struct Patch {
+    shown: Shown<2>,
+    list: ClusterList,
+    pub(crate) sums: Vec<RateSum<2>>,
+    pub(crate) isa: Isa,
+    pub(crate) naive: Vec<naive::Particle>,
+    pub(crate) grid: naive::Grid,
+    pub(crate) pass: naive::Pass,
+    id: Vec<u32>,
+}
+
+const H: f64 = 1.33;
+const LINEAR: f64 = 1.0;
+const DIFFUSION: f64 = 1.33;
+
+impl Patch {
+    pub(crate) fn new() -> Self {
+        let n = 14_000;
+        let mut shown = Shown::<2>::new(n, 1.0);
+        let mut pressure = vec![0.0; n];
+        let mut naive = Vec::new();
+        for k in 0..n {
+            let (i, j) = ((k % 140) as f64, (k / 140) as f64);
+            let position = [2.0 + i + 0.2 * (0.7 * j).sin(), 2.0 + j + 0.2 * (1.3 * i).cos()];
+            let velocity = [(0.3 * j).sin(), (0.2 * i).cos()];
+            for d in 0..2 {
+                shown.position[d][k] = position[d];
+                shown.velocity[d][k] = velocity[d];
+            }
+            shown.density[k] = 1.0 + 0.01 * (0.2 * i).cos();
+            pressure[k] = 1.0 + (0.1 * i).sin();
+            naive.push(naive::Particle {
+                position: position.into(),
+                velocity: velocity.into(),
+                density: shown.density[k],
+                pressure: pressure[k],
+            });
+        }
+        let mut id: Vec<u32> = (0..n as u32).collect();
+        let mut rows = Rows::<2>::default();
+        rows.sort(&shown.position, &id, 2.0, [-1e3; 2], [1e3; 2]);
+        let [x, y] = &mut shown.position;
+        let [u, v] = &mut shown.velocity;
+        for column in [x, y, u, v, &mut shown.density, &mut pressure] {
+            rows.permute(column);
+        }
+        rows.permute_ids(&mut id);
+        shown.sources.resize(id.len(), Source::ZERO);
+        (0..id.len()).for_each(|slot| shown.show(slot, pressure[slot]));
+        let mut list = ClusterList::default();
+        list.build(&shown.position, &shown.position, &rows, 2.3 * H);
+        let sums = vec![RateSum::default(); list.clusters()];
+        let grid = naive::Grid::new(&naive, 2.0 * H);
+        let pass = naive::Pass { h: H, mass: 1.0, linear: LINEAR, diffusion: DIFFUSION };
+        Self { shown, list, sums, isa: Isa::detect(), naive, grid, pass, id }
+    }
+
+    /// The effects of the pass.
+    pub(crate) fn effects() -> Effects<'static, 2> {
+        Effects {
+            artificial_viscosity: Some(ArtificialViscosity::new(
+                Coefficients { linear: 1.0, quadratic: 0.0 },
+                LINEAR,
+                H,
+            )),
+            density_diffusion: Some(Diffusion::Simple(Simple(Strength(DIFFUSION)))),
+            viscosity: None,
+        }
+    }
+
+    /// Largest difference of the engine's accelerations from the naive pass's, over the largest acceleration.
+    pub(crate) fn difference(&self) -> f64 {
+        let rates = self.pass.run(&self.naive, &self.grid);
+        let largest = rates.iter().map(|r| r.0.norm()).fold(0.0, f64::max);
+        let mut worst = 0.0_f64;
+        for (slot, &id) in self.id.iter().enumerate().filter(|&(_, &id)| id != PADDING) {
+            let sum = &self.sums[slot / LANES];
+            for d in 0..2 {
+                worst = worst.max((sum.acceleration[d].0[slot % LANES] - rates[id as usize].0[d]).abs());
+            }
+        }
+        worst / largest
+    }
+}
+
+impl Pass<2> for &mut Patch {
+    fn run<E: PairEffect<2>>(self, effects: E) {
+        let shown = &self.shown;
+        let law = RateLaw { kernel: WendlandC2::<2>::new(H), effects, targets: shown, sources: shown };
+        pair::pass(self.isa, &law, &self.list, &mut self.sums);
+    }
+}
+
+/// Which clock.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Clock {
+    /// CPU time of this thread: on a machine that others use, what the work itself took.
+    Cpu,
+    /// Time on the wall, for work on several threads.
+    Wall,
+}
+
 /// Seconds of each piece of work, the pieces in turn, `rounds` times: the medians.
-pub(crate) fn medians(rounds: usize, work: &mut [Box<dyn FnMut() + '_>]) -> Vec<f64> {
+pub(crate) fn medians(clock: Clock, rounds: usize, work: &mut [Box<dyn FnMut() + '_>]) -> Vec<f64> {
     let mut seconds = vec![Vec::with_capacity(rounds); work.len()];
     for _ in 0..rounds {
         for (piece, seconds) in work.iter_mut().zip(&mut seconds) {
-            let start = clock();
+            let (wall, cpu) = (Instant::now(), cpu_seconds());
             piece();
-            seconds.push(clock() - start);
+            seconds.push(match clock {
+                Clock::Cpu => cpu_seconds() - cpu,
+                Clock::Wall => wall.elapsed().as_secs_f64(),
+            });
         }
     }
     seconds.into_iter().map(median).collect()
 }
 
-/// CPU seconds of this thread: on a machine that others use, what the work itself took.
-fn clock() -> f64 {
+fn cpu_seconds() -> f64 {
     let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
     // SAFETY: the pointer is to a live timespec.
     unsafe { libc::clock_gettime(libc::CLOCK_THREAD_CPUTIME_ID, &mut time) };
