@@ -13,6 +13,14 @@ pub fn vectors<const D: usize>(n: usize) -> Vectors<D> {
     std::array::from_fn(|_| vec![0.0; n])
 }
 
+/// Makes a column that long, with room for the little more that other padding may need: not twice as much.
+pub(crate) fn fit<T: Clone>(column: &mut Vec<T>, len: usize, value: T) {
+    if column.capacity() < len {
+        column.reserve_exact(len + len / 32 + 64 - column.len());
+    }
+    column.resize(len, value);
+}
+
 /// What the pair pass reads of one neighbour, side by side: one cache line in two dimensions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
@@ -168,8 +176,8 @@ impl<const D: usize> Columns<D> {
         for d in 0..D {
             self.reference[d].clone_from(&self.now.position[d]);
         }
-        self.pressure.resize(slots, 0.0);
-        self.now.sources.resize(slots, Source::ZERO);
+        fit(&mut self.pressure, slots, 0.0);
+        fit(&mut self.now.sources, slots, Source::ZERO);
         for slot in 0..slots {
             let pressure = state.pressure(self.now.density[slot]);
             self.pressure[slot] = pressure;

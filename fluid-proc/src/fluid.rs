@@ -1,7 +1,7 @@
 //! The fluid as a [`Role`]: what happens in a half-step, and which effects take part.
 
 use crate::artificial_viscosity::ArtificialViscosity;
-use crate::columns::Columns;
+use crate::columns::{Columns, fit};
 use crate::density_diffusion::Strength;
 use crate::effects::{self};
 use crate::interface::Coupling;
@@ -175,16 +175,16 @@ impl<const D: usize> Fluid<D> {
             }
             self.wall_list.build(x, &walls.shown.position, &walls.rows, reach);
             self.list_of_walls.build(&walls.shown.position, x, &self.rows, reach);
-            self.extrapolations.resize(self.list_of_walls.clusters(), WallSum::default());
+            fit(&mut self.extrapolations, self.list_of_walls.clusters(), WallSum::default());
         }
         let clusters = self.fluid_list.clusters();
-        self.sums.resize(clusters, RateSum::default());
+        fit(&mut self.sums, clusters, RateSum::default());
         if self.needs_gradient() {
             self.gradient.resize(clusters, [[0.0; D]; LANES]);
             self.gradient_known = false;
         }
         if self.takes_part(EffectName::Viscosity) {
-            self.velocity_gradients.resize(clusters, VelocityGradient::default());
+            fit(&mut self.velocity_gradients, clusters, VelocityGradient::default());
         }
         self.displacement = 0.0;
         self.sorted = true;

@@ -11,6 +11,18 @@ pub(crate) struct Particle {
     pub(crate) pressure: f64,
 }
 
+/// The particles in the order that they have after a while of mixing: none.
+pub(crate) fn shuffled(particles: &[Particle]) -> Vec<Particle> {
+    let mut shuffled = particles.to_vec();
+    // Fisher and Yates with a linear congruential generator (Knuth's MMIX).
+    let mut state = 1_u64;
+    for i in (1..shuffled.len()).rev() {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        shuffled.swap(i, ((state >> 33) % (i as u64 + 1)) as usize);
+    }
+    shuffled
+}
+
 /// Parameters of the pass.
 pub(crate) struct Pass {
     pub(crate) h: f64,
