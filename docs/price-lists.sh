@@ -41,7 +41,7 @@ price elastic-gate --until 0.25 --set resolution=0.0025 --vary resolution=0.0016
 # Price lists
 
 What accuracy costs in the shipped scenes: coarse ladders that a small machine runs in minutes. [Studies](study.md) explains every number. Errors
-and pair evaluations are the same on every machine; wall times are of the one below and of what else it had to do.
+and pair evaluations do not depend on what else the machine does; wall times do, and where more programs waited than there are processors they say little: compare pair evaluations.
 
 Renewed by `make prices`, which runs the commands below; do not edit.
 
