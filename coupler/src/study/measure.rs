@@ -152,16 +152,19 @@ fn rms(metric: &Metric, curve: &Curve, reference: &Curve) -> Result<f64, Unmeasu
 }
 
 /// Times at which the curve passes a level.
-fn crossings(part: &Curve, level: f64) -> Vec<f64> {
+fn crossings(part: &[[f64; 2]], level: f64) -> Vec<f64> {
     let passes = part.windows(2).filter(|w| (w[0][1] < level) != (w[1][1] < level));
     passes.map(|w| w[0][0] + (w[1][0] - w[0][0]) * (level - w[0][1]) / (w[1][1] - w[0][1])).collect()
 }
 
 /// Twice the mean distance between crossings.
 fn period(part: &Curve, level: f64) -> Result<f64, Unmeasured> {
-    // A curve that starts at its level starts there, it does not pass.
-    let from = usize::from(part[0][1] == level);
-    let times = crossings(&part[from..].to_vec(), level);
+    // A curve that starts at its level passes it then, whichever way it goes.
+    let at_start = part[0][1] == level;
+    let mut times = crossings(&part[usize::from(at_start)..], level);
+    if at_start {
+        times.insert(0, part[0][0]);
+    }
     match (times.first(), times.last()) {
         (Some(first), Some(last)) if times.len() > 1 => Ok(2.0 * (last - first) / (times.len() - 1) as f64),
         _ => Err(Unmeasured::NoOscillation(times.len())),
@@ -213,6 +216,15 @@ mod tests {
         assert!((of(MetricKind::Decay { level: 0.5 }) - 0.7).abs() < 1e-3);
         assert!((of(MetricKind::PeakTime) - 0.075).abs() < 3e-3);
         assert!((of(MetricKind::Peak) - 0.5 - (-0.7_f64 * 0.075).exp()).abs() < 1e-3);
+    }
+
+    #[test]
+    fn a_start_at_the_level_counts_once_both_ways() {
+        for sign in [1.0, -1.0] {
+            let wave = sampled(|t| sign * (std::f64::consts::TAU * t / 1.6).sin());
+            let period = number(&metric(MetricKind::Period { level: 0.0 }), &wave[..1001].to_vec());
+            assert!((period.unwrap() - 1.6).abs() < 1e-6);
+        }
     }
 
     #[test]

@@ -24,7 +24,8 @@ use ladder::{Setting, Vary};
 use report::Study;
 use result::{Against, MetricResult, Row};
 use runs::{Job, Program};
-use std::path::PathBuf;
+use std::fs::{File, TryLockError};
+use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 /// What to study.
@@ -60,6 +61,8 @@ pub struct Session<'s> {
     metrics: Vec<Metric>,
     left_out: Vec<String>,
     rows: Vec<Row>,
+    /// Held as long as the session lives: two studies in one folder would remove each other's runs.
+    _claim: File,
 }
 
 impl<'s> Session<'s> {
@@ -78,13 +81,14 @@ impl<'s> Session<'s> {
         let folder =
             options.out.clone().unwrap_or_else(|| PathBuf::from("out").join(format!("study-{}", scene.name)));
         std::fs::create_dir_all(&folder).map_err(StudyError::system(folder.display()))?;
+        let claim = claim(&folder)?;
         let left_out = left_out.into_iter().map(|m| m.name).collect();
         let program = Program::own()?;
-        Ok(Self { options, program, stop, folder, scene, metrics, left_out, rows: Vec::new() })
+        Ok(Self { options, program, stop, folder, scene, metrics, left_out, rows: Vec::new(), _claim: claim })
     }
 
     /// Where everything goes.
-    pub fn folder(&self) -> &std::path::Path {
+    pub fn folder(&self) -> &Path {
         &self.folder
     }
 
@@ -143,6 +147,19 @@ impl<'s> Session<'s> {
     }
 }
 
+/// Takes the folder for one study; the system gives it back when that ends.
+fn claim(folder: &Path) -> Result<File, StudyError> {
+    let path = folder.join("study.lock");
+    let file = File::create(&path).map_err(StudyError::system(path.display()))?;
+    match file.try_lock() {
+        Ok(()) => Ok(file),
+        Err(TryLockError::WouldBlock) => {
+            Err(StudyError::Usage(format!("another study is under way in {}", folder.display())))
+        }
+        Err(TryLockError::Error(e)) => Err(StudyError::system(path.display())(e)),
+    }
+}
+
 /// The report of a run that has ended, whatever it left.
 fn report_of(job: &Job) -> RunReport {
     RunReport::read(&job.dir.join("run.json")).unwrap_or_else(|_| {
@@ -153,4 +170,19 @@ fn report_of(job: &Job) -> RunReport {
             ..RunReport::default()
         }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_holds_one_study_at_a_time() {
+        let dir = tempfile::tempdir().unwrap();
+        let first = claim(dir.path()).unwrap();
+        let refused = claim(dir.path()).unwrap_err().to_string();
+        assert!(refused.starts_with("another study is under way in "), "{refused}");
+        drop(first);
+        assert!(claim(dir.path()).is_ok());
+    }
 }

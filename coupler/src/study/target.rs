@@ -5,6 +5,7 @@ use super::error::StudyError;
 use super::fit::Prediction;
 use super::ladder::{self, Setting};
 use super::report::{percent, readable, short};
+use super::result::Against;
 use super::{Session, Study};
 
 /// Runs that may be made to reach an error: each adds to what the next prediction knows.
@@ -105,6 +106,9 @@ fn describe(study: &Study, metric: usize, candidate: &Candidate) -> String {
         );
     }
     let spare = match candidate.error.interval {
+        Some(_) if study.metrics[metric].against == Against::Finest => {
+            "four of five such runs lie between, if the limit stays where it is"
+        }
         Some(_) => "four of five such runs lie between",
         None => "no interval: every run is used up by the fit",
     };
