@@ -8,7 +8,7 @@ BIN := $(or $(CARGO_TARGET_DIR),target)/release/halfstep
 
 # Builds, and runs the elastic gate coarse enough to watch.
 gate: setup
-	cargo build --release
+	cargo build --release -p halfstep
 	$(BIN) run scenes/elastic-gate.toml --set resolution=0.0025 --out out/elastic-gate --force
 	@echo "The gate's tip beside the experiment: $(CURDIR)/out/elastic-gate/plot.png"
 

@@ -8,7 +8,7 @@
 //! | fluid | rho0 to 30 %: Tait's pressure is then 0.75 rho0 c0² | the larger of c0 and 3 U |
 //! | solid | rho0 to 50 %: far beyond a law that is linear in the density | c_P / 4 + 3 U |
 //!
-//! Particles of the shipped scenes stay within 9 % and 0.19 c0 (fluid), 21 % and 0.11 c_P (solid).
+//! Particles of the shipped scenes stay within 14 % and 0.19 c0 (fluid), 21 % and 0.11 c_P (solid).
 
 use crate::failure::Quantity;
 use crate::geometry;

@@ -1,11 +1,14 @@
 //! Which curves of `plot.png` share a panel, and what range it shows.
 
 use super::probes::{Table, split_unit};
+use super::units;
 use crate::scene::{ProbeKind, Scene};
 use std::ops::Range;
 
 /// Components share a panel while none of them covers less than this part of the panel's height.
 const SMALLEST_SHARE: f64 = 0.15;
+/// A reference all of whose values are so many times the run's largest is named but not drawn: the run would look flat.
+const FAR: f64 = 20.0;
 
 /// Points (time s, value in the probe's unit) and their name in the legend.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,6 +18,11 @@ pub(crate) struct Curve {
 }
 
 impl Curve {
+    /// Whether the points are in the order of time: those of a cloud, one for each author, are not.
+    pub(crate) fn is_line(&self) -> bool {
+        self.points.windows(2).all(|pair| pair[0].0 < pair[1].0)
+    }
+
     /// The points up to `last` that have a value.
     pub(crate) fn visible(&self, last: f64) -> Vec<(f64, f64)> {
         self.points.iter().copied().filter(|(t, v)| (0.0..=last).contains(t) && v.is_finite()).collect()
@@ -68,18 +76,22 @@ pub(crate) fn panels(scene: &Scene, table: &Table) -> Vec<Panel> {
             let Some(values) = table.column(&column) else { continue };
             let (name, unit) = split_unit(&column);
             let references = scene.references.iter().filter(|reference| reference.probe == name);
-            let references = references.map(|reference| Curve {
-                label: reference.label.clone(),
-                points: reference.points.iter().map(|&[time, value]| (time, value)).collect(),
-            });
+            let mut references: Vec<Curve> = references
+                .map(|reference| Curve {
+                    label: reference.label.clone(),
+                    points: reference.points.iter().map(|&[time, value]| (time, value)).collect(),
+                })
+                .collect();
+            let curve = Curve {
+                label: format!("{name}, this run"),
+                points: times.iter().copied().zip(values).collect(),
+            };
+            references.iter_mut().for_each(|reference| leave_out_if_far(reference, &curve, unit, last));
             singles.push(Panel {
                 quantity: axis(name, &probe.kind),
                 unit: unit.into(),
-                references: references.collect(),
-                curves: vec![Curve {
-                    label: format!("{name}, this run"),
-                    points: times.iter().copied().zip(values).collect(),
-                }],
+                references,
+                curves: vec![curve],
             });
         }
         if singles.len() > 1 && share_well(&singles, last) {
@@ -92,6 +104,19 @@ pub(crate) fn panels(scene: &Scene, table: &Table) -> Vec<Panel> {
         }
     }
     panels
+}
+
+/// Replaces the points of a reference that is far beyond the run's own values by their range in its label.
+fn leave_out_if_far(reference: &mut Curve, run: &Curve, unit: &str, last: f64) {
+    let own = extent([run].into_iter(), last).map_or(0.0, |(low, high)| low.abs().max(high.abs()));
+    let Some((low, high)) = extent([&*reference].into_iter(), last) else { return };
+    if own > 0.0 && low.abs().min(high.abs()) > FAR * own && low * high > 0.0 {
+        let (factor, shown) = units::shown(unit, low.abs().max(high.abs()));
+        let [low, high] = [low, high].map(|value| units::number(value * factor));
+        let range = if low == high { low } else { format!("{low} to {high}") };
+        reference.label += &format!(": {range} {shown}, off the axis");
+        reference.points.clear();
+    }
 }
 
 fn share_well(singles: &[Panel], last: f64) -> bool {
@@ -154,6 +179,27 @@ mod tests {
         assert_eq!(panels[1].references[0].label, "measured");
         // The reference's point after the end of the run does not widen the axis.
         assert_eq!(panels[1].largest(0.1), 0.04);
+    }
+
+    #[test]
+    fn a_reference_far_off_is_named_with_its_range() {
+        let mut scene = tip();
+        let far = vec![[0.05, 0.05], [0.04, 0.041]];
+        let near = vec![[0.0, 0.0], [0.1, 0.05]];
+        for (label, points) in [("far", far), ("near", near)] {
+            scene.references.push(Reference { probe: "tip.x".into(), label: label.into(), points });
+        }
+        let panel = |x: f64| panels(&scene, &table(&[[0.0, 0.0, 0.0], [0.1, x, 0.0]])).remove(0);
+        let flat = panel(0.002);
+        assert_eq!(flat.references[0].label, "far: 41 to 50 mm, off the axis");
+        assert!(flat.references[0].points.is_empty());
+        assert_eq!(flat.references[1].label, "near", "it begins where the run does");
+        let comparable = panel(0.003);
+        assert_eq!(
+            (comparable.references[0].label.as_str(), comparable.references[0].points.len()),
+            ("far", 2)
+        );
+        assert!(!comparable.references[0].is_line() && comparable.references[1].is_line());
     }
 
     #[test]

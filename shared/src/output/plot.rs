@@ -1,7 +1,7 @@
 //! `plot.png`: what the probes measured, against time, beside what the literature says.
 
 use super::canvas::{Area, Canvas, Drawn, FONT};
-use super::panels::{Panel, panels};
+use super::panels::{Curve, Panel, panels};
 use super::probes::read_probes;
 use super::{OutputError, units};
 use crate::scene::Scene;
@@ -110,7 +110,7 @@ fn draw_panel(area: &Area<'_>, panel: &Panel, last: f64) -> Drawn {
     let scaled = |&(time, value): &(f64, f64)| (time * per_second, value * factor);
     for (curve, color) in panel.references.iter().zip(REFERENCES.iter().cycle()) {
         let points: Vec<_> = curve.visible(last).iter().map(scaled).collect();
-        draw_reference(&mut chart, &curve.label, points, *color)?;
+        draw_reference(&mut chart, curve, points, *color)?;
     }
     for (curve, color) in panel.curves.iter().zip(CURVES.iter().cycle()) {
         // A value that is not finite interrupts the curve.
@@ -137,17 +137,19 @@ fn draw_panel(area: &Area<'_>, panel: &Panel, last: f64) -> Drawn {
     Ok(())
 }
 
-/// A thin line with marks on it; without marks where they would run into each other.
+/// A thin line with marks on it; marks alone for a cloud, no marks where they would run into each other.
 fn draw_reference<'a, 'b: 'a>(
     chart: &mut Chart<'a, 'b>,
-    label: &str,
+    curve: &Curve,
     points: Vec<(f64, f64)>,
     color: RGBColor,
 ) -> Drawn {
     let size = 4 * OVERSAMPLING as i32;
     let marked = points.len() <= MOST_MARKS;
-    let line = stroke(color, 1);
-    chart.draw_series(LineSeries::new(points.iter().copied(), line))?.label(label).legend(move |(x, y)| {
+    // Without a line its legend has none either.
+    let line = if curve.is_line() { stroke(color, 1) } else { stroke(color, 1).color.mix(0.0).into() };
+    let drawn = chart.draw_series(LineSeries::new(points.iter().copied(), line))?;
+    drawn.label(curve.label.clone()).legend(move |(x, y)| {
         let mark = if marked { size } else { 0 };
         let middle = (x + 15 * OVERSAMPLING as i32, y);
         EmptyElement::at((0, 0)) + legend_line(x, y, line) + Circle::new(middle, mark, stroke(color, 1))
