@@ -3,7 +3,7 @@
 //! of each particle from a first pass, then (tau_i / rho_i² + tau_j / rho_j²) . grad W in the momentum equation. A wall
 //! particle takes part in the gradient with the velocity it shows and repeats the stress of its fluid neighbour.
 
-use crate::columns::{Shown, Vectors, vectors};
+use crate::columns::{Shown, Vectors, fit, vectors};
 use crate::effects::FluidEffect;
 use crate::fluid::Fluid;
 use crate::rates::{FluidPair, PairEffect, PairRates};
@@ -85,7 +85,7 @@ impl<const D: usize> StressTerm<D> {
     pub fn set(&mut self, viscosity: f64, gradients: &[VelocityGradient<D>], density: &[f64]) {
         for a in 0..D {
             for b in a..D {
-                self.0[a][b].resize(density.len(), 0.0);
+                fit(&mut self.0[a][b], density.len(), 0.0);
             }
         }
         for slot in 0..density.len() {

@@ -55,6 +55,20 @@ fn a_stiff_plate_hardly_moves_and_a_softer_one_moves_more() {
     assert!(soft_peak.1 > 5.0 * peak.1 && soft_peak.1 < 41.0, "{soft_peak:?}");
 }
 
+/// The plate sleeps until the water arrives; nobody sees that in the results, but in the work.
+#[test]
+fn a_plate_that_sleeps_before_the_impact_moves_as_one_that_does_not() {
+    let run = |switch: &str| plate(0.004, 12e6).set("effects.sleeping-solid", switch).until(0.2).run();
+    let (sleeping, awake) = (run("auto"), run("off"));
+    let work = |run: &Finished| run.report.work.pair_evaluations.solid.unwrap() as f64;
+    assert!(work(&sleeping) < 0.7 * work(&awake), "{} {}", work(&sleeping), work(&awake));
+    let (a, b) = (sleeping.curve("tip.x"), awake.curve("tip.x"));
+    let peak = b.peak().1;
+    let difference = a.values.iter().zip(&b.values).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    println!("largest difference {:.3} mm, peak {:.2} mm", 1e3 * difference, 1e3 * peak);
+    assert!(difference < 0.01 * peak);
+}
+
 /// Static deflection of a cantilever's end, mm: q L^4 / (8 D) with 4 kPa over 80 mm.
 fn beam(youngs_modulus: f64, thickness: f64) -> f64 {
     let bending_stiffness = youngs_modulus * thickness.powi(3) / (12.0 * (1.0 - 0.32 * 0.32));
