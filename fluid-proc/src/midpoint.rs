@@ -101,7 +101,7 @@ struct Part<'a, const D: usize> {
     sources: &'a mut [Source<D>],
 }
 
-fn split<'a, const D: usize>(columns: [&'a [f64]; D], at: usize) -> ([&'a [f64]; D], [&'a [f64]; D]) {
+fn split<const D: usize>(columns: [&[f64]; D], at: usize) -> ([&[f64]; D], [&[f64]; D]) {
     (columns.map(|c| &c[..at]), columns.map(|c| &c[at..]))
 }
 
@@ -117,7 +117,7 @@ fn split_mut<const D: usize>(columns: [&mut [f64]; D], at: usize) -> ([&mut [f64
     (left, right)
 }
 
-impl<'a, const D: usize> Part<'a, D> {
+impl<const D: usize> Part<'_, D> {
     fn split_at(self, at: usize) -> (Self, Self) {
         let (position, position_) = split_mut(self.position, at);
         let (velocity, velocity_) = split_mut(self.velocity, at);
