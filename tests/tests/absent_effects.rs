@@ -41,7 +41,8 @@ fn an_absent_effect_takes_no_instruction() {
 
 fn bytes_per_particle(overrides: &[&str]) -> f64 {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/hydrostatic-tank.toml");
-    let overrides: Vec<String> = overrides.iter().map(|&o| o.to_owned()).collect();
+    let overrides: Vec<String> =
+        ["resolution=0.0025"].iter().chain(overrides).map(|&o| o.to_owned()).collect();
     let scene = scene::load(&path, &overrides).unwrap();
     let mut fluid = Fluid::<2>::new(&scene, Isa::detect()).unwrap();
     fluid.own_sums();
