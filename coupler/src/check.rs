@@ -31,18 +31,17 @@ pub fn describe(scene: &Scene) -> String {
     line("scene", format!("{} ({})", scene.name, scene.path.display()));
     line("particles", format!("{} fluid, {} solid, {} wall", counts.fluid, counts.solid, counts.wall));
     let mut limit = f64::INFINITY;
-    let mut seconds: f64 = 0.0;
     let mut solid_limit = None;
+    let mut built = Vec::new();
     for name in [RoleName::Fluid, RoleName::Solid] {
-        let Some(mut role) = roles::build(name, scene) else { continue };
+        let Some(role) = roles::build(name, scene) else { continue };
         let own = role.dt_limit();
         line(&format!("{name} dt limit"), format!("{own:.3e} s"));
         limit = limit.min(own);
         if name == RoleName::Solid {
             solid_limit = Some(own);
         }
-        let cost = half_step_cost(role.as_mut());
-        seconds = seconds.max(2.0 * cost);
+        built.push(role);
     }
     let dt = match scene.time_step {
         TimeStep::Auto => limit,
@@ -63,9 +62,16 @@ pub fn describe(scene: &Scene) -> String {
         let bytes = LinkConfig::new(fluid, solid).shared_memory_bytes();
         line("shared memory", format!("{:.1} MB", bytes as f64 / 1e6));
     }
+    let costs: Option<Vec<f64>> = built.iter_mut().map(|role| step_cost(role.as_mut(), dt)).collect();
+    let seconds = costs.map(|costs| costs.into_iter().fold(0.0, f64::max) * scene.end_time / dt);
     line(
         "expected time",
-        format!("about {:.0} s on one thread ({})", seconds * scene.end_time / dt, Isa::detect().bits_name()),
+        match seconds {
+            Some(seconds) => {
+                format!("about {seconds:.0} s, one thread a role ({})", Isa::detect().bits_name())
+            }
+            None => "unknown: the first steps leave their bounds".into(),
+        },
     );
     text.push('\n');
     for effect in effects::ledger(scene, &counts) {
@@ -75,19 +81,18 @@ pub fn describe(scene: &Scene) -> String {
     text
 }
 
-/// Seconds of one half-step's own sums, the fastest of a few.
-fn half_step_cost(role: &mut dyn Role) -> f64 {
+/// Seconds of a role's own step, the fastest of a few; `None` where they fail.
+fn step_cost(role: &mut dyn Role, dt: f64) -> Option<f64> {
     let mut record = Vec::new();
     let mut best = f64::INFINITY;
-    let dt = 1e-3 * role.dt_limit();
-    for step in 0..5 {
+    for step in 0..4 {
         let start = Instant::now();
-        role.publish(&[], &mut record);
-        role.own_sums();
-        if role.advance(step, 0, dt, &[]).is_err() {
-            return f64::NAN;
+        for stage in 0..2 {
+            role.publish(&[], &mut record);
+            role.own_sums();
+            role.advance(step, stage, dt, &[]).ok()?;
         }
         best = best.min(start.elapsed().as_secs_f64());
     }
-    best
+    Some(best)
 }

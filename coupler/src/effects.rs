@@ -13,7 +13,7 @@ use halfstep_shared::scene::{Decision, EffectName, Scene, Treatment};
 const FLUID: &str = "fluid";
 /// What the solid does in any case.
 const SOLID: &str = "solid";
-/// Walls toward the fluid or the solid.
+/// Walls toward the fluid.
 const WALLS: &str = "walls";
 /// Sums across the interface.
 const INTERFACE: &str = "interface";
@@ -51,7 +51,11 @@ pub fn ledger(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
             EffectReport { bytes_per_particle, ..decided(d) }
         }));
     }
-    list.push(row(WALLS, counts.wall > 0, format!("{} wall particles", counts.wall)));
+    list.push(row(
+        WALLS,
+        fluid && counts.wall > 0,
+        format!("{} wall particles toward the fluid", counts.wall),
+    ));
     list.push(row(
         SOLID,
         solid,

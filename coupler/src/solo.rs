@@ -58,6 +58,10 @@ pub fn run_solo(
         notes[usize::from(role.name() == halfstep_shared::failure::RoleName::Solid)] = Some(measured);
         let [fluid, solid] = notes;
         recorder.note(&tick, fluid, solid)?;
+        // What walls show belongs to the state at n once the sums are there: frames come after them.
+        let summed = Instant::now();
+        role.own_sums();
+        sums += summed.elapsed().as_secs_f64();
         let computed = Instant::now();
         seconds.compute += (computed - start).as_secs_f64();
         if tick.frame {
@@ -79,12 +83,15 @@ pub fn run_solo(
             if stage == 1 {
                 role.set_time(tick.time + 0.5 * dt);
                 role.publish(&[], &mut scratch);
+                let start = Instant::now();
+                role.own_sums();
+                sums += start.elapsed().as_secs_f64();
             }
-            let start = Instant::now();
-            role.own_sums();
-            sums += start.elapsed().as_secs_f64();
             if let Err(diverged) = role.advance(tick.step, stage, dt, &[]) {
-                writer.submit(frame, |f| role.fill_frame(tick.time, f))?;
+                let time = tick.time + if stage == 0 { 0.5 * dt } else { dt };
+                if let Err(error) = writer.submit(frame, |f| role.fill_frame(time, f)) {
+                    tracing::warn!("the last frame could not be written: {error}");
+                }
                 return Err(diverged.into());
             }
         }

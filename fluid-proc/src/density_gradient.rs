@@ -5,6 +5,8 @@
 //! (det M < 0.05) the gradient is zero and the diffusion falls back to the simple one.
 
 use crate::columns::Shown;
+use crate::density_diffusion::DensityDiffusion as Diffusion;
+use crate::effects::FluidEffect;
 use halfstep_shared::kernel::Kernel;
 use halfstep_shared::lane::{Arch, LANES, Lane};
 use halfstep_shared::pair::{PairLaw, distance};
@@ -16,7 +18,10 @@ use nalgebra::{SMatrix, SVector};
 /// Marrone 2012 freeze the whole diffusive term over a step.)
 pub fn decide(scene: &Scene) -> Decision {
     let derived = match &scene.fluid {
-        Some(fluid) if fluid.density_diffusion == DensityDiffusion::DeltaSph => {
+        Some(fluid)
+            if fluid.density_diffusion == DensityDiffusion::DeltaSph
+                && <Diffusion as FluidEffect<2>>::decide(scene).on =>
+        {
             if scene.preset == Some(Preset::Kayaki) {
                 Derived::Off("preset = \"kayaki\" evaluates everything at both stages".into())
             } else {

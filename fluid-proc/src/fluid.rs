@@ -86,7 +86,10 @@ impl<const D: usize> Fluid<D> {
         let state = StateEquation::new(fluid.density, fluid.sound_speed, fluid.background_pressure);
         let columns = Columns::new(&layout.fluid, &state, volume);
         let non_negative = non_negative_pressure(scene).on;
-        let plain = fluid.artificial_viscosity.linear;
+        let effects: Vec<EffectName> =
+            effects::decide(scene).into_iter().filter(|d| d.on).map(|d| d.effect).collect();
+        let acts = f64::from(u8::from(effects.contains(&EffectName::ArtificialViscosity)));
+        let plain = acts * fluid.artificial_viscosity.linear;
         let guarded = if wall_guard::decide(scene).on { plain.max(GUARD) } else { plain };
         let damping = Damping { free_slip: guarded * fluid.sound_speed, plain: plain * fluid.sound_speed };
         let walls = (!layout.wall.is_empty()).then(|| {
@@ -111,7 +114,7 @@ impl<const D: usize> Fluid<D> {
                 bounds: Bounds::of_fluid(scene)?,
                 isa,
                 limits: Limits::new(scene),
-                effects: effects::decide(scene).into_iter().filter(|d| d.on).map(|d| d.effect).collect(),
+                effects,
                 diffusion: fluid.density_diffusion,
                 strength: Strength(fluid.density_diffusion_coefficient * h * fluid.sound_speed),
                 artificial_viscosity: ArtificialViscosity::new(
@@ -119,7 +122,7 @@ impl<const D: usize> Fluid<D> {
                     fluid.sound_speed,
                     h,
                 ),
-                quadratic: fluid.artificial_viscosity.quadratic,
+                quadratic: acts * fluid.artificial_viscosity.quadratic,
                 viscosity: fluid.viscosity,
                 domain: (std::array::from_fn(|d| domain.min[d]), std::array::from_fn(|d| domain.max[d])),
                 fluid_list: ClusterList::default(),
@@ -194,9 +197,7 @@ impl<const D: usize> Fluid<D> {
     fn remember(&mut self, extremes: &Extremes) {
         self.displacement = extremes.displacement.sqrt();
         self.largest_speed = extremes.speed.sqrt();
-        if extremes.acceleration > 0.0 {
-            self.largest_acceleration = extremes.acceleration.sqrt();
-        }
+        self.largest_acceleration = extremes.acceleration.sqrt();
     }
 
     /// The particle that is farthest out of bounds, if any is.
@@ -227,11 +228,6 @@ impl<const D: usize> Fluid<D> {
 
     pub(crate) fn needs_gradient(&self) -> bool {
         self.diffusion == DensityDiffusion::DeltaSph && self.takes_part(EffectName::DensityDiffusion)
-    }
-
-    /// Number of wall particles.
-    pub fn wall_particles(&self) -> usize {
-        self.walls.as_ref().map_or(0, |w| w.id.iter().filter(|&&i| i != PADDING).count())
     }
 }
 

@@ -3,6 +3,7 @@
 //! of each particle from a first pass, then (tau_i / rho_i² + tau_j / rho_j²) . grad W in the momentum equation. A wall
 //! particle takes part in the gradient with the velocity it shows and repeats the stress of its fluid neighbour.
 
+use crate::artificial_viscosity::ArtificialViscosity;
 use crate::columns::{Shown, Vectors, fit, vectors};
 use crate::effects::FluidEffect;
 use crate::fluid::Fluid;
@@ -128,6 +129,9 @@ pub const SMALLEST_SHARE: f64 = 0.01;
 /// one, `None` without fluid or without physical one.
 pub fn share_of_artificial(scene: &Scene) -> Option<f64> {
     let fluid = scene.fluid.as_ref().filter(|f| f.viscosity > 0.0)?;
+    if !<ArtificialViscosity as FluidEffect<2>>::decide(scene).on {
+        return Some(f64::INFINITY);
+    }
     let h = scene.smoothing_ratio * scene.resolution;
     let artificial = fluid.artificial_viscosity.linear * h * fluid.sound_speed / 8.0;
     Some(fluid.viscosity / fluid.density / artificial)
@@ -142,6 +146,7 @@ impl<const D: usize> FluidEffect<D> for Viscosity {
     fn decide(scene: &Scene) -> Decision {
         let derived = match share_of_artificial(scene) {
             None => Derived::Impossible("fluid.viscosity is zero".into()),
+            Some(share) if share.is_infinite() => Derived::On("there is no artificial viscosity".into()),
             Some(share) => {
                 let (percent, least) = (100.0 * share, 100.0 * SMALLEST_SHARE);
                 let why = format!("{percent:.2} % of the artificial viscosity; computed from {least} % on");

@@ -155,8 +155,8 @@ pub fn estimate(scene: &Scene) -> Counts {
     Counts { fluid, solid, wall }
 }
 
-/// The box that fluid particles must stay in: [`crate::scene::Numerics::domain`], or the box of all shapes widened by
-/// its own size on every side.
+/// The box that fluid particles must stay in: [`crate::scene::Numerics::domain`], or the box of all shapes, where they are
+/// and where they move to, widened by its own size on every side.
 pub fn domain(scene: &Scene) -> Block {
     if let Some(block) = scene.numerics.domain {
         return block;
@@ -167,6 +167,9 @@ pub fn domain(scene: &Scene) -> Block {
         let (low, high) = bounds.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), b| {
             (low.min(b.min[axis]), high.max(b.max[axis]))
         });
+        let reaches = scene.shapes.iter().filter_map(|s| s.motion.map(|m| m.reach(scene.end_time)[axis]));
+        let (low, high) =
+            reaches.fold((low, high), |(l, h), (back, forth)| (l.min(low + back), h.max(high + forth)));
         (block.min[axis], block.max[axis]) = (low - (high - low), high + (high - low));
     }
     block

@@ -109,7 +109,7 @@ impl Neg for Lane {
 }
 
 /// The instruction set that the pair loop was dispatched to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Isa {
     /// x86-64-v1 or any other processor.
     Baseline,

@@ -100,6 +100,8 @@ fn run_chunks<const D: usize, L: PairLaw<D>, S: Sink<L::Sum>>(
     out: &mut [S::Out],
 ) {
     assert_eq!(out.len(), list.clusters(), "one sum for each cluster");
+    // Never more than the processor has: that is what makes the calls below safe.
+    let isa = isa.min(Isa::detect());
     if let [chunk] = list.chunks() {
         return run_chunk(isa, law, 0, chunk, sink, out);
     }
@@ -117,7 +119,7 @@ fn run_chunk<const D: usize, L: PairLaw<D>, S: Sink<L::Sum>>(
     out: &mut [S::Out],
 ) {
     match isa {
-        // SAFETY: `Isa::detect` is the only source of these values in a run and asked the processor.
+        // SAFETY: `run_chunks` asked the processor.
         #[cfg(target_arch = "x86_64")]
         Isa::Avx512vl => unsafe { run_avx512vl(law, first_slot, chunk, sink, out) },
         // SAFETY: as above.

@@ -1,7 +1,7 @@
 //! The solid's effects: what takes part in a scene with solid, and why.
 
 use crate::sleep::TOLERANCE;
-use halfstep_shared::scene::{Decision, Derived, EffectName, Scene, SolidModelName};
+use halfstep_shared::scene::{Decision, Derived, EffectName, Phase, Scene, SolidModelName};
 
 /// What a scene with solid decides about each of its effects.
 pub fn decide(scene: &Scene) -> Vec<Decision> {
@@ -51,6 +51,9 @@ fn derive(scene: &Scene, effect: EffectName) -> Derived {
         EffectName::SleepingSolid if scene.fluid.is_none() => {
             Derived::Impossible("no fluid that could wake it".into())
         }
+        EffectName::SleepingSolid if !begins_at_rest(scene) => Derived::Impossible(
+            "a solid that is not clamped, or that starts with a velocity, moves by itself".into(),
+        ),
         EffectName::SleepingSolid => Derived::On(format!(
             "until fluid reaches it, while it has moved by less than {} % of the spacing for half its slowest period",
             100.0 * TOLERANCE
@@ -58,4 +61,10 @@ fn derive(scene: &Scene, effect: EffectName) -> Derived {
         _ if scene.shapes.iter().any(|s| s.contact) => Derived::On("a wall has contact = true".into()),
         _ => Derived::Impossible("no wall has contact = true".into()),
     }
+}
+
+/// Every solid shape is clamped somewhere and starts with no velocity.
+fn begins_at_rest(scene: &Scene) -> bool {
+    let mut solids = scene.shapes.iter().filter(|s| s.phase == Phase::Solid);
+    solids.all(|s| !s.clamp.is_empty() && s.velocity == [0.0; 3] && s.cantilever_mode.is_none())
 }

@@ -48,6 +48,11 @@ pub trait SolidModel<const D: usize>: Send {
     fn interface_set(&self) -> &[u32];
     /// Present state of a particle for the wire.
     fn record(&self, particle: u32) -> StateRecord;
+    /// Position of a particle, m.
+    fn position(&self, particle: u32) -> [f64; D] {
+        let record = self.record(particle);
+        std::array::from_fn(|d| record.position[d])
+    }
     /// Velocity of a particle, m/s. (The record may show the mean over sub-steps instead.)
     fn velocity(&self, particle: u32) -> [f64; D];
     /// Largest stable time step of one sub-step, s.

@@ -4,7 +4,9 @@
 //! than [`TOLERANCE`] dx from its place in the reference configuration during all of that time, none will be later: the
 //! body sleeps in the state that it has. The first force that is not zero wakes it, in the same half-step. The slowest
 //! period is that of a cantilever as long as the longest and as thick as the shortest side of the solid's box:
-//! T = 1.787 L² / H sqrt(12 rho (1 - nu²) / E) (first bending mode, beta L = 1.875).
+//! T = 1.787 L² / H sqrt(12 rho (1 - nu²) / E) (first bending mode, beta L = 1.875). Where that box says too little (rings,
+//! several plates), gravity sets a least time: a mode that sags by more than the tolerance has fallen by it after
+//! sqrt(8 tolerance / |g|), whatever its period. Only solids that are clamped and begin at rest may sleep.
 
 use crate::model::{Load, SolidModel};
 use halfstep_shared::scene::{Scene, Solid};
@@ -15,7 +17,7 @@ pub(crate) const TOLERANCE: f64 = 0.01;
 /// Whether a solid sleeps.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sleep {
-    /// Half the slowest period, s.
+    /// Half the slowest period, or longer, s.
     window: f64,
     /// m.
     tolerance: f64,
@@ -35,16 +37,18 @@ impl Sleep {
         let lengths = sides.map(|(low, high)| high - low + scene.resolution);
         let longest = lengths.iter().copied().fold(0.0, f64::max);
         let shortest = lengths.iter().copied().fold(f64::INFINITY, f64::min);
+        let tolerance = TOLERANCE * scene.resolution;
+        let gravity = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+        let fall = if gravity > 0.0 { (8.0 * tolerance / gravity).sqrt() } else { 0.0 };
         Self {
-            window: 0.5 * slowest_period(solid, longest, shortest),
-            tolerance: TOLERANCE * scene.resolution,
+            window: fall.max(0.5 * slowest_period(solid, longest, shortest)),
+            tolerance,
             quiet: 0.0,
             asleep: false,
         }
     }
 
-    /// The solid is not to be computed in this stage. `woken`: it was not computed in stage 0 of this step either, and
-    /// stage 1 has to make up for that.
+    /// What this stage asks of the solid.
     pub(crate) fn decide<const D: usize>(
         &mut self,
         stage: u32,
@@ -75,7 +79,7 @@ pub(crate) enum Rest {
     Awake,
     /// Nothing.
     Asleep,
-    /// To be computed, stage 0 first.
+    /// To be computed, stage 0 first: that was slept through.
     Woken,
 }
 
@@ -93,7 +97,7 @@ fn is_zero<const D: usize>(load: &Load<D>) -> bool {
 
 fn is_still<const D: usize>(model: &dyn SolidModel<D>, tolerance: f64) -> bool {
     (0..model.particles() as u32).all(|p| {
-        let (x, x0) = (model.record(p).position, model.reference(p));
+        let (x, x0) = (model.position(p), model.reference(p));
         (0..D).map(|d| (x[d] - x0[d]).powi(2)).sum::<f64>() <= tolerance * tolerance
     })
 }

@@ -193,7 +193,7 @@ impl<const D: usize> Role for Solid<D> {
                     for d in 0..D {
                         let sum: f64 = particles
                             .iter()
-                            .map(|&p| self.model.record(p).position[d] - self.model.reference(p)[d])
+                            .map(|&p| self.model.position(p)[d] - self.model.reference(p)[d])
                             .sum();
                         put(sum / particles.len() as f64);
                     }
@@ -203,7 +203,7 @@ impl<const D: usize> Role for Solid<D> {
                     let mass: f64 = self.all().map(|p| self.model.mass(p)).sum();
                     for d in 0..D {
                         let moment: f64 =
-                            self.all().map(|p| self.model.mass(p) * self.model.record(p).position[d]).sum();
+                            self.all().map(|p| self.model.mass(p) * self.model.position(p)[d]).sum();
                         put(moment / mass);
                     }
                 }

@@ -78,11 +78,6 @@ impl ClusterList {
         self.clusters
     }
 
-    /// No cluster has any neighbour.
-    pub fn is_empty(&self) -> bool {
-        self.chunks.iter().all(|c| c.index.is_empty())
-    }
-
     /// Listed pairs (four targets each).
     pub fn entries(&self) -> usize {
         self.chunks.iter().map(|c| c.index.len()).sum()

@@ -59,7 +59,8 @@ impl Motion {
                     return Placement::default();
                 }
                 let omega = 2.0 * PI / period;
-                let (s, c) = (omega * t).sin_cos();
+                // One implementation on every machine: its bits matter.
+                let (s, c) = libm::sincos(omega * t);
                 let (e, e1, e2) = envelope(t, ramp);
                 let (x, v) = (e * s, e1 * s + e * omega * c);
                 let a = e2 * s + 2.0 * e1 * omega * c - e * omega * omega * s;
@@ -69,6 +70,14 @@ impl Motion {
                     acceleration: amplitude.map(|k| k * a),
                 }
             }
+        }
+    }
+
+    /// Least and largest displacement until `end_time` along each axis, m: bounds.
+    pub fn reach(&self, end_time: f64) -> [(f64, f64); 3] {
+        match self {
+            Self::Steady { .. } => self.at(end_time).displacement.map(|x| (x.min(0.0), x.max(0.0))),
+            Self::Oscillating { amplitude, .. } => amplitude.map(|x| (-x.abs(), x.abs())),
         }
     }
 
@@ -92,7 +101,7 @@ fn envelope(t: f64, ramp: f64) -> (f64, f64, f64) {
     }
     // sin² = (1 - cos 2x) / 2.
     let rate = PI / ramp;
-    let (s, c) = (rate * t).sin_cos();
+    let (s, c) = libm::sincos(rate * t);
     (0.5 * (1.0 - c), 0.5 * rate * s, 0.5 * rate * rate * c)
 }
 
@@ -109,6 +118,8 @@ mod tests {
         assert!((gate.at(9.0).displacement[1] - 0.6).abs() < 1e-15);
         assert_eq!(gate.at(9.0).velocity, [0.0; 3]);
         assert_eq!(gate.fastest(), 2.0);
+        assert_eq!(gate.reach(0.05), [(0.0, 0.0); 3]);
+        assert!((gate.reach(0.2)[1].1 - 0.2).abs() < 1e-15 && gate.reach(0.2)[1].0 == 0.0);
     }
 
     #[test]

@@ -74,7 +74,7 @@ fn motion(section: &Section<'_>, dimension: usize) -> Option<Motion> {
         }
         (None, Some(_)) => Motion::Oscillating {
             amplitude: table.vector("amplitude", dimension, None),
-            period: table.number("period", None, Range::positive().up_to(1e12)),
+            period: table.number("period", None, Range::at_least(1e-9).up_to(1e12)),
             start,
             ramp: table.number("ramp", Some(0.0), instant),
         },

@@ -257,6 +257,11 @@ impl<const D: usize> SolidModel<D> for Hypoelastic<D> {
         r
     }
 
+    fn position(&self, particle: u32) -> [f64; D] {
+        let s = self.slot_of[particle as usize] as usize;
+        std::array::from_fn(|d| self.now.position[d][s])
+    }
+
     fn velocity(&self, particle: u32) -> [f64; D] {
         let s = self.slot_of[particle as usize] as usize;
         std::array::from_fn(|d| self.now.velocity[d][s])
