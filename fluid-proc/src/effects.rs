@@ -35,6 +35,11 @@ macro_rules! compose {
         }
 
         impl<'a, const D: usize> Effects<'a, D> {
+            /// None at all.
+            pub fn none() -> Self {
+                Self { $($module: None,)* }
+            }
+
             /// Those that take part.
             pub(crate) fn of(fluid: &'a Fluid<D>) -> Self {
                 Self {

@@ -163,15 +163,11 @@ impl Patch {
 
     /// The effects of the pass.
     pub(crate) fn effects() -> Effects<'static, 2> {
-        Effects {
-            artificial_viscosity: Some(ArtificialViscosity::new(
-                Coefficients { linear: 1.0, quadratic: 0.0 },
-                LINEAR,
-                H,
-            )),
-            density_diffusion: Some(Diffusion::Simple(Simple(Strength(DIFFUSION)))),
-            viscosity: None,
-        }
+        let coefficients = Coefficients { linear: 1.0, quadratic: 0.0 };
+        let mut effects = Effects::none();
+        effects.artificial_viscosity = Some(ArtificialViscosity::new(coefficients, LINEAR, H));
+        effects.density_diffusion = Some(Diffusion::Simple(Simple(Strength(DIFFUSION))));
+        effects
     }
 
     /// Largest difference of the engine's accelerations from the naive pass's, over the largest acceleration.

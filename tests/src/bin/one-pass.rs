@@ -72,10 +72,11 @@ fn main() -> ExitCode {
     let damping = ArtificialViscosity::new(Coefficients { linear: 0.1, quadratic: 0.0 }, 10.0, H);
     let simple = Simple(Strength(0.1));
     let full = DeltaSph { strength: Strength(0.1), gradient: &patch.gradient };
-    let chosen = |density_diffusion| Effects {
-        artificial_viscosity: Some(damping),
-        density_diffusion,
-        viscosity: None,
+    let chosen = |density_diffusion| {
+        let mut effects = Effects::none();
+        effects.artificial_viscosity = Some(damping);
+        effects.density_diffusion = density_diffusion;
+        effects
     };
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match arguments[..] {
