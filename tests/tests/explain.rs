@@ -1,0 +1,84 @@
+//! `halfstep explain`: what takes part, why, and what it costs, for every shipped scene.
+
+use serde_json::Value;
+use std::path::PathBuf;
+use std::process::Command;
+
+fn explain(scene: &str, overrides: &[&str], json: bool) -> (Option<i32>, String) {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(scene).with_extension("toml");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_halfstep-under-test"));
+    command.arg("explain").arg(path);
+    for key in overrides {
+        command.args(["--set", key]);
+    }
+    if json {
+        command.arg("--json");
+    }
+    let output = command.output().unwrap();
+    (output.status.code(), String::from_utf8(output.stdout).unwrap())
+}
+
+fn effects(scene: &str, overrides: &[&str]) -> Value {
+    let (code, text) = explain(scene, overrides, true);
+    assert_eq!(code, Some(0), "{scene}");
+    serde_json::from_str(&text).unwrap_or_else(|e| panic!("{scene}: nothing but JSON: {e}: {text}"))
+}
+
+fn row<'a>(explanation: &'a Value, name: &str) -> &'a Value {
+    let rows = explanation["effects"].as_array().unwrap();
+    rows.iter().find(|row| row["name"] == name).unwrap_or_else(|| panic!("no row {name}"))
+}
+
+#[test]
+fn every_shipped_scene_is_explained_and_its_shares_are_the_whole() {
+    let coarse: [(&str, &[&str]); 11] = [
+        ("colliding-rings", &["resolution=0.002"]),
+        ("dam-break-plate", &["resolution=0.004"]),
+        ("dam-break", &["resolution=0.0028575"]),
+        ("elastic-gate", &["resolution=0.0025"]),
+        ("hydrostatic-plate", &["resolution=0.025"]),
+        ("hydrostatic-tank", &[]),
+        ("oscillating-plate", &["resolution=0.004"]),
+        ("spring-block", &[]),
+        ("standing-wave", &["resolution=0.025"]),
+        ("taylor-green", &["resolution=0.05"]),
+        ("wave-paddle", &["resolution=0.02"]),
+    ];
+    let shipped = std::fs::read_dir(PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../scenes")).unwrap();
+    assert_eq!(shipped.count(), coarse.len(), "all of them");
+    for (scene, overrides) in coarse {
+        let explanation = effects(scene, overrides);
+        let rows = explanation["effects"].as_array().unwrap();
+        let shares: Vec<f64> = rows.iter().filter_map(|row| row["share"].as_f64()).collect();
+        let sum: f64 = shares.iter().sum();
+        // What was measured by leaving it out may add up to a little more than was there.
+        assert!((0.9..1.3).contains(&sum), "{scene}: {sum} {explanation:#}");
+        assert!(shares.iter().all(|s| (0.0..=1.0).contains(s)), "{scene}: {shares:?}");
+        for row in rows {
+            assert!(!row["why"].as_str().unwrap().is_empty(), "{scene}: {row}");
+            assert!(row["on"] == true || row["share"].is_null(), "{scene}: what is off costs nothing: {row}");
+        }
+    }
+}
+
+#[test]
+fn the_reason_is_the_key_or_the_fact() {
+    let forced = effects("hydrostatic-tank", &["fluid.viscosity=1", "effects.viscosity=on"]);
+    let viscosity = row(&forced, "viscosity");
+    assert!(viscosity["on"] == true && viscosity["why"] == "effects.viscosity is \"on\"", "{viscosity}");
+    assert_eq!(viscosity["bytes_per_particle"], 56.0);
+    assert_eq!(forced["composition"], "artificial viscosity, delta-SPH diffusion, viscosity");
+    assert_eq!(row(&forced, "solid")["on"], false);
+
+    let bare = effects("hydrostatic-tank", &["fluid.density_diffusion=none"]);
+    let diffusion = row(&bare, "density-diffusion");
+    assert!(diffusion["on"] == false, "{diffusion}");
+    assert_eq!(bare["composition"], "artificial viscosity");
+    assert_eq!(row(&bare, "frozen-diffusion")["on"], false);
+
+    let (code, text) = explain("oscillating-plate", &["resolution=0.004"], false);
+    assert_eq!(code, Some(0));
+    assert!(text.lines().any(|l| l.starts_with("fluid") && l.contains("off")), "{text}");
+    let (code, _) = explain("oscillating-plate", &["resolution=-1"], false);
+    assert_eq!(code, Some(1));
+}
