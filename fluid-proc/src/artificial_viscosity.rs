@@ -3,8 +3,7 @@
 
 use crate::effects::FluidEffect;
 use crate::rates::{FluidPair, PairEffect, PairRates};
-use halfstep_shared::artificial_viscosity::damping;
-use halfstep_shared::lane::{Arch, Lane};
+use halfstep_shared::lane::Arch;
 use halfstep_shared::scene::{
     ArtificialViscosity as Coefficients, Decision, Derived, EffectName, Fluid, Scene,
 };
@@ -55,16 +54,6 @@ impl<const D: usize> PairEffect<D> for ArtificialViscosity {
 
     #[inline(always)]
     fn add<A: Arch>(&self, _: &(), _: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
-        let linear = Lane::splat(self.linear);
-        let quadratic = Lane::splat(self.quadratic);
-        rates.bracket = rates.bracket
-            - damping::<A>(
-                self.smoothing_length,
-                linear,
-                quadratic,
-                pair.approach,
-                pair.r2,
-                pair.density_i + pair.density_j,
-            );
+        rates.bracket = rates.bracket - pair.damping::<A>(self.smoothing_length, self.linear, self.quadratic);
     }
 }

@@ -1,17 +1,10 @@
 //! Columns of the fluid particles and what the pair pass reads of any source set.
 
+pub use halfstep_shared::columns::{Vectors, vectors};
 use halfstep_shared::geometry::FluidPoint;
 use halfstep_shared::lane::{LANES, Lane};
 use halfstep_shared::neighbours::{PADDING, Rows};
 use halfstep_shared::state_equation::StateEquation;
-
-/// D columns.
-pub type Vectors<const D: usize> = [Vec<f64>; D];
-
-/// `D` columns of `n` zeros.
-pub fn vectors<const D: usize>(n: usize) -> Vectors<D> {
-    std::array::from_fn(|_| vec![0.0; n])
-}
 
 /// Makes a column that long, with room for the little more that other padding may need: not twice as much.
 pub(crate) fn fit<T: Clone>(column: &mut Vec<T>, len: usize, value: T) {

@@ -11,6 +11,7 @@ use halfstep_shared::kernel::Kernel;
 use halfstep_shared::lane::{Arch, LANES, Lane};
 use halfstep_shared::pair::{PairLaw, distance};
 use halfstep_shared::scene::{Decision, DensityDiffusion, Derived, EffectName, Preset, Scene};
+use halfstep_shared::tensor::moment_inverse;
 use nalgebra::{SMatrix, SVector};
 
 /// Whether the gradient is computed at stage 0 only and used at both stages: unless the scene asks for Kayaki's scheme,
@@ -32,9 +33,6 @@ pub fn decide(scene: &Scene) -> Decision {
     };
     Decision::new(scene, EffectName::FrozenDiffusion, derived)
 }
-
-/// Determinant of M below which the gradient is left out.
-pub const SMALLEST_DETERMINANT: f64 = 0.05;
 
 /// Raw gradient and moment matrix of four particles.
 #[derive(Clone, Copy, Debug)]
@@ -106,12 +104,5 @@ impl<const D: usize> GradientSum<D> {
 
 fn renormalised<const D: usize>(raw: [f64; D], moment: [[f64; D]; D]) -> [f64; D] {
     let m = SMatrix::<f64, D, D>::from_fn(|a, b| moment[a][b]);
-    let determinant = halfstep_shared::tensor::determinant(&m);
-    if determinant.is_nan() || determinant < SMALLEST_DETERMINANT {
-        return [0.0; D];
-    }
-    match halfstep_shared::tensor::inverse(&m, determinant) {
-        Some(l) => (l * SVector::from(raw)).into(),
-        None => [0.0; D],
-    }
+    moment_inverse(&m).map_or([0.0; D], |l| (l * SVector::from(raw)).into())
 }

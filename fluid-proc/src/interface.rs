@@ -2,6 +2,7 @@
 
 use crate::columns::Columns;
 use crate::rates::RateSum;
+use halfstep_shared::columns::bounds;
 use halfstep_shared::interface::{Interface, Parameters};
 use halfstep_shared::lane::LANES;
 use halfstep_shared::neighbours::{PADDING, Rows};
@@ -76,15 +77,11 @@ impl<const D: usize> Coupling<D> {
         self.chosen_at.extend(peer.iter().map(|r| std::array::from_fn(|d| r.position[d])));
         self.order.clear();
         self.order.extend(0..peer.len() as u32);
-        let (mut low, mut high) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
         for d in 0..D {
             self.sorted[d].clear();
             self.sorted[d].extend(self.chosen_at.iter().map(|x| x[d]));
-            for &x in &self.sorted[d] {
-                low[d] = low[d].min(x);
-                high[d] = high[d].max(x);
-            }
         }
+        let (low, high) = bounds(&self.sorted);
         self.slots.clear();
         if peer.is_empty() {
             return;

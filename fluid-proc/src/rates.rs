@@ -2,6 +2,7 @@
 
 use crate::columns::Shown;
 use crate::momentum::pressure_and_continuity;
+use halfstep_shared::artificial_viscosity::damping;
 use halfstep_shared::kernel::Kernel;
 use halfstep_shared::lane::{Arch, Lane};
 use halfstep_shared::pair::{PairLaw, distance, dot};
@@ -25,6 +26,15 @@ pub struct FluidPair<const D: usize> {
     pub pressure_term_i: Lane,
     /// p_j / rho_j².
     pub pressure_term_j: Lane,
+}
+
+impl<const D: usize> FluidPair<D> {
+    /// Pi_ij of the artificial viscosity; `linear` is A c0, `quadratic` B.
+    #[inline(always)]
+    pub fn damping<A: Arch>(&self, h: f64, linear: f64, quadratic: f64) -> Lane {
+        let density_sum = self.density_i + self.density_j;
+        damping::<A>(h, Lane::splat(linear), Lane::splat(quadratic), self.approach, self.r2, density_sum)
+    }
 }
 
 /// What a pair adds: `bracket` times m_j F x_ij and `vector` times m_j F to the acceleration, `density` times

@@ -9,6 +9,7 @@
 
 use crate::columns::{Columns, Shown, Source, Vectors, vectors};
 use crate::moving_wall::Moving;
+use halfstep_shared::columns::bounds;
 use halfstep_shared::extrapolation::{Extrapolation, ExtrapolationSum};
 use halfstep_shared::geometry::WallPoint;
 use halfstep_shared::kernel::Kernel;
@@ -188,17 +189,6 @@ impl<const D: usize> Walls<D> {
         }
         self.shown.show(slot, 0.0);
     }
-}
-
-/// Bounding box of columns; zero where they are empty.
-pub fn bounds<const D: usize>(x: &Vectors<D>) -> ([f64; D], [f64; D]) {
-    if x[0].is_empty() {
-        return ([0.0; D], [0.0; D]);
-    }
-    (
-        std::array::from_fn(|d| x[d].iter().copied().fold(f64::INFINITY, f64::min)),
-        std::array::from_fn(|d| x[d].iter().copied().fold(f64::NEG_INFINITY, f64::max)),
-    )
 }
 
 /// Sums over the fluid for four wall particles.

@@ -7,8 +7,7 @@
 //! it. No-slip walls and corners reverse the whole velocity and keep the scene's A: a guard would be friction.
 
 use crate::rates::{FluidPair, PairEffect, PairRates};
-use halfstep_shared::artificial_viscosity::damping;
-use halfstep_shared::lane::{Arch, Lane};
+use halfstep_shared::lane::Arch;
 use halfstep_shared::scene::{Decision, Derived, EffectName, Phase, Scene};
 
 /// A of the guard.
@@ -47,16 +46,7 @@ impl<const D: usize> PairEffect<D> for WallViscosity<'_> {
 
     #[inline(always)]
     fn add<A: Arch>(&self, _: &(), j: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
-        let linear = Lane::splat(self.linear[j]);
-        let quadratic = Lane::splat(self.quadratic);
-        rates.bracket = rates.bracket
-            - damping::<A>(
-                self.smoothing_length,
-                linear,
-                quadratic,
-                pair.approach,
-                pair.r2,
-                pair.density_i + pair.density_j,
-            );
+        rates.bracket =
+            rates.bracket - pair.damping::<A>(self.smoothing_length, self.linear[j], self.quadratic);
     }
 }

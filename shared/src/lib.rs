@@ -2,6 +2,7 @@
 
 pub mod artificial_viscosity;
 pub mod bounds;
+pub mod columns;
 pub mod extrapolation;
 pub mod failure;
 pub mod geometry;

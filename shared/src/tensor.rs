@@ -30,6 +30,15 @@ pub fn inverse<const D: usize>(m: &SMatrix<f64, D, D>, determinant: f64) -> Opti
     })
 }
 
+/// Determinant of a moment matrix below which it has no inverse worth using: lone particles, jets, films.
+pub const SMALLEST_DETERMINANT: f64 = 0.05;
+
+/// Inverse of a moment matrix M = sum_j V_j (x_j - x_i) (x) grad W; `None` below [`SMALLEST_DETERMINANT`].
+pub fn moment_inverse<const D: usize>(moment: &SMatrix<f64, D, D>) -> Option<SMatrix<f64, D, D>> {
+    let determinant = determinant(moment);
+    (determinant >= SMALLEST_DETERMINANT).then(|| inverse(moment, determinant)).flatten()
+}
+
 fn cofactor<const D: usize>(m: &SMatrix<f64, D, D>, a: usize, b: usize) -> f64 {
     let (r, s) = ((a + 1) % 3, (a + 2) % 3);
     let (t, u) = ((b + 1) % 3, (b + 2) % 3);
@@ -50,5 +59,7 @@ mod tests {
         assert_eq!(determinant(&b), 18.0);
         assert!((inverse(&b, 18.0).unwrap() * b - Matrix3::identity()).norm() < 1e-15);
         assert!(inverse(&Matrix2::zeros(), 0.0).is_none());
+        assert!(moment_inverse(&Matrix2::new(0.2, 0.0, 0.0, 0.2)).is_none(), "det M = 0.04");
+        assert_eq!(moment_inverse(&Matrix2::new(0.5, 0.0, 0.0, 0.5)), Some(Matrix2::identity() * 2.0));
     }
 }

@@ -1,6 +1,5 @@
 //! The solid process: any [`SolidModel`] behind the half-step protocol.
 
-mod artificial_viscosity;
 mod columns;
 pub mod effects;
 pub mod hypoelastic;

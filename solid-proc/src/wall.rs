@@ -2,8 +2,9 @@
 //! solid around, density rho_w = rho_s0 (1 + p_w / K), no deviatoric stress. A wall that could pull would glue the solid
 //! to it, so only pressures above zero act, and only walls that the scene lets the solid touch are here.
 
-use crate::artificial_viscosity::artificial_viscosity;
 use crate::columns::{Vectors, vectors};
+use halfstep_shared::artificial_viscosity::damping;
+use halfstep_shared::columns::bounds;
 use halfstep_shared::extrapolation::{Extrapolation, ExtrapolationSum};
 use halfstep_shared::geometry::WallPoint;
 use halfstep_shared::kernel::Kernel;
@@ -45,14 +46,12 @@ impl<const D: usize> Walls<D> {
             sums: Vec::new(),
             forces: Vec::new(),
         };
-        let (mut low, mut high) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
         for (i, p) in points.iter().enumerate() {
             for d in 0..D {
                 walls.position[d][i] = p.position[d];
-                low[d] = low[d].min(p.position[d]);
-                high[d] = high[d].max(p.position[d]);
             }
         }
+        let (low, high) = bounds(&walls.position);
         walls.rows.sort(&walls.position, &walls.id, height, low, high);
         for d in 0..D {
             walls.rows.permute(&mut walls.position[d]);
@@ -200,10 +199,10 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for Push<'_, K, D> {
         let f = self.kernel.gradient_over_r::<A>(distance(r2, h));
         let approach = dot::<D, A>(i.velocity, dx);
         let rho = self.density[j];
-        let pi = artificial_viscosity::<A>(
+        let pi = damping::<A>(
             h,
-            self.solid.linear,
-            self.solid.quadratic,
+            Lane::splat(self.solid.linear),
+            Lane::splat(self.solid.quadratic),
             approach,
             r2,
             i.density + Lane::splat(rho),

@@ -3,6 +3,7 @@
 pub mod cluster;
 pub mod conformance;
 pub mod curve;
+pub mod patch;
 pub mod process;
 pub mod run;
 

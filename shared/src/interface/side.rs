@@ -1,5 +1,6 @@
 //! One side's record as columns in row order.
 
+use crate::columns::bounds;
 use crate::neighbours::{PADDING, Rows};
 use crate::protocol::StateRecord;
 
@@ -72,18 +73,11 @@ impl<const D: usize> Side<D> {
         self.records = records.len();
         self.record.clear();
         self.record.extend(0..records.len() as u32);
-        let (mut low, mut high) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
         for d in 0..D {
             self.position[d].clear();
             self.position[d].extend(records.iter().map(|r| r.position[d]));
-            for &x in &self.position[d] {
-                low[d] = low[d].min(x);
-                high[d] = high[d].max(x);
-            }
         }
-        if records.is_empty() {
-            (low, high) = ([0.0; D], [0.0; D]);
-        }
+        let (low, high) = bounds(&self.position);
         self.rows.sort(&self.position, &self.record, height, low, high);
         for column in &mut self.position {
             self.rows.permute(column);

@@ -4,7 +4,7 @@
 //!   D v_i / Dt = sum_j m_j [sigma_i/rho_i² + sigma_j/rho_j² - Pi_ij I + (R_i + R_j) f^n] . grad W    (eqs. 22 to 26)
 
 use super::columns::{Source, State};
-use crate::artificial_viscosity::artificial_viscosity;
+use halfstep_shared::artificial_viscosity::damping;
 use halfstep_shared::kernel::Kernel;
 use halfstep_shared::lane::{Arch, LANES, Lane};
 use halfstep_shared::pair::{PairLaw, distance, dot};
@@ -163,7 +163,8 @@ impl<K: Kernel<D>, T: TensileCorrection<D>, M: Moment, const D: usize> PairLaw<D
         let dv: [Lane; D] = std::array::from_fn(|d| i.velocity[d] - Lane::splat(source.velocity[d]));
         let approach = dot::<D, A>(dv, dx);
         let density_sum = i.density + Lane::splat(source.density);
-        let pi = artificial_viscosity::<A>(h, self.linear, self.quadratic, approach, r2, density_sum);
+        let pi =
+            damping::<A>(h, Lane::splat(self.linear), Lane::splat(self.quadratic), approach, r2, density_sum);
         let mut bracket: [[Lane; D]; D] = std::array::from_fn(|a| {
             std::array::from_fn(|b| {
                 let t = i.stress_term[a][b] + Lane::splat(source.stress_term[a][b]);

@@ -11,8 +11,6 @@ use halfstep_shared::lane::LANES;
 use halfstep_shared::neighbours::PADDING;
 use halfstep_shared::{pair, tensor, wide, with_kernel};
 
-/// Below this determinant of the moment matrix a particle has too few neighbours for a deformation gradient.
-const SINGULAR: f64 = 0.05;
 /// A material that is compressed or stretched further has left what its law describes.
 const VOLUME_RATIO: std::ops::Range<f64> = 0.1..10.0;
 
@@ -27,11 +25,9 @@ impl<const D: usize> TotalLagrangian<D> {
         for slot in 0..self.id.len() {
             let sum = &self.deformations[slot / LANES];
             let moment = Matrix::<D>::from_fn(|a, b| sum.moment[a.min(b)][a.max(b)].0[slot % LANES]);
-            let determinant = tensor::determinant(&moment);
-            let inverse = (determinant >= SINGULAR).then(|| tensor::inverse(&moment, determinant)).flatten();
             // A clamped particle is rigid: it has neither strain nor error vectors. Nor has one that lacks neighbours.
             let rigid = self.rigid_clamps && self.fixed.clamped[slot] != 0.0;
-            let correction = inverse.filter(|_| !rigid);
+            let correction = tensor::moment_inverse(&moment).filter(|_| !rigid);
             self.hourglass[slot] = if correction.is_some() { self.hourglass_modulus } else { 0.0 };
             self.correction[slot] = correction.unwrap_or_else(Matrix::zeros);
         }

@@ -8,8 +8,8 @@
 //! P L in B is the stress, the rest the hourglass force (see `hourglass`): the derivatives of sum_i V0 psi(F_i) and of the
 //! hourglass energy. Momentum and angular momentum are therefore conserved.
 
-use crate::artificial_viscosity::artificial_viscosity;
 use crate::columns::Vectors;
+use halfstep_shared::artificial_viscosity::damping;
 use halfstep_shared::kernel::Kernel;
 use halfstep_shared::lane::{Arch, Lane};
 use halfstep_shared::pair::{PairLaw, distance, dot};
@@ -150,7 +150,7 @@ impl<const D: usize> Damping<D> for Viscous<'_, D> {
         let v: [Lane; D] = std::array::from_fn(|d| own[d] - Lane::splat(self.velocity[d][j]));
         let (approach, r2) = (dot::<D, A>(v, x), dot::<D, A>(x, x));
         let sum = Lane::splat(2.0 * self.density);
-        let pi = artificial_viscosity::<A>(h, self.linear, self.quadratic, approach, r2, sum);
+        let pi = damping::<A>(h, Lane::splat(self.linear), Lane::splat(self.quadratic), approach, r2, sum);
         Lane::splat(-self.density * self.density) * pi
     }
 }

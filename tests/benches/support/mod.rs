@@ -6,16 +6,16 @@ pub(crate) mod naive;
 
 use halfstep_fluid::Fluid;
 use halfstep_fluid::artificial_viscosity::ArtificialViscosity;
-use halfstep_fluid::columns::{Shown, Source};
 use halfstep_fluid::density_diffusion::{Diffusion, Simple, Strength};
 use halfstep_fluid::effects::{Effects, Pass};
 use halfstep_fluid::rates::{PairEffect, RateLaw, RateSum};
 use halfstep_shared::kernel::{Kernel, WendlandC2};
 use halfstep_shared::lane::{Isa, LANES};
-use halfstep_shared::neighbours::{ClusterList, PADDING, Rows};
+use halfstep_shared::neighbours::PADDING;
 use halfstep_shared::pair;
 use halfstep_shared::role::Role;
 use halfstep_shared::scene::{self, ArtificialViscosity as Coefficients, Scene};
+use halfstep_tests::patch;
 use std::path::Path;
 use std::time::Instant;
 
@@ -105,14 +105,12 @@ impl Running {
 
 /// 14 000 particles on a disturbed lattice of spacing 1, as the engine and as the naive pass hold them.
 pub(crate) struct Patch {
-    shown: Shown<2>,
-    list: ClusterList,
+    sorted: patch::Patch,
     pub(crate) sums: Vec<RateSum<2>>,
     pub(crate) isa: Isa,
     pub(crate) naive: Vec<naive::Particle>,
     pub(crate) grid: naive::Grid,
     pub(crate) pass: naive::Pass,
-    id: Vec<u32>,
 }
 
 const H: f64 = 1.33;
@@ -121,44 +119,30 @@ const DIFFUSION: f64 = 1.33;
 
 impl Patch {
     pub(crate) fn new() -> Self {
-        let n = 14_000;
-        let mut shown = Shown::<2>::new(n, 1.0);
-        let mut pressure = vec![0.0; n];
-        let mut naive = Vec::new();
-        for k in 0..n {
+        let particle = |k: usize| {
             let (i, j) = ((k % 140) as f64, (k / 140) as f64);
-            let position = [2.0 + i + 0.2 * (0.7 * j).sin(), 2.0 + j + 0.2 * (1.3 * i).cos()];
-            let velocity = [(0.3 * j).sin(), (0.2 * i).cos()];
-            for d in 0..2 {
-                shown.position[d][k] = position[d];
-                shown.velocity[d][k] = velocity[d];
+            patch::Particle {
+                position: [2.0 + i + 0.2 * (0.7 * j).sin(), 2.0 + j + 0.2 * (1.3 * i).cos()],
+                velocity: [(0.3 * j).sin(), (0.2 * i).cos()],
+                density: 1.0 + 0.01 * (0.2 * i).cos(),
+                pressure: 1.0 + (0.1 * i).sin(),
             }
-            shown.density[k] = 1.0 + 0.01 * (0.2 * i).cos();
-            pressure[k] = 1.0 + (0.1 * i).sin();
-            naive.push(naive::Particle {
-                position: position.into(),
-                velocity: velocity.into(),
-                density: shown.density[k],
-                pressure: pressure[k],
-            });
-        }
-        let mut id: Vec<u32> = (0..n as u32).collect();
-        let mut rows = Rows::<2>::default();
-        rows.sort(&shown.position, &id, 2.0, [-1e3; 2], [1e3; 2]);
-        let [x, y] = &mut shown.position;
-        let [u, v] = &mut shown.velocity;
-        for column in [x, y, u, v, &mut shown.density, &mut pressure] {
-            rows.permute(column);
-        }
-        rows.permute_ids(&mut id);
-        shown.sources.resize(id.len(), Source::ZERO);
-        (0..id.len()).for_each(|slot| shown.show(slot, pressure[slot]));
-        let mut list = ClusterList::default();
-        list.build(&shown.position, &shown.position, &rows, 2.3 * H);
-        let sums = vec![RateSum::default(); list.clusters()];
+        };
+        let particles: Vec<patch::Particle> = (0..14_000).map(particle).collect();
+        let naive: Vec<naive::Particle> = particles
+            .iter()
+            .map(|p| naive::Particle {
+                position: p.position.into(),
+                velocity: p.velocity.into(),
+                density: p.density,
+                pressure: p.pressure,
+            })
+            .collect();
+        let sorted = patch::Patch::new(&particles, 2.3 * H);
+        let sums = vec![RateSum::default(); sorted.list.clusters()];
         let grid = naive::Grid::new(&naive, 2.0 * H);
         let pass = naive::Pass { h: H, mass: 1.0, linear: LINEAR, diffusion: DIFFUSION };
-        Self { shown, list, sums, isa: Isa::detect(), naive, grid, pass, id }
+        Self { sorted, sums, isa: Isa::detect(), naive, grid, pass }
     }
 
     /// The effects of the pass.
@@ -175,7 +159,7 @@ impl Patch {
         let rates = self.pass.run(&self.naive, &self.grid);
         let largest = rates.iter().map(|r| r.0.norm()).fold(0.0, f64::max);
         let mut worst = 0.0_f64;
-        for (slot, &id) in self.id.iter().enumerate().filter(|&(_, &id)| id != PADDING) {
+        for (slot, &id) in self.sorted.id.iter().enumerate().filter(|&(_, &id)| id != PADDING) {
             let sum = &self.sums[slot / LANES];
             for d in 0..2 {
                 worst = worst.max((sum.acceleration[d].0[slot % LANES] - rates[id as usize].0[d]).abs());
@@ -187,9 +171,9 @@ impl Patch {
 
 impl Pass<2> for &mut Patch {
     fn run<E: PairEffect<2>>(self, effects: E) {
-        let shown = &self.shown;
+        let shown = &self.sorted.shown;
         let law = RateLaw { kernel: WendlandC2::<2>::new(H), effects, targets: shown, sources: shown };
-        pair::pass(self.isa, &law, &self.list, &mut self.sums);
+        pair::pass(self.isa, &law, &self.sorted.list, &mut self.sums);
     }
 }
 

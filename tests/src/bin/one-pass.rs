@@ -3,55 +3,30 @@
 //! effect.
 
 use halfstep_fluid::artificial_viscosity::ArtificialViscosity;
-use halfstep_fluid::columns::{Shown, Source};
 use halfstep_fluid::density_diffusion::{DeltaSph, Diffusion, Simple, Strength};
 use halfstep_fluid::effects::{Effects, Pass};
 use halfstep_fluid::rates::{PairEffect, RateLaw, RateSum};
 use halfstep_shared::kernel::{CubicSpline, Kernel};
 use halfstep_shared::lane::Isa;
-use halfstep_shared::neighbours::{ClusterList, Rows};
 use halfstep_shared::pair;
 use halfstep_shared::scene::ArtificialViscosity as Coefficients;
+use halfstep_tests::patch::{Particle, Patch};
 use std::process::ExitCode;
 
 const H: f64 = 1.33;
 
 /// 1600 particles on a disturbed lattice.
-struct Patch {
-    shown: Shown<2>,
-    list: ClusterList,
-    gradient: Vec<[f64; 2]>,
-}
-
-impl Patch {
-    fn new() -> Self {
-        let n = 1600;
-        let mut shown = Shown::<2>::new(n, 1.0);
-        let mut pressure = vec![0.0; n];
-        for k in 0..n {
-            let (i, j) = ((k % 40) as f64, (k / 40) as f64);
-            shown.position[0][k] = i + 0.2 * (0.7 * j).sin();
-            shown.position[1][k] = j + 0.2 * (1.3 * i).cos();
-            shown.velocity[0][k] = (0.3 * j).sin();
-            shown.density[k] = 1.0 + 0.01 * (0.2 * i).cos();
-            pressure[k] = 1.0 + (0.1 * i).sin();
+fn patch() -> Patch {
+    let particle = |k: usize| {
+        let (i, j) = ((k % 40) as f64, (k / 40) as f64);
+        Particle {
+            position: [i + 0.2 * (0.7 * j).sin(), j + 0.2 * (1.3 * i).cos()],
+            velocity: [(0.3 * j).sin(), 0.0],
+            density: 1.0 + 0.01 * (0.2 * i).cos(),
+            pressure: 1.0 + (0.1 * i).sin(),
         }
-        let mut id: Vec<u32> = (0..n as u32).collect();
-        let mut rows = Rows::<2>::default();
-        rows.sort(&shown.position, &id, 2.0, [-1e3; 2], [1e3; 2]);
-        let [x, y] = &mut shown.position;
-        let [u, v] = &mut shown.velocity;
-        for column in [x, y, u, v, &mut shown.density, &mut pressure] {
-            rows.permute(column);
-        }
-        rows.permute_ids(&mut id);
-        shown.sources.resize(id.len(), Source::ZERO);
-        (0..id.len()).for_each(|slot| shown.show(slot, pressure[slot]));
-        let mut list = ClusterList::default();
-        list.build(&shown.position, &shown.position, &rows, 2.3 * H);
-        let gradient = vec![[0.01, 0.02]; id.len()];
-        Self { shown, list, gradient }
-    }
+    };
+    Patch::new(&(0..1600).map(particle).collect::<Vec<_>>(), 2.3 * H)
 }
 
 struct Over<'a>(&'a Patch, &'a mut [RateSum<2>]);
@@ -66,12 +41,13 @@ impl Pass<2> for Over<'_> {
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let patch = Patch::new();
+    let patch = patch();
+    let gradient = vec![[0.01, 0.02]; patch.id.len()];
     let mut sums = vec![RateSum::default(); patch.list.clusters()];
     let pass = Over(&patch, &mut sums);
     let damping = ArtificialViscosity::new(Coefficients { linear: 0.1, quadratic: 0.0 }, 10.0, H);
     let simple = Simple(Strength(0.1));
-    let full = DeltaSph { strength: Strength(0.1), gradient: &patch.gradient };
+    let full = DeltaSph { strength: Strength(0.1), gradient: &gradient };
     let chosen = |density_diffusion| {
         let mut effects = Effects::none();
         effects.artificial_viscosity = Some(damping);

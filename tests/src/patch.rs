@@ -1,0 +1,57 @@
+//! Fluid particles in the engine's order, outside any run: what instruction counts and benchmarks work on.
+
+use halfstep_fluid::columns::{Shown, Source};
+use halfstep_shared::neighbours::{ClusterList, Rows};
+
+/// One particle, before the sort.
+#[derive(Clone, Copy, Debug)]
+pub struct Particle {
+    /// Position, m.
+    pub position: [f64; 2],
+    /// Velocity, m/s.
+    pub velocity: [f64; 2],
+    /// Density, kg/m³.
+    pub density: f64,
+    /// Pressure, Pa.
+    pub pressure: f64,
+}
+
+/// Particles of mass 1, sorted into rows of height 2, with their neighbours.
+#[derive(Clone, Debug)]
+pub struct Patch {
+    /// The particles.
+    pub shown: Shown<2>,
+    /// Their neighbours.
+    pub list: ClusterList,
+    /// Number of the particle in each slot, or padding.
+    pub id: Vec<u32>,
+}
+
+impl Patch {
+    /// Sorts particles and lists all pairs within `reach`.
+    pub fn new(particles: &[Particle], reach: f64) -> Self {
+        let mut shown = Shown::<2>::new(particles.len(), 1.0);
+        let mut pressure: Vec<f64> = particles.iter().map(|p| p.pressure).collect();
+        for (k, p) in particles.iter().enumerate() {
+            for d in 0..2 {
+                shown.position[d][k] = p.position[d];
+                shown.velocity[d][k] = p.velocity[d];
+            }
+            shown.density[k] = p.density;
+        }
+        let mut id: Vec<u32> = (0..particles.len() as u32).collect();
+        let mut rows = Rows::<2>::default();
+        rows.sort(&shown.position, &id, 2.0, [-1e3; 2], [1e3; 2]);
+        let [x, y] = &mut shown.position;
+        let [u, v] = &mut shown.velocity;
+        for column in [x, y, u, v, &mut shown.density, &mut pressure] {
+            rows.permute(column);
+        }
+        rows.permute_ids(&mut id);
+        shown.sources.resize(id.len(), Source::ZERO);
+        (0..id.len()).for_each(|slot| shown.show(slot, pressure[slot]));
+        let mut list = ClusterList::default();
+        list.build(&shown.position, &shown.position, &rows, reach);
+        Self { shown, list, id }
+    }
+}
