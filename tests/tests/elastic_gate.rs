@@ -1,12 +1,16 @@
 //! Elastic gate (Antoci, Gallati and Sibilla 2007): the plate's free end against the experiment and against what
 //! others computed.
 //!
-//! The hypoelastic solid at 2.5 mm has two particles across the plate, the least that bends at all. The experiment's
-//! points and the published peaks are in `tests/reference/elastic-gate`.
+//! The experiment's points and the published peaks are in `tests/reference/elastic-gate`. Computations of a plate that is as
+//! linear as the datasheet's E peak early and low; the total-Lagrangian solid is one of them. The hypoelastic solid is
+//! softer than its E says and comes nearer to the experiment by that.
 
 use halfstep_tests::{Curve, Finished, scene};
 
-const COARSE: f64 = 0.0025;
+/// 2 particles across, the least that bends at all: too stiff with the total-Lagrangian solid.
+const TWO_ACROSS: f64 = 0.0025;
+
+const THREE_ACROSS: f64 = 0.005 / 3.0;
 
 /// Displacement of the free end, mm.
 fn tip(run: &Finished, component: &str) -> Curve {
@@ -53,17 +57,28 @@ fn within_literature((time, peak): (f64, f64)) {
     assert!((0.10..=0.16).contains(&time), "{time} s");
 }
 
-#[test]
-fn a_coarse_gate_opens_as_others_open() {
-    let run = scene("elastic-gate").set("resolution", COARSE).until(0.2).run();
-    sound(&run);
-    within_literature(state("gate, 2.5 mm", &run));
-    // The experiment itself, while the gate opens: published computations are up to 5 mm off there.
+/// As far as the published computations of such a plate: 35.5 mm (Yang et al. 2012) to 42.7 mm (Khayyer et al. 2018), at 0.10
+/// to 0.12 s.
+fn as_a_linear_plate((time, peak): (f64, f64)) {
+    assert!((35.5..=42.7).contains(&peak), "{peak} mm");
+    assert!((0.10..=0.125).contains(&time), "{time} s");
+}
+
+/// The experiment itself, while the gate opens: published computations are up to 5 mm off there.
+fn opens_as_in_the_experiment(run: &Finished) {
     let experiment = Curve::reference("elastic-gate/experiment.csv", "x [mm]");
     for time in [0.04, 0.08] {
-        let (found, truth) = (tip(&run, "x").at(time), experiment.at(time));
+        let (found, truth) = (tip(run, "x").at(time), experiment.at(time));
         assert!((found - truth).abs() < 5.0, "{found} mm at {time} s, {truth} mm in the experiment");
     }
+}
+
+#[test]
+fn a_coarse_gate_opens_as_others_open() {
+    let run = scene("elastic-gate").set("resolution", THREE_ACROSS).until(0.2).run();
+    sound(&run);
+    as_a_linear_plate(state("gate, 3 across", &run));
+    opens_as_in_the_experiment(&run);
     // A free end that swings on a fixed length rises.
     assert!(tip(&run, "y").at(0.12) > 5.0);
     for stem in ["fluid", "solid"] {
@@ -74,9 +89,21 @@ fn a_coarse_gate_opens_as_others_open() {
 }
 
 #[test]
+fn a_coarse_hypoelastic_gate_opens_as_others_open() {
+    let run = scene("elastic-gate")
+        .set("resolution", TWO_ACROSS)
+        .set("solid.model", "hypoelastic")
+        .until(0.16)
+        .run();
+    sound(&run);
+    within_literature(state("hypoelastic gate, 2 across", &run));
+    opens_as_in_the_experiment(&run);
+}
+
+#[test]
 fn the_phase_blind_gate_opens() {
     let run = scene("elastic-gate")
-        .set("resolution", COARSE)
+        .set("resolution", TWO_ACROSS)
         .set("interface.treatment", "phase-blind")
         .until(0.02)
         .run();
@@ -93,7 +120,16 @@ fn the_phase_blind_gate_opens() {
 fn the_gate_at_5_across() {
     let run = scene("elastic-gate").until(0.24).threads(2).run();
     sound(&run);
-    within_literature(state("gate, moving wall, 1 mm", &run));
+    as_a_linear_plate(state("gate, 5 across", &run));
+    opens_as_in_the_experiment(&run);
+}
+
+#[test]
+#[ignore = "minutes: full resolution"]
+fn the_hypoelastic_gate_at_5_across() {
+    let run = scene("elastic-gate").set("solid.model", "hypoelastic").until(0.24).threads(2).run();
+    sound(&run);
+    within_literature(state("hypoelastic gate, 5 across", &run));
     let experiment = Curve::reference("elastic-gate/experiment.csv", "x [mm]");
     let rms = tip(&run, "x").rms_to(&experiment);
     // As close as the published computation that comes with the experiment (Antoci et al. 2007: 50.1 for 46.4 mm).
@@ -106,20 +142,28 @@ fn the_phase_blind_gate_at_5_across() {
     let run = scene("elastic-gate").set("interface.treatment", "phase-blind").until(0.1).threads(2).run();
     state("gate, phase-blind, 1 mm", &run);
     assert!(run.report.audit.action_reaction.unwrap() <= 1e-12);
-    let experiment = Curve::reference("elastic-gate/experiment.csv", "x [mm]");
-    for time in [0.04, 0.08] {
-        let (found, truth) = (tip(&run, "x").at(time), experiment.at(time));
-        assert!((found - truth).abs() < 5.0, "{found} mm at {time} s, {truth} mm in the experiment");
+    opens_as_in_the_experiment(&run);
+}
+
+#[test]
+#[ignore = "many minutes: up to 10 particles across"]
+fn the_gate_from_3_to_10_across() {
+    for across in [3, 4, 5, 10] {
+        let resolution = 0.005 / f64::from(across);
+        let run = scene("elastic-gate").set("resolution", resolution).until(0.16).threads(2).run();
+        sound(&run);
+        as_a_linear_plate(state(&format!("gate, {across} across"), &run));
     }
 }
 
 #[test]
 #[ignore = "many minutes: up to 10 particles across"]
-fn the_gate_from_2_to_10_across() {
+fn the_hypoelastic_gate_from_2_to_10_across() {
     for across in [2, 4, 5, 10] {
         let resolution = 0.005 / f64::from(across);
-        let run = scene("elastic-gate").set("resolution", resolution).until(0.16).threads(2).run();
+        let gate = scene("elastic-gate").set("resolution", resolution).set("solid.model", "hypoelastic");
+        let run = gate.until(0.16).threads(2).run();
         sound(&run);
-        within_literature(state(&format!("gate, {across} across"), &run));
+        within_literature(state(&format!("hypoelastic gate, {across} across"), &run));
     }
 }

@@ -36,6 +36,8 @@ macro_rules! effect_names {
             RenormalisedGradient "renormalised-gradient",
             /// Clamps hold the total-Lagrangian solid at their boxes' faces.
             ClampFace "clamp-face",
+            /// Clamps act on the hypoelastic solid as walls do.
+            WallClamp "wall-clamp",
             /// Rigid walls toward the solid.
             WallContact "wall-contact",
             /// A solid that rests is not computed until fluid comes near.

@@ -10,6 +10,7 @@ pub(super) struct Defaults {
     pub(super) fluid_viscosity: ArtificialViscosity,
     pub(super) density_diffusion: DensityDiffusion,
     pub(super) density_diffusion_coefficient: f64,
+    pub(super) model: SolidModelName,
     pub(super) solid_smoothing_ratio: f64,
     pub(super) solid_viscosity: ArtificialViscosity,
     pub(super) artificial_stress: ArtificialStress,
@@ -27,6 +28,7 @@ impl Defaults {
             fluid_viscosity: ArtificialViscosity { linear: 0.1, quadratic: 0.0 },
             density_diffusion: DensityDiffusion::DeltaSph,
             density_diffusion_coefficient: 0.1,
+            model: SolidModelName::TotalLagrangian,
             solid_smoothing_ratio: 1.33,
             solid_viscosity: ArtificialViscosity { linear: 1.0, quadratic: 1.0 },
             artificial_stress: ArtificialStress { strength: 0.3, exponent: 4.0 },
@@ -44,6 +46,7 @@ impl Defaults {
                 fluid_viscosity: ArtificialViscosity { linear: 1.0, quadratic: 1.0 },
                 density_diffusion: DensityDiffusion::DeltaSph,
                 density_diffusion_coefficient: 0.1,
+                model: SolidModelName::Hypoelastic,
                 solid_smoothing_ratio: 1.33,
                 solid_viscosity: ArtificialViscosity { linear: 1.0, quadratic: 1.0 },
                 artificial_stress: ArtificialStress { strength: 0.3, exponent: 4.0 },
@@ -54,6 +57,15 @@ impl Defaults {
             },
         }
     }
+
+    /// With the solid model that the interface can work with.
+    pub(super) fn with_treatment(self, treatment: Treatment) -> Self {
+        match treatment {
+            Treatment::MovingWall => self,
+            Treatment::PhaseBlind => Self { model: SolidModelName::Hypoelastic, ..self },
+        }
+    }
+
     /// With what the solid's model asks for.
     pub(super) fn with_model(self, model: SolidModelName) -> Self {
         match model {

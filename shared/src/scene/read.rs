@@ -34,6 +34,7 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report) -> Draft {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let end_time = top.number("end_time", None, Range::at_least(1e-12).up_to(1e12));
     let numerics = numerics(top.section("numerics"), dimension, &defaults);
+    let interface = interface(top.section("interface"), &defaults);
     let (fluid, sound_speed_auto) = match top.section("fluid") {
         section if section.is_present() => {
             let (fluid, auto) = fluid(section, &defaults);
@@ -42,7 +43,9 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report) -> Draft {
         _ => (None, false),
     };
     let solid = match top.section("solid") {
-        section if section.is_present() => Some(solid(section, defaults, numerics.max_sub_steps)),
+        section if section.is_present() => {
+            Some(solid(section, defaults.with_treatment(interface.treatment), numerics.max_sub_steps))
+        }
         _ => None,
     };
     let scene = Scene {
@@ -61,7 +64,7 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report) -> Draft {
         gravity: top.vector("gravity", dimension, Some([0.0, -9.81, 0.0])),
         fluid,
         solid,
-        interface: interface(top.section("interface"), &defaults),
+        interface,
         output: output(top.section("output"), end_time),
         shapes: top.tables("shape").into_iter().map(|s| read_shape::shape(s, dimension)).collect(),
         probes: top.tables("probe").into_iter().filter_map(|p| read_probe::probe(p, dimension)).collect(),
@@ -145,7 +148,7 @@ fn viscosity(section: &Section<'_>, default: ArtificialViscosity) -> ArtificialV
 fn solid(section: Section<'_>, defaults: Defaults, max_sub_steps: u32) -> Solid {
     const HYPOELASTIC: SolidModelName = SolidModelName::Hypoelastic;
     let models = [("hypoelastic", HYPOELASTIC), ("total-lagrangian", SolidModelName::TotalLagrangian)];
-    let model = section.choice("model", Some(HYPOELASTIC), &models).unwrap_or(HYPOELASTIC);
+    let model = section.choice("model", Some(defaults.model), &models).unwrap_or(defaults.model);
     let defaults = defaults.with_model(model);
     let stress = section.section("artificial_stress");
     let solid = Solid {

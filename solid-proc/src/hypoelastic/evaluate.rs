@@ -118,6 +118,10 @@ impl<const D: usize> Hypoelastic<D> {
             note(EffectName::RenormalisedGradient, evaluation(self));
             self.renormalised = true;
         }
+        if let Some(clamp) = self.wall_clamp.take() {
+            note(EffectName::WallClamp, evaluation(self));
+            self.wall_clamp = Some(clamp);
+        }
         if let Some(walls) = self.walls.take() {
             note(EffectName::WallContact, evaluation(self));
             self.walls = Some(walls);
@@ -133,6 +137,7 @@ impl<const D: usize> Hypoelastic<D> {
             self.sort();
             self.apply_state_equation();
         }
+        self.show_clamps_as_walls();
         with_kernel!(self.kernel, self.smoothing_length, D, |kernel| self.sums(kernel));
         let g = self.material.shear_modulus();
         for slot in 0..self.id.len() {

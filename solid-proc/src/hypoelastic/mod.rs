@@ -10,5 +10,6 @@ mod rates;
 mod stress_rate;
 #[cfg(test)]
 mod tests;
+mod wall_clamp;
 
 pub use model::Hypoelastic;

@@ -2,6 +2,7 @@
 
 use super::columns::{Rates, Source, State};
 use super::rates::SolidSum;
+use super::wall_clamp::WallClamp;
 use crate::effects::takes_part;
 use crate::model::{Load, OutOfBounds, SolidModel};
 use crate::surface::surface_set;
@@ -31,6 +32,7 @@ pub struct Hypoelastic<const D: usize> {
     pub(super) gravity: [f64; D],
     domain: ([f64; D], [f64; D]),
     pub(super) renormalised: bool,
+    pub(super) wall_clamp: Option<WallClamp<D>>,
     pub(super) artificial_stress: Option<u32>,
     pub(super) mass: f64,
     pub(super) points: Vec<SolidPoint<D>>,
@@ -84,6 +86,7 @@ impl<const D: usize> Hypoelastic<D> {
             gravity: std::array::from_fn(|d| scene.gravity[d]),
             domain: (std::array::from_fn(|d| domain.min[d]), std::array::from_fn(|d| domain.max[d])),
             renormalised: takes_part(scene, EffectName::RenormalisedGradient),
+            wall_clamp: takes_part(scene, EffectName::WallClamp).then(WallClamp::default),
             artificial_stress: artificial.then_some(exponent),
             mass: material.density * scene.resolution.powi(D as i32),
             material,

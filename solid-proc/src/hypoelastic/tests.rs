@@ -13,6 +13,7 @@ fn block(overrides: &[&str]) -> Scene {
         end_time = 1.0
         gravity = [0.0, 0.0]
         [solid]
+        model = "hypoelastic"
         density = 1000.0
         youngs_modulus = 1e6
         poissons_ratio = 0.3
@@ -68,6 +69,43 @@ fn uniform_stretch_has_hookes_rate() {
         assert!((rate[0][0] - 4.0 / 3.0 * g).abs() < 1e-6 * g, "{rate:?}");
         assert!((rate[1][1] + 2.0 / 3.0 * g).abs() < 1e-6 * g);
         assert!(rate[0][1].abs() < 1e-6 * g);
+    }
+}
+
+#[test]
+fn a_clamp_as_wall_shows_what_is_around_it_and_no_shear() {
+    let overrides = [
+        "shape.block.clamp={ min = [0.0, 0.0], max = [0.05, 0.15] }",
+        "effects.wall-clamp=\"on\"",
+        "gravity=[-10.0, 0.0]",
+    ];
+    let mut solid = moving(&overrides, |_| [0.0, 0.0]);
+    // 1 % denser: p = K / 100 with K = E / 1.2, and at the clamp rho g more per metre to the left.
+    for slot in 0..solid.id.len() {
+        solid.now.density[slot] = 1010.0;
+        solid.now.stress[0][1][slot] = 77.0;
+    }
+    solid.apply_state_equation();
+    solid.compute_rates(&Load::none(solid.particles()));
+    let uniform = 1e6 / 1.2 * 0.01;
+    for p in 0..solid.particles() as u32 {
+        let (x, record) = (solid.reference(p)[0], solid.record(p));
+        if x > 0.05 {
+            assert!(
+                (record.pressure - uniform).abs() < 1e-6 && record.deviatoric_stress[3] == 77.0,
+                "{record:?}"
+            );
+            continue;
+        }
+        assert_eq!(record.deviatoric_stress, [0.0; 6]);
+        let found = record.pressure - uniform;
+        if x > 0.04 {
+            // Free particles in reach are 1 and 2 spacings away, the nearer ones weigh more.
+            assert!(1010.0 * 10.0 * 0.01 < found && found < 1010.0 * 10.0 * 0.02, "{found}");
+        } else if x < 0.02 {
+            assert_eq!(record.pressure, 0.0, "nothing free in reach");
+        }
+        assert!((record.density - 1000.0 * (1.0 + record.pressure / (1e6 / 1.2))).abs() < 1e-9);
     }
 }
 

@@ -8,8 +8,14 @@ use halfstep_shared::scene::{self, Scene};
 use halfstep_solid::{Load, SolidModel};
 use std::path::Path;
 
-/// Makes the model of a scene.
-pub type Make = fn(&Scene, Isa) -> Option<Box<dyn SolidModel<2>>>;
+/// A model under test.
+#[derive(Clone, Copy)]
+pub struct Make {
+    /// Makes it for a scene.
+    pub build: fn(&Scene, Isa) -> Option<Box<dyn SolidModel<2>>>,
+    /// What its scenes say in `[solid]` about it: a line of TOML.
+    pub keys: &'static str,
+}
 type Model = Box<dyn SolidModel<2>>;
 
 const MATERIAL: &str = r#"
@@ -43,13 +49,15 @@ const FLOOR: &str = r#"
     contact = true
 "#;
 
-fn parse(parts: &[&str], overrides: &[&str]) -> Scene {
+/// A scene of parts, the material first.
+fn parse(make: Make, parts: &[&str], overrides: &[&str]) -> Scene {
     let overrides: Vec<String> = overrides.iter().map(|&o| o.into()).collect();
-    scene::parse(&parts.concat(), Path::new("solid.toml"), &overrides).expect("a right scene")
+    let text = [MATERIAL, make.keys, "\n"].into_iter().chain(parts.iter().copied()).collect::<String>();
+    scene::parse(&text, Path::new("solid.toml"), &overrides).expect("a right scene")
 }
 
 fn model(make: Make, parts: &[&str], overrides: &[&str]) -> Model {
-    make(&parse(parts, overrides), Isa::detect()).expect("a solid")
+    (make.build)(&parse(make, parts, overrides), Isa::detect()).expect("a solid")
 }
 
 fn all(model: &Model) -> impl Iterator<Item = u32> + use<> {
@@ -85,8 +93,8 @@ fn kinetic_energy(model: &Model) -> f64 {
 
 /// Particles are the scene's, numbered in its order; the record of the first state shows the reference configuration.
 pub fn identity(make: Make) {
-    let scene = parse(&[MATERIAL, BLOCK, BALL], &[]);
-    let model = make(&scene, Isa::detect()).expect("a solid");
+    let scene = parse(make, &[BLOCK, BALL], &[]);
+    let model = (make.build)(&scene, Isa::detect()).expect("a solid");
     let layout = geometry::layout::<2>(&scene);
     assert_eq!(model.particles(), layout.solid.len());
     for p in all(&model) {
@@ -104,14 +112,14 @@ pub fn identity(make: Make) {
 
 /// 60 x 60 spacings, 2h = 2.66 dx: surface rows lie half a spacing under the surface, two more are within reach.
 pub fn interface_set(make: Make) {
-    let model = model(make, &[MATERIAL, BLOCK], &["shape.block.box.max=[0.6,0.6]"]);
+    let model = model(make, &[BLOCK], &["shape.block.box.max=[0.6,0.6]"]);
     assert_eq!(model.interface_set().len(), 60 * 60 - 54 * 54);
     assert!(model.interface_set().windows(2).all(|w| w[0] < w[1]));
 }
 
 /// A block at rest stays at rest.
 pub fn rest(make: Make) {
-    let mut model = model(make, &[MATERIAL, BLOCK], &[]);
+    let mut model = model(make, &[BLOCK], &[]);
     let load = Load::none(model.particles());
     for _ in 0..10 {
         let dt = model.sub_step_limit();
@@ -126,7 +134,7 @@ pub fn rest(make: Make) {
 /// A block that flies and turns about nothing: 1 N/m on every particle of 0.1 kg/m makes 10 m/s² everywhere.
 pub fn uniform_force(make: Make) {
     for sub_steps in [1, 4] {
-        let mut model = model(make, &[MATERIAL, BLOCK], &[]);
+        let mut model = model(make, &[BLOCK], &[]);
         let mut load = Load::none(model.particles());
         load.force.fill([1.0, 0.0]);
         let dt = f64::from(sub_steps) * model.sub_step_limit();
@@ -150,7 +158,7 @@ pub fn stage_0_is_forgotten(make: Make) {
     for sub_steps in [1, 6] {
         // One goes to the middle under the load of stage 1, the other under a wild one.
         let ends = [&loads[1], &loads[2]].map(|first| {
-            let mut model = model(make, &[MATERIAL, BLOCK], &[]);
+            let mut model = model(make, &[BLOCK], &[]);
             assert_eq!(model.particles(), 300);
             let dt = f64::from(sub_steps) * model.sub_step_limit();
             let start = model.record(7).position;
@@ -173,7 +181,7 @@ pub fn stage_0_is_forgotten(make: Make) {
 /// The same time with 4 sub-steps of a step four times as long: without load the sub-steps are the single steps.
 pub fn sub_steps(make: Make) {
     let swing = ["shape.block.cantilever_mode={fraction=0.01,root=0.0,length=0.2}"];
-    let [mut one, mut four] = [(); 2].map(|()| model(make, &[MATERIAL, BLOCK], &swing));
+    let [mut one, mut four] = [(); 2].map(|()| model(make, &[BLOCK], &swing));
     let load = Load::none(one.particles());
     let dt = 0.25 * one.sub_step_limit();
     for _ in 0..10 {
@@ -197,7 +205,7 @@ pub fn sub_steps(make: Make) {
 /// Clamped particles say so and never move; the others bend away.
 pub fn clamps(make: Make) {
     let clamp = "shape.block.clamp={min=[0.0,0.0],max=[0.05,0.2]}";
-    let mut model = model(make, &[MATERIAL, BLOCK], &[clamp, "gravity=[0.0,-10.0]"]);
+    let mut model = model(make, &[BLOCK], &[clamp, "gravity=[0.0,-10.0]"]);
     let mut load = Load::none(model.particles());
     load.force.fill([0.0, -1.0]);
     let dt = model.sub_step_limit();
@@ -220,7 +228,7 @@ pub fn clamps(make: Make) {
 pub fn conservation(make: Make) {
     let swing =
         ["shape.block.cantilever_mode={fraction=0.02,root=0.0,length=0.2}", "shape.block.velocity=[1,2]"];
-    let mut model = model(make, &[MATERIAL, BLOCK, BALL], &swing);
+    let mut model = model(make, &[BLOCK, BALL], &swing);
     let load = Load::none(model.particles());
     let (p0, l0) = (momentum(&model), angular_momentum(&model));
     let scale: f64 =
@@ -238,7 +246,7 @@ pub fn conservation(make: Make) {
 
 /// A ball thrown at a block bounces off: it pushes the block and does not enter it.
 pub fn bodies_collide(make: Make) {
-    let mut model = model(make, &[MATERIAL, BLOCK, BALL], &[]);
+    let mut model = model(make, &[BLOCK, BALL], &[]);
     let load = Load::none(model.particles());
     let dt = model.sub_step_limit();
     let start = kinetic_energy(&model);
@@ -271,7 +279,7 @@ pub fn bodies_collide(make: Make) {
 pub fn wall_contact(make: Make) {
     let lowest = |overrides: &[&str]| {
         let all_of = [&["shape.block.velocity=[0,-1]"], overrides].concat();
-        let mut model = model(make, &[MATERIAL, BLOCK, FLOOR], &all_of);
+        let mut model = model(make, &[BLOCK, FLOOR], &all_of);
         let load = Load::none(model.particles());
         let dt = model.sub_step_limit();
         let mut lowest = f64::INFINITY;
@@ -293,7 +301,7 @@ pub fn wall_contact(make: Make) {
 /// A time step far beyond the limit, and a load that is no number, end as errors that name a particle and a quantity.
 pub fn bounds(make: Make) {
     let swing = ["shape.block.cantilever_mode={fraction=0.01,root=0.0,length=0.2}"];
-    let mut unstable = model(make, &[MATERIAL, BLOCK], &swing);
+    let mut unstable = model(make, &[BLOCK], &swing);
     let load = Load::none(unstable.particles());
     let dt = 4.0 * unstable.sub_step_limit();
     let failure = (0..100)
@@ -302,7 +310,7 @@ pub fn bounds(make: Make) {
     assert!([Quantity::Density, Quantity::Speed].contains(&failure.quantity), "{failure:?}");
     assert!((failure.particle as usize) < unstable.particles());
 
-    let mut poisoned = model(make, &[MATERIAL, BLOCK], &[]);
+    let mut poisoned = model(make, &[BLOCK], &[]);
     let mut load = Load::none(poisoned.particles());
     load.force[17] = [f64::NAN, 0.0];
     let dt = poisoned.sub_step_limit();
@@ -319,7 +327,7 @@ pub fn threads(make: Make) {
         ["shape.block.box.max=[0.4,0.4]", "shape.block.cantilever_mode={fraction=0.02,root=0.0,length=0.4}"];
     let run = |threads| {
         on_threads(threads, || {
-            let mut model = model(make, &[MATERIAL, BLOCK, FLOOR], &big);
+            let mut model = model(make, &[BLOCK, FLOOR], &big);
             assert!(model.particles() > 1500);
             let load = Load::none(model.particles());
             let dt = model.sub_step_limit();
