@@ -101,7 +101,7 @@ impl<S: Transport, const D: usize> Coupler<S, D> {
                 if tick.frame {
                     foreign.write(self.frame - 1, tick.time, solid.records())?;
                 }
-                let values = foreign.measure(solid.records());
+                let values = foreign.measure(solid.records(), &self.solid_forces);
                 if of_solid.probes.is_empty() {
                     of_solid.probes = values;
                 }

@@ -1,8 +1,8 @@
 //! What the coupler does for a solid process that only exchanges states: its frames and probes, from its records.
 
-use halfstep_shared::geometry::nearest;
+use halfstep_shared::geometry::{holds, nearest};
 use halfstep_shared::output::{Frame, FramePoint, FrameWriter, OutputError};
-use halfstep_shared::protocol::StateRecord;
+use halfstep_shared::protocol::{ForceRecord, StateRecord};
 use halfstep_shared::scene::{Phase, ProbeKind, Scene};
 use std::path::Path;
 
@@ -34,7 +34,9 @@ impl ForeignSolid {
     }
 
     /// Probe values from the state at n.
-    pub fn measure(&mut self, records: &[StateRecord]) -> &[f64] {
+    ///
+    /// `forces` answer the same state, record by record.
+    pub fn measure(&mut self, records: &[StateRecord], forces: &[ForceRecord]) -> &[f64] {
         if self.first.is_empty() {
             self.first = records.iter().map(|r| r.position).collect();
             self.nearest = self.kinds.iter().map(|kind| self.nearest_to(kind)).collect();
@@ -53,6 +55,15 @@ impl ForeignSolid {
                     let energy =
                         |r: &StateRecord| 0.5 * r.mass * r.velocity.iter().map(|v| v * v).sum::<f64>();
                     self.values.push(records.iter().map(energy).sum());
+                }
+                ProbeKind::Force { within } => {
+                    for d in 0..self.dimension {
+                        let inside = |i: &usize| within.is_none_or(|b| holds(&b, &self.first[*i], 0.0));
+                        let force = |i: usize| {
+                            records[i].mass * forces[i].cross_viscosity[d] + forces[i].stress_force[d]
+                        };
+                        self.values.push((0..records.len()).filter(inside).map(force).sum());
+                    }
                 }
                 _ => {
                     let mass: f64 = records.iter().map(|r| r.mass).sum();

@@ -228,7 +228,8 @@ fn solid_point<const D: usize>(
 }
 
 /// Whether a box, its surface included, holds a point.
-fn holds<const D: usize>(block: &Block, position: &[f64; D], tolerance: f64) -> bool {
+/// A point lies in a box or within `tolerance` (m) of it.
+pub fn holds<const D: usize>(block: &Block, position: &[f64; D], tolerance: f64) -> bool {
     (0..D).all(|a| block.min[a] - tolerance <= position[a] && position[a] <= block.max[a] + tolerance)
 }
 

@@ -7,7 +7,7 @@ use crate::sleep::{Rest, Sleep};
 use crate::sub_steps::SubStepping;
 use crate::total_lagrangian::TotalLagrangian;
 use halfstep_shared::failure::{Diverged, RoleName};
-use halfstep_shared::geometry::nearest;
+use halfstep_shared::geometry::{holds, nearest};
 use halfstep_shared::interface::{Interface, Parameters};
 use halfstep_shared::lane::Isa;
 use halfstep_shared::output::Frame;
@@ -36,6 +36,8 @@ enum Measurement {
     Displacement(Vec<u32>),
     KineticEnergy,
     Centroid,
+    /// Force of the fluid on these particles.
+    Force(Vec<u32>),
 }
 
 impl<const D: usize> Solid<D> {
@@ -64,6 +66,11 @@ impl<const D: usize> Solid<D> {
                 }
                 ProbeKind::KineticEnergy { phase: Phase::Solid } => Some(Measurement::KineticEnergy),
                 ProbeKind::Centroid { phase: Phase::Solid } => Some(Measurement::Centroid),
+                ProbeKind::Force { within } => {
+                    let set = model.interface_set().iter().copied();
+                    let inside = |p: &u32| within.is_none_or(|b| holds(&b, &model.reference(*p), 0.0));
+                    Some(Measurement::Force(set.filter(inside).collect()))
+                }
                 _ => None,
             })
             .collect();
@@ -205,6 +212,11 @@ impl<const D: usize> Role for Solid<D> {
                         let moment: f64 =
                             self.all().map(|p| self.model.mass(p) * self.model.position(p)[d]).sum();
                         put(moment / mass);
+                    }
+                }
+                Measurement::Force(particles) => {
+                    for d in 0..D {
+                        put(particles.iter().map(|&p| self.load.force[p as usize][d]).sum());
                     }
                 }
             }

@@ -10,7 +10,11 @@ use halfstep_tests::{Finished, scene};
 /// Plate theory, m.
 const DEFLECTION: f64 = -6.85e-5;
 
-/// Mean deflection over the theory's, once the first swing is over; and mean pressure 1 m deep over rho g depth.
+/// Weight of the water, N per metre of depth.
+const WEIGHT: f64 = 1000.0 * 9.81 * 2.0;
+
+/// Mean deflection over the theory's, once the first swing is over; and mean pressure 1 m deep over rho g depth. The plate carries
+/// the water.
 fn ratios(what: &str, run: &Finished) -> (f64, f64) {
     let mean = |name: &str| run.curve(name).between(0.05, run.report.time).mean();
     let (deflection, pressure) = (mean("middle.y") / DEFLECTION, mean("depth.pressure") / 9810.0);
@@ -20,6 +24,9 @@ fn ratios(what: &str, run: &Finished) -> (f64, f64) {
         run.report.sub_steps.unwrap_or(1),
         run.report.wall_seconds
     );
+    let load = mean("load.y") / -WEIGHT;
+    println!("the plate carries {load:.3} of the water");
+    assert!((load - 1.0).abs() < 0.02, "{load}");
     let audit = &run.report.audit;
     assert!(audit.action_reaction.unwrap() <= 1e-12 && audit.min_gap.unwrap() > 0.3, "{audit:?}");
     (deflection, pressure)

@@ -133,6 +133,7 @@ fn axis(name: &str, kind: &ProbeKind) -> String {
         ProbeKind::Displacement { .. } => format!("{name} displacement"),
         ProbeKind::Centroid { .. } => format!("{name} centre of mass"),
         ProbeKind::Front => format!("{name} reach"),
+        ProbeKind::Force { .. } => format!("{name} force"),
         ProbeKind::Pressure { .. } | ProbeKind::WaterLevel { .. } | ProbeKind::KineticEnergy { .. } => {
             // `p1.pressure` reads well; the component of these is the quantity.
             name.replacen('.', " ", 1)

@@ -284,6 +284,20 @@ impl Check<'_> {
                     self.wrong(&format!("{key}.x"), "is outside the domain: no fluid gets there");
                 }
             }
+            ProbeKind::Force { .. } if self.scene.fluid.is_none() || self.scene.solid.is_none() => {
+                self.wrong(&format!("{key}.kind"), "needs a fluid and a solid");
+            }
+            ProbeKind::Force { within: Some(within) } => {
+                let near = |s: &&Shape| {
+                    let bounds = geometry::bounding_box(s, self.scene);
+                    s.phase == Phase::Solid
+                        && (0..self.scene.dimension)
+                            .all(|a| bounds.min[a] < within.max[a] && within.min[a] < bounds.max[a])
+                };
+                if !self.scene.shapes.iter().any(|s| near(&s)) {
+                    self.wrong(&format!("{key}.within"), "holds no part of a solid shape");
+                }
+            }
             _ => (),
         }
     }

@@ -1,6 +1,6 @@
 //! What is measured, and the curves that it is compared with.
 
-use super::Phase;
+use super::{Block, Phase};
 use serde::{Deserialize, Serialize};
 
 /// Something measured while the run goes on.
@@ -43,13 +43,18 @@ pub enum ProbeKind {
         /// Fluid or solid.
         phase: Phase,
     },
+    /// Force of the fluid on the solid; components x, y (, z), N (2D: N/m).
+    Force {
+        /// Only on particles whose place in the initial configuration is in this box.
+        within: Option<Block>,
+    },
 }
 
 impl ProbeKind {
     /// The phase whose process measures it.
     pub fn phase(&self) -> Phase {
         match *self {
-            Self::Displacement { .. } => Phase::Solid,
+            Self::Displacement { .. } | Self::Force { .. } => Phase::Solid,
             Self::Pressure { .. } | Self::WaterLevel { .. } | Self::Front => Phase::Fluid,
             Self::KineticEnergy { phase } | Self::Centroid { phase } => phase,
         }
@@ -63,6 +68,7 @@ impl ProbeKind {
             Self::WaterLevel { .. } => (&["level"], "m"),
             Self::Front => (&["x"], "m"),
             Self::KineticEnergy { .. } => (&["energy"], "J"),
+            Self::Force { .. } => (axes, "N"),
         }
     }
 }

@@ -14,15 +14,17 @@ enum Kind {
     Front,
     KineticEnergy,
     Centroid,
+    Force,
 }
 
-const KINDS: [(&str, Kind); 6] = [
+const KINDS: [(&str, Kind); 7] = [
     ("displacement", Kind::Displacement),
     ("pressure", Kind::Pressure),
     ("water-level", Kind::WaterLevel),
     ("front", Kind::Front),
     ("kinetic-energy", Kind::KineticEnergy),
     ("centroid", Kind::Centroid),
+    ("force", Kind::Force),
 ];
 
 const MOVING: [(&str, Phase); 2] = [("fluid", Phase::Fluid), ("solid", Phase::Solid)];
@@ -39,6 +41,10 @@ pub(super) fn probe(section: Section<'_>, dimension: usize) -> Option<Probe> {
         Kind::Front => ProbeKind::Front,
         Kind::KineticEnergy => ProbeKind::KineticEnergy { phase: section.choice("phase", None, &MOVING)? },
         Kind::Centroid => ProbeKind::Centroid { phase: section.choice("phase", None, &MOVING)? },
+        Kind::Force => {
+            let within = section.section("within");
+            ProbeKind::Force { within: within.is_present().then(|| within.whole_block(dimension)) }
+        }
     };
     section.finish();
     Some(Probe { name, kind })
