@@ -16,6 +16,7 @@ pub mod result;
 pub mod runs;
 pub mod target;
 
+use choose::Surprise;
 use error::StudyError;
 use halfstep_shared::output::RunReport;
 use halfstep_shared::output::run_json::RunStatus;
@@ -129,6 +130,16 @@ impl<'s> Session<'s> {
             self.rows.push(Row::new(setting, &self.metrics, reports, chosen));
         }
         Ok(true)
+    }
+
+    /// How wrong the coarser rows were about the finest, each with the limits that were known then.
+    fn surprise(&self, study: &Study, metric: usize) -> Option<Surprise> {
+        let finest = study.rows.iter().map(|r| r.resolution).fold(f64::INFINITY, f64::min);
+        let before: Vec<Row> =
+            study.rows.iter().filter(|r| r.resolution > finest * (1.0 + 1e-9)).cloned().collect();
+        let against = Some(study.metrics[metric].against);
+        let seen = MetricResult::new(&self.scene, &self.metrics, metric, &before, against);
+        Surprise::new(&study.rows, &study.metrics[metric], &before, &seen)
     }
 
     /// The rows so far, compared.

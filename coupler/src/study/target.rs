@@ -32,7 +32,9 @@ impl Session<'_> {
     pub fn reach(&mut self, goal: Goal, metric: usize) -> Result<Reached, StudyError> {
         for _ in 0..ATTEMPTS {
             let study = self.study();
-            let all = candidates(&study.rows, &study.metrics[metric], &self.spacings(&study));
+            let surprise = self.surprise(&study, metric);
+            let spacings = self.spacings(&study);
+            let all = candidates(&study.rows, &study.metrics[metric], surprise, &spacings);
             let mut open = all.clone();
             let (candidate, setting) = loop {
                 let Some(found) = pick(goal, &open).cloned() else {
