@@ -4,6 +4,7 @@ pub mod beam;
 pub mod cluster;
 pub mod conformance;
 pub mod curve;
+pub mod finite_elements;
 pub mod patch;
 pub mod process;
 pub mod run;
