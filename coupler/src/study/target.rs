@@ -47,6 +47,15 @@ impl Session<'_> {
                 }
             };
             println!("{}", describe(&study, metric, &candidate));
+            if let Goal::Error(most) = goal
+                && candidate.row.is_none()
+                && candidate.error.high() > most
+            {
+                println!(
+                    "not sure: nothing is expected to lie below {} with its whole interval",
+                    percent(Some(most))
+                );
+            }
             if let Some(row) = candidate.row {
                 return Ok(Reached::Yes(study.rows[row].changes.clone()));
             }
@@ -130,12 +139,12 @@ fn interval(prediction: &Prediction, show: impl Fn(f64) -> String) -> String {
 
 fn out_of_reach(goal: Goal, all: &[Candidate]) -> String {
     let best = |f: fn(&Candidate) -> f64| all.iter().min_by(|a, b| f(a).total_cmp(&f(b)));
-    match (goal, best(|c| c.error.high()), best(|c| c.time.high())) {
+    match (goal, best(|c| c.error.value), best(|c| c.time.high())) {
         (Goal::Error(most), Some(best), _) => format!(
             "no settings are expected to have an error of {}; the least that can be expected is {} in {} s, at \
              resolution={}",
             percent(Some(most)),
-            percent(Some(best.error.high())),
+            percent(Some(best.error.value)),
             short(best.time.value),
             short(best.point.resolution)
         ),
