@@ -80,12 +80,29 @@ struct RunArguments {
     #[arg(long, value_name = "COMMAND", num_args = 0..=1, default_missing_value = "")]
     solid: Option<String>,
     /// How long to wait for a solid started by hand, s
-    #[arg(long, value_name = "SECONDS", default_value_t = 60.0)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = seconds, allow_negative_numbers = true)]
     solid_wait: f64,
 }
 
+/// A time to wait.
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value <= 1e6 => Ok(value),
+        Ok(_) => Err("must be greater than 0 and at most 1e6 s".into()),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
 fn main() -> ExitCode {
-    match Arguments::parse().command {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            let _ = error.print();
+            // Help and version are no errors.
+            return ExitCode::from(u8::from(error.use_stderr()));
+        }
+    };
+    match arguments.command {
         Command::Run(arguments) => run_scene(arguments),
         Command::Check(arguments) => match load(&arguments) {
             Ok(scene) => {

@@ -129,6 +129,14 @@ fn a_wrong_scene_starts_nothing() {
     assert_eq!(outcome.code(), Some(1));
     assert!(outcome.stderr.contains("youngs_modulus"), "{}", outcome.stderr);
     assert!(!outcome.dir.exists(), "nothing was started");
+    for wrong in
+        [["--no-such-option", "1"], ["--solid-wait", "-1"], ["--solid-wait", "nan"], ["--threads", "0"]]
+    {
+        let outcome = wrong.iter().fold(scene("elastic-gate"), |run, a| run.argument(*a)).outcome();
+        assert_eq!(outcome.code(), Some(1), "{wrong:?}");
+        assert!(outcome.stderr.contains(wrong[0]), "{}", outcome.stderr);
+        assert!(!outcome.dir.exists(), "nothing was started");
+    }
     let missing = scene("no-such-scene").outcome();
     assert_eq!(missing.code(), Some(1));
     assert!(missing.stderr.contains("no-such-scene"), "{}", missing.stderr);

@@ -240,70 +240,81 @@ fn the_accurate_plate_goes_as_far_as_a_beam_under_the_same_forces() {
     assert!(soft.ratio() > 1.25, "{}", soft.ratio());
 }
 
+/// The suspects one by one, three resolutions, both treatments, both solids.
+fn suspects(modulus: f64, title: &str) {
+    let paper = |dx| Case::paper(modulus, dx);
+    let mut cases = vec![
+        paper(0.002),
+        paper(0.002).with("C = 0", &["interface.cross_viscosity=0"]),
+        paper(0.002).with("C = 2", &["interface.cross_viscosity=2"]),
+        paper(0.002).with("A = B = 0.02", &["fluid.artificial_viscosity={linear=0.02,quadratic=0.02}"]),
+        paper(0.002).with("A = B = 0.1", &["fluid.artificial_viscosity={linear=0.1,quadratic=0.1}"]),
+        paper(0.002).with("A = B = 0.3", &["fluid.artificial_viscosity={linear=0.3,quadratic=0.3}"]),
+        paper(0.002).with("clamp as wall particles", &["effects.wall-clamp=on"]),
+        paper(0.002).with("moving wall instead", &["interface.treatment=moving-wall"]),
+        paper(0.002).with(
+            "moving wall, accurate solid",
+            &["interface.treatment=moving-wall", "solid.model=total-lagrangian"],
+        ),
+        paper(0.003),
+        paper(0.0015),
+    ];
+    for model in ["hypoelastic", "total-lagrangian"] {
+        cases.extend([0.004, 0.003, 0.002].map(|dx| Case::own(model, modulus, dx)));
+    }
+    cases.push(
+        Case::own("total-lagrangian", modulus, 0.002)
+            .with("the same, clamped at centres", &["effects.clamp-face=off"]),
+    );
+    let answers = table(title, &cases);
+    let of = |name: &str, dx: f64| {
+        let found = answers.iter().find(|a| a.case.name == name && a.case.resolution == dx);
+        found.expect("a case")
+    };
+    let base = of("paper's scheme", 0.002);
+    let accurate = of("moving wall, total-lagrangian", 0.002);
+    let stem = if modulus > 1e8 { "022" } else { "12" };
+    picture(
+        &format!("paper-{stem}"),
+        base,
+        &[
+            ("beam under the same forces", &base.beam),
+            ("clamp as wall particles", &of("clamp as wall particles", 0.002).tip),
+            ("C = 0", &of("C = 0", 0.002).tip),
+            ("A = B = 0.02", &of("A = B = 0.02", 0.002).tip),
+        ],
+    );
+    picture(
+        &format!("accurate-{stem}"),
+        accurate,
+        &[
+            ("beam under the same forces", &accurate.beam),
+            ("hypoelastic, moving wall", &of("moving wall, hypoelastic", 0.002).tip),
+        ],
+    );
+    // With none of the suspects does the paper's plate come out too stiff: it is too soft for its own forces.
+    for answer in answers.iter().filter(|a| a.case.nodal && a.case.name != "moving wall, accurate solid") {
+        assert!(answer.ratio() > 1.2, "{}: {}", answer.case.name, answer.ratio());
+    }
+    // The same plate by the accurate solid.
+    assert!((accurate.ratio() - 1.0).abs() < 0.1, "{}", accurate.ratio());
+    for answer in answers.iter().filter(|a| a.case.nodal && a.case.resolution == 0.002) {
+        println!(
+            "{}: tip {:+.0} %",
+            answer.case.name,
+            100.0 * (answer.tip.peak().1 / base.tip.peak().1 - 1.0)
+        );
+    }
+}
+
 #[test]
 #[ignore = "half an hour: docs/plate-study.md"]
-fn the_papers_open_question() {
-    for (modulus, title) in [(0.22e9, "E = 0.22 GPa"), (12e6, "E = 12 MPa")] {
-        let paper = |dx| Case::paper(modulus, dx);
-        let mut cases = vec![
-            paper(0.002),
-            paper(0.002).with("C = 0", &["interface.cross_viscosity=0"]),
-            paper(0.002).with("C = 2", &["interface.cross_viscosity=2"]),
-            paper(0.002).with("A = B = 0.02", &["fluid.artificial_viscosity={linear=0.02,quadratic=0.02}"]),
-            paper(0.002).with("A = B = 0.1", &["fluid.artificial_viscosity={linear=0.1,quadratic=0.1}"]),
-            paper(0.002).with("A = B = 0.3", &["fluid.artificial_viscosity={linear=0.3,quadratic=0.3}"]),
-            paper(0.002).with("clamp as wall particles", &["effects.wall-clamp=on"]),
-            paper(0.002).with("moving wall instead", &["interface.treatment=moving-wall"]),
-            paper(0.002).with(
-                "moving wall, accurate solid",
-                &["interface.treatment=moving-wall", "solid.model=total-lagrangian"],
-            ),
-            paper(0.003),
-            paper(0.0015),
-        ];
-        for model in ["hypoelastic", "total-lagrangian"] {
-            cases.extend([0.004, 0.003, 0.002].map(|dx| Case::own(model, modulus, dx)));
-        }
-        cases.push(
-            Case::own("total-lagrangian", modulus, 0.002)
-                .with("the same, clamped at centres", &["effects.clamp-face=off"]),
-        );
-        let answers = table(title, &cases);
-        let of = |name: &str, dx: f64| {
-            let found = answers.iter().find(|a| a.case.name == name && a.case.resolution == dx);
-            found.expect("a case")
-        };
-        let peak = |a: &Answer| a.tip.peak().1;
-        let base = of("paper's scheme", 0.002);
-        let accurate = of("moving wall, total-lagrangian", 0.002);
-        let stem = if modulus > 1e8 { "022" } else { "12" };
-        picture(
-            &format!("paper-{stem}"),
-            base,
-            &[
-                ("beam under the same forces", &base.beam),
-                ("clamp as wall particles", &of("clamp as wall particles", 0.002).tip),
-                ("C = 0", &of("C = 0", 0.002).tip),
-                ("A = B = 0.02", &of("A = B = 0.02", 0.002).tip),
-            ],
-        );
-        picture(
-            &format!("accurate-{stem}"),
-            accurate,
-            &[
-                ("beam under the same forces", &accurate.beam),
-                ("hypoelastic, moving wall", &of("moving wall, hypoelastic", 0.002).tip),
-            ],
-        );
-        // Neither suspect explains a plate that is too stiff: it is too soft for its own forces.
-        assert!(base.ratio() > 1.2, "{}", base.ratio());
-        // The same plate by the accurate solid.
-        assert!((accurate.ratio() - 1.0).abs() < 0.1, "{}", accurate.ratio());
-        // The suspects.
-        for name in ["C = 0", "C = 2", "clamp as wall particles"] {
-            let change = peak(of(name, 0.002)) / peak(base) - 1.0;
-            println!("{name}: {:+.1} %", 100.0 * change);
-            assert!(change.abs() < 0.2, "{name}: {change}");
-        }
-    }
+fn the_papers_plate() {
+    suspects(0.22e9, "E = 0.22 GPa");
+}
+
+#[test]
+#[ignore = "a quarter of an hour: docs/plate-study.md"]
+fn the_papers_soft_plate() {
+    suspects(12e6, "E = 12 MPa");
 }
