@@ -60,29 +60,32 @@ impl Case {
         self
     }
 
-    /// The plate that the particles stand for, each for its own cell.
+    /// Rows of particles that a length holds.
+    fn rows(&self, length: f64) -> f64 {
+        (length / self.resolution).round() - f64::from(u8::from(self.nodal))
+    }
+
+    /// The plate that the particles stand for, each for its own cell. A nodal plate is held at the centres of the row on the
+    /// floor's level, half a cell below its first free one.
     fn plate(&self) -> Cantilever {
-        let dx = self.resolution;
-        let rows = (0.012 / dx).round() - f64::from(u8::from(self.nodal));
-        let free = (HEIGHT / dx).round() - f64::from(u8::from(self.nodal));
         Cantilever {
-            length: free * dx,
-            thickness: rows * dx,
+            length: self.foot() + self.rows(HEIGHT) * self.resolution,
+            thickness: self.rows(0.012) * self.resolution,
             density: 2500.0,
             youngs_modulus: self.youngs_modulus,
             poissons_ratio: 0.32,
         }
     }
 
-    /// Height of the free end's cells above the floor where they begin, m.
+    /// Where the cells of free particles begin, above the floor, m.
     fn foot(&self) -> f64 {
         if self.nodal { 0.5 * self.resolution } else { 0.0 }
     }
 
-    /// Edges of the parts above the foot, m: between particles.
+    /// Edges of the parts above the floor, m: between particles.
     fn edges(&self) -> Vec<f64> {
-        let dx = self.resolution;
-        (0..=PARTS).map(|k| (self.plate().length / dx * k as f64 / PARTS as f64).round() * dx).collect()
+        let edge = |k| self.foot() + (self.rows(HEIGHT) * k as f64 / PARTS as f64).round() * self.resolution;
+        (0..=PARTS).map(edge).collect()
     }
 
     /// The shipped scene without its references, and with the forces on the plate's parts.
@@ -91,7 +94,7 @@ impl Case {
         let (body, _) = text.split_once("# For E and thickness as above").expect("the references' comment");
         let mut text = body.to_owned();
         for (part, edges) in self.edges().windows(2).enumerate() {
-            let [low, high] = [edges[0], edges[1]].map(|y| self.foot() + y);
+            let [low, high] = [edges[0], edges[1]];
             let probe = format!(
                 "[[probe]]\nname = \"part-{part}\"\nkind = \"force\"\n\
                  within = {{ min = [0.28, {low}], max = [0.304, {high}] }}\n"
