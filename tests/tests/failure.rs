@@ -113,7 +113,7 @@ fn an_interrupted_run_is_stopped_and_complete() {
 #[test]
 fn an_earlier_run_is_kept_unless_forced() {
     let dir = tempfile::tempdir().unwrap();
-    let run = || scene("elastic-gate").set("resolution", 0.005).until(0.001).out(dir.path());
+    let run = || scene("elastic-gate").set("resolution", 0.0025).until(0.001).out(dir.path());
     let first = run().run();
     let refused = run().outcome();
     assert_eq!(refused.code(), Some(1), "{}", refused.stderr);

@@ -7,6 +7,8 @@
 mod moving_wall;
 mod phase_blind;
 mod screen;
+#[cfg(test)]
+mod screen_tests;
 mod side;
 mod thin_plate;
 

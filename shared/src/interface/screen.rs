@@ -27,11 +27,11 @@ use nalgebra::{SMatrix, SVector};
 
 /// One side of the plates: what their particles show there, by slot of the solid.
 #[derive(Clone, Debug, Default)]
-struct Face {
+pub(super) struct Face {
     /// p / rho².
-    pressure_term: Vec<f64>,
+    pub(super) pressure_term: Vec<f64>,
     /// m / rho, m³ (2D: m²).
-    volume: Vec<f64>,
+    pub(super) volume: Vec<f64>,
 }
 
 /// The faces of the thin plates.
@@ -40,11 +40,11 @@ pub(super) struct Screen<const D: usize> {
     material: Vec<Material<D>>,
     neighbours: Vec<u32>,
     /// n_s by slot.
-    normal: [Vec<f64>; D],
+    pub(super) normal: [Vec<f64>; D],
     /// o_s by slot, m.
     before: Vec<f64>,
     /// Against the normal, and along it.
-    faces: [Face; 2],
+    pub(super) faces: [Face; 2],
     sums: Vec<[ExtrapolationSum; 2]>,
 }
 
