@@ -9,7 +9,7 @@ use crate::density_gradient;
 use crate::fluid::Fluid;
 use crate::rates::PairEffect;
 use crate::wall_guard;
-use halfstep_shared::interface::non_negative_pressure;
+use halfstep_shared::interface::{non_negative_pressure, thin_plate_screen};
 use halfstep_shared::scene::{Decision, EffectName, Scene};
 
 /// An effect of the list.
@@ -103,6 +103,7 @@ pub fn decide(scene: &Scene) -> Vec<Decision> {
     decisions.push(density_gradient::decide(scene));
     decisions.push(wall_guard::decide(scene));
     decisions.push(non_negative_pressure(scene));
+    decisions.push(thin_plate_screen(scene));
     decisions
 }
 

@@ -34,6 +34,13 @@ impl ExtrapolationSum {
         (self.weight.0[k] > 0.0).then(|| self.pressure.0[k] / self.weight.0[k])
     }
 
+    /// Adds a pressure with a weight.
+    #[inline(always)]
+    pub fn add<A: Arch>(&mut self, weight: Lane, pressure: Lane) {
+        self.weight += weight;
+        self.pressure = A::mul_add(pressure, weight, self.pressure);
+    }
+
     /// sum W of the k-th.
     pub fn weight(&self, k: usize) -> f64 {
         self.weight.0[k]
@@ -44,12 +51,17 @@ impl<K: Kernel<D>, const D: usize> Extrapolation<'_, K, D> {
     /// Adds source `j`; returns its weight W.
     #[inline(always)]
     pub fn add_source<A: Arch>(&self, j: usize, dx: [Lane; D], r2: Lane, sum: &mut ExtrapolationSum) -> Lane {
+        let (w, p) = self.source::<A>(j, dx, r2);
+        sum.add::<A>(w, p);
+        w
+    }
+
+    /// W of source `j`, and its pressure brought to the target's height.
+    #[inline(always)]
+    pub fn source<A: Arch>(&self, j: usize, dx: [Lane; D], r2: Lane) -> (Lane, Lane) {
         let w = self.kernel.value::<A>(distance(r2, self.kernel.smoothing_length()));
         let head = dot::<D, A>(self.gravity.map(Lane::splat), dx);
-        let p = A::mul_add(Lane::splat(self.density[j]), head, Lane::splat(self.pressure[j]));
-        sum.weight += w;
-        sum.pressure = A::mul_add(p, w, sum.pressure);
-        w
+        (w, A::mul_add(Lane::splat(self.density[j]), head, Lane::splat(self.pressure[j])))
     }
 }
 

@@ -9,6 +9,7 @@
 
 mod nearest;
 mod occupied;
+mod plate;
 mod points;
 #[cfg(test)]
 mod tests;
@@ -16,6 +17,7 @@ mod tests;
 use crate::scene::{Block, CantileverMode, Geometry, Lattice, Phase, Scene, Shape};
 pub use nearest::nearest;
 use occupied::Occupied;
+pub use plate::Plate;
 use points::Spacing;
 
 /// Relative tolerance of every comparison of lengths, in spacings.

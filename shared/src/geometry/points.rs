@@ -23,7 +23,7 @@ impl Spacing {
     }
 
     /// Cells along an extent.
-    fn cells(&self, extent: f64) -> i64 {
+    pub(super) fn cells(&self, extent: f64) -> i64 {
         (extent / self.dx).round() as i64
     }
 
@@ -42,7 +42,7 @@ impl Spacing {
     }
 
     /// Number of lattice points along an extent, without overflow.
-    fn expected(&self, extent: f64, cells_more: f64) -> f64 {
+    pub(super) fn expected(&self, extent: f64, cells_more: f64) -> f64 {
         let cells = (extent / self.dx).round() + cells_more;
         match (self.nodal, self.wall) {
             (false, _) => cells,

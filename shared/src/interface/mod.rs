@@ -6,17 +6,25 @@
 
 mod moving_wall;
 mod phase_blind;
+mod screen;
+#[cfg(test)]
+mod screen_tests;
 mod side;
+mod thin_plate;
 
 pub use phase_blind::SolidRates;
 pub use side::{Side, wire_component};
+pub(crate) use thin_plate::fewest_rows;
+pub use thin_plate::thin_plate_screen;
 
 use crate::extrapolation::ExtrapolationSum;
+use crate::geometry::Plate;
 use crate::lane::{Isa, LANES, Lane};
 use crate::neighbours::{ClusterList, PADDING};
 use crate::protocol::StateRecord;
 use crate::scene::{Decision, Derived, EffectName, KernelName, Phase, Scene, Treatment};
 use crate::state_equation::StateEquation;
+use screen::Screen;
 
 /// What the interface needs to know of the scene.
 #[derive(Clone, Debug)]
@@ -39,6 +47,8 @@ pub struct Parameters<const D: usize> {
     pub non_negative_pressure: bool,
     /// Particle spacing, m.
     pub resolution: f64,
+    /// The plates whose faces are kept apart.
+    pub thin_plates: Vec<Plate<D>>,
     /// Kayaki's C.
     pub cross_viscosity: f64,
     /// Instruction set of the pair loop.
@@ -72,6 +82,7 @@ impl<const D: usize> Parameters<D> {
             gravity: std::array::from_fn(|d| scene.gravity[d]),
             non_negative_pressure: non_negative_pressure(scene).on,
             resolution: scene.resolution,
+            thin_plates: thin_plate::screened(scene),
             cross_viscosity: scene.interface.cross_viscosity,
             isa,
         })
@@ -112,6 +123,7 @@ pub struct Interface<const D: usize> {
     fluid_sums: Vec<FluidSum<D>>,
     solid_forces: Vec<SolidForce<D>>,
     wall_sums: Vec<ExtrapolationSum>,
+    screen: Option<Screen<D>>,
     solid_rates: Vec<SolidRates<D>>,
 }
 
@@ -128,6 +140,7 @@ impl<const D: usize> Interface<D> {
             fluid_sums: Vec::new(),
             solid_forces: Vec::new(),
             wall_sums: Vec::new(),
+            screen: None,
             solid_rates: Vec::new(),
         }
     }
@@ -159,7 +172,10 @@ impl<const D: usize> Interface<D> {
             self.epoch = Some(epoch);
         }
         match self.parameters.treatment {
-            Treatment::MovingWall => moving_wall::show_pressure(self),
+            Treatment::MovingWall if self.parameters.thin_plates.is_empty() => {
+                moving_wall::show_pressure(self)
+            }
+            Treatment::MovingWall => screen::show_pressures(self, solid),
             Treatment::PhaseBlind => phase_blind::show_stress(self),
         }
     }
@@ -170,7 +186,10 @@ impl<const D: usize> Interface<D> {
         self.fluid_sums.resize(self.fluid_list.clusters(), FluidSum::default());
         let mut sums = std::mem::take(&mut self.fluid_sums);
         match self.parameters.treatment {
-            Treatment::MovingWall => moving_wall::act_on_fluid(self, &mut sums),
+            Treatment::MovingWall => match &self.screen {
+                None => moving_wall::act_on_fluid(self, &mut sums),
+                Some(screen) => moving_wall::push_fluid(self, screen.shown(self), &mut sums),
+            },
             Treatment::PhaseBlind => phase_blind::act_on_fluid(self, &mut sums),
         }
         for (slot, record) in self.fluid.slots() {
@@ -185,7 +204,10 @@ impl<const D: usize> Interface<D> {
         self.solid_forces.resize(self.solid_list.clusters(), SolidForce::default());
         let mut sums = std::mem::take(&mut self.solid_forces);
         match self.parameters.treatment {
-            Treatment::MovingWall => moving_wall::act_on_solid(self, &mut sums),
+            Treatment::MovingWall => match &self.screen {
+                None => moving_wall::act_on_solid(self, &mut sums),
+                Some(screen) => moving_wall::push_solid(self, screen.shown(self), &mut sums),
+            },
             Treatment::PhaseBlind => phase_blind::act_on_solid(self, &mut sums),
         }
         for (slot, record) in self.solid.slots() {

@@ -11,7 +11,6 @@ use super::{FluidSum, Interface, Side, SolidForce};
 use crate::extrapolation::{Extrapolation, ExtrapolationSum};
 use crate::kernel::Kernel;
 use crate::lane::{Arch, LANES, Lane};
-use crate::neighbours::ClusterList;
 use crate::pair::{self, PairLaw, distance, dot};
 use crate::with_kernel;
 
@@ -44,67 +43,86 @@ pub(super) fn show_pressure<const D: usize>(interface: &mut Interface<D>) {
     interface.wall_sums = sums;
 }
 
+/// What a solid particle shows the fluid, which may depend on where the fluid is.
+pub(super) trait Shown<const D: usize>: Copy + Send + Sync {
+    /// What is loaded of four solid particles.
+    type Own: Copy;
+    /// Loads the solid particles at `slot..slot + 4`.
+    fn own(&self, slot: usize) -> Self::Own;
+    /// p / rho² of four solid particles, toward fluid at `to_fluid` = x_f - x_s.
+    fn of<A: Arch>(&self, own: &Self::Own, to_fluid: [Lane; D]) -> Lane;
+    /// p / rho² and m / rho of the solid particle `j`, toward four fluid particles.
+    fn to<A: Arch>(&self, j: usize, to_fluid: [Lane; D]) -> (Lane, Lane);
+}
+
+/// The same on all sides: the columns of the solid.
 #[derive(Clone, Copy)]
-struct Target<const D: usize> {
+struct AllSides<'a, const D: usize>(&'a Side<D>);
+
+impl<const D: usize> Shown<D> for AllSides<'_, D> {
+    type Own = Lane;
+
+    #[inline(always)]
+    fn own(&self, slot: usize) -> Lane {
+        let density = Lane::load(&self.0.density, slot);
+        Lane::load(&self.0.pressure, slot) / (density * density)
+    }
+    #[inline(always)]
+    fn of<A: Arch>(&self, own: &Lane, _: [Lane; D]) -> Lane {
+        *own
+    }
+    #[inline(always)]
+    fn to<A: Arch>(&self, j: usize, _: [Lane; D]) -> (Lane, Lane) {
+        let (side, rho) = (self.0, self.0.density[j]);
+        (Lane::splat(side.pressure[j] / (rho * rho)), Lane::splat(side.mass[j] / rho))
+    }
+}
+
+/// Four fluid particles.
+#[derive(Clone, Copy)]
+struct OfFluid<const D: usize> {
     velocity: [Lane; D],
     density: Lane,
     /// p / rho².
     pressure_term: Lane,
-    mass: Lane,
 }
 
-fn load<const D: usize>(side: &Side<D>, slot: usize) -> Target<D> {
-    let density = Lane::load(&side.density, slot);
-    Target {
-        velocity: std::array::from_fn(|d| Lane::load(&side.velocity[d], slot)),
-        density,
-        pressure_term: Lane::load(&side.pressure, slot) / (density * density),
-        mass: Lane::load(&side.mass, slot),
-    }
-}
-
-/// m_j (p_i/rho_i² + p_j/rho_j²) F.
-struct Pressure<'a, K, const D: usize> {
+struct OnFluid<'a, K, S, const D: usize> {
     kernel: K,
     targets: &'a Side<D>,
     sources: &'a Side<D>,
+    shown: S,
 }
 
-impl<K: Kernel<D>, const D: usize> Pressure<'_, K, D> {
-    #[inline(always)]
-    fn coefficient(&self, i: &Target<D>, j: usize, f: Lane) -> Lane {
-        let rho = self.sources.density[j];
-        let term = self.sources.pressure[j] / (rho * rho);
-        Lane::splat(self.sources.mass[j]) * (i.pressure_term + Lane::splat(term)) * f
-    }
-}
-
-struct OnFluid<'a, K, const D: usize>(Pressure<'a, K, D>);
-
-impl<K: Kernel<D>, const D: usize> PairLaw<D> for OnFluid<'_, K, D> {
-    type Target = Target<D>;
+impl<K: Kernel<D>, S: Shown<D>, const D: usize> PairLaw<D> for OnFluid<'_, K, S, D> {
+    type Target = OfFluid<D>;
     type Sum = FluidSum<D>;
 
     #[inline(always)]
     fn target_positions(&self) -> &[Vec<f64>; D] {
-        &self.0.targets.position
+        &self.targets.position
     }
     #[inline(always)]
-    fn target(&self, slot: usize) -> Target<D> {
-        load(self.0.targets, slot)
+    fn target(&self, slot: usize) -> OfFluid<D> {
+        let side = self.targets;
+        let density = Lane::load(&side.density, slot);
+        OfFluid {
+            velocity: std::array::from_fn(|d| Lane::load(&side.velocity[d], slot)),
+            density,
+            pressure_term: Lane::load(&side.pressure, slot) / (density * density),
+        }
     }
     #[inline(always)]
     fn source_position(&self, j: usize) -> [f64; D] {
-        std::array::from_fn(|d| self.0.sources.position[d][j])
+        std::array::from_fn(|d| self.sources.position[d][j])
     }
     #[inline(always)]
-    fn add<A: Arch>(&self, i: &Target<D>, j: usize, dx: [Lane; D], r2: Lane, sum: &mut FluidSum<D>) {
-        let kernel = &self.0.kernel;
-        let f = kernel.gradient_over_r::<A>(distance(r2, kernel.smoothing_length()));
-        let coefficient = self.0.coefficient(i, j, f);
-        let s = self.0.sources;
+    fn add<A: Arch>(&self, i: &OfFluid<D>, j: usize, dx: [Lane; D], r2: Lane, sum: &mut FluidSum<D>) {
+        let f = self.kernel.gradient_over_r::<A>(distance(r2, self.kernel.smoothing_length()));
+        let (term, volume) = self.shown.to::<A>(j, dx);
+        let s = self.sources;
+        let coefficient = Lane::splat(s.mass[j]) * (i.pressure_term + term) * f;
         let dv = std::array::from_fn(|d| i.velocity[d] - Lane::splat(s.velocity[d][j]));
-        let volume = Lane::splat(s.mass[j] / s.density[j]);
         for d in 0..D {
             sum.acceleration[d] = A::mul_add(-coefficient, dx[d], sum.acceleration[d]);
         }
@@ -112,56 +130,72 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for OnFluid<'_, K, D> {
     }
 }
 
-struct OnSolid<'a, K, const D: usize>(Pressure<'a, K, D>);
+struct OnSolid<'a, K, S, const D: usize> {
+    kernel: K,
+    targets: &'a Side<D>,
+    sources: &'a Side<D>,
+    shown: S,
+}
 
-impl<K: Kernel<D>, const D: usize> PairLaw<D> for OnSolid<'_, K, D> {
-    type Target = Target<D>;
+impl<K: Kernel<D>, S: Shown<D>, const D: usize> PairLaw<D> for OnSolid<'_, K, S, D> {
+    /// Mass, and what it shows.
+    type Target = (Lane, S::Own);
     type Sum = SolidForce<D>;
 
     #[inline(always)]
     fn target_positions(&self) -> &[Vec<f64>; D] {
-        &self.0.targets.position
+        &self.targets.position
     }
     #[inline(always)]
-    fn target(&self, slot: usize) -> Target<D> {
-        load(self.0.targets, slot)
+    fn target(&self, slot: usize) -> Self::Target {
+        (Lane::load(&self.targets.mass, slot), self.shown.own(slot))
     }
     #[inline(always)]
     fn source_position(&self, j: usize) -> [f64; D] {
-        std::array::from_fn(|d| self.0.sources.position[d][j])
+        std::array::from_fn(|d| self.sources.position[d][j])
     }
     #[inline(always)]
-    fn add<A: Arch>(&self, i: &Target<D>, j: usize, dx: [Lane; D], r2: Lane, sum: &mut SolidForce<D>) {
-        let kernel = &self.0.kernel;
-        let f = kernel.gradient_over_r::<A>(distance(r2, kernel.smoothing_length()));
-        let coefficient = i.mass * self.0.coefficient(i, j, f);
+    fn add<A: Arch>(&self, i: &Self::Target, j: usize, dx: [Lane; D], r2: Lane, sum: &mut SolidForce<D>) {
+        let f = self.kernel.gradient_over_r::<A>(distance(r2, self.kernel.smoothing_length()));
+        let (mass, own) = i;
+        let (s, rho) = (self.sources, self.sources.density[j]);
+        let term = Lane::splat(s.pressure[j] / (rho * rho));
+        let shown = self.shown.of::<A>(own, dx.map(|x| -x));
+        let coefficient = *mass * (Lane::splat(s.mass[j]) * (shown + term) * f);
         for d in 0..D {
             sum.0[d] = A::mul_add(-coefficient, dx[d], sum.0[d]);
         }
     }
 }
 
-fn run<const D: usize, L: PairLaw<D>>(
-    interface: &Interface<D>,
-    law: L,
-    list: &ClusterList,
-    sums: &mut [L::Sum],
-) {
-    pair::pass(interface.parameters.isa, &law, list, sums);
-}
-
 pub(super) fn act_on_fluid<const D: usize>(interface: &Interface<D>, sums: &mut [FluidSum<D>]) {
-    let p = &interface.parameters;
-    with_kernel!(p.kernel, p.smoothing_length, D, |kernel| {
-        let law = OnFluid(Pressure { kernel, targets: &interface.fluid, sources: &interface.solid });
-        run(interface, law, &interface.fluid_list, sums);
-    });
+    push_fluid(interface, AllSides(&interface.solid), sums);
 }
 
 pub(super) fn act_on_solid<const D: usize>(interface: &Interface<D>, sums: &mut [SolidForce<D>]) {
+    push_solid(interface, AllSides(&interface.solid), sums);
+}
+
+pub(super) fn push_fluid<const D: usize>(
+    interface: &Interface<D>,
+    shown: impl Shown<D>,
+    sums: &mut [FluidSum<D>],
+) {
     let p = &interface.parameters;
     with_kernel!(p.kernel, p.smoothing_length, D, |kernel| {
-        let law = OnSolid(Pressure { kernel, targets: &interface.solid, sources: &interface.fluid });
-        run(interface, law, &interface.solid_list, sums);
+        let law = OnFluid { kernel, targets: &interface.fluid, sources: &interface.solid, shown };
+        pair::pass(p.isa, &law, &interface.fluid_list, sums);
+    });
+}
+
+pub(super) fn push_solid<const D: usize>(
+    interface: &Interface<D>,
+    shown: impl Shown<D>,
+    sums: &mut [SolidForce<D>],
+) {
+    let p = &interface.parameters;
+    with_kernel!(p.kernel, p.smoothing_length, D, |kernel| {
+        let law = OnSolid { kernel, targets: &interface.solid, sources: &interface.fluid, shown };
+        pair::pass(p.isa, &law, &interface.solid_list, sums);
     });
 }

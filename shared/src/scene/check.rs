@@ -3,7 +3,8 @@
 use super::document::Node;
 use super::error::{Report, listed, nearest};
 use super::*;
-use crate::geometry;
+use crate::geometry::{self, Plate};
+use crate::interface::fewest_rows;
 use crate::protocol::MAX_PROBE_VALUES;
 
 /// Frames, rows and steps that no run can be meant to have.
@@ -25,6 +26,7 @@ impl Check<'_> {
         self.phases();
         self.shape_names();
         self.sizes();
+        self.thin_plates();
         self.interface();
         self.solid_time_step();
         self.times();
@@ -133,6 +135,35 @@ impl Check<'_> {
                 let reason = format!("is {thickness} m thin, and {needed} {least} m{convention}");
                 self.report.among(self.root, &place, &others, reason);
             }
+        }
+    }
+
+    /// A plate holds water only where the fluid on one face does not reach that on the other.
+    fn thin_plates(&self) {
+        if self.report.has_any(&["resolution", "dimension", "smoothing_ratio", "interface", "effects"]) {
+            return;
+        }
+        let Some(fewest) = fewest_rows(self.scene) else { return };
+        for (index, shape) in self.scene.shapes.iter().enumerate() {
+            let key = self.shape_key(index);
+            let Some(plate) = Plate::<2>::of(self.scene, shape) else { continue };
+            if plate.rows >= fewest || self.report.has(&key) {
+                continue;
+            }
+            let place = match shape.geometry {
+                Geometry::Ring { .. } => format!("{key}.ring"),
+                _ => format!("{key}.box"),
+            };
+            let others =
+                ["resolution", "smoothing_ratio", "numerics.lattice", "interface.treatment", "preset"];
+            let corners = [format!("{place}.min"), format!("{place}.max")];
+            let others: Vec<&str> = corners.iter().map(String::as_str).chain(others).collect();
+            let rows = plate.rows.round();
+            let reason = format!(
+                "has {rows} of at least {fewest} particles across: fluid on one face reaches the other through it \
+                 (2h) and leaks; effects.thin-plate-screen = \"off\" lets it pass"
+            );
+            self.report.among(self.root, &place, &others, reason);
         }
     }
 

@@ -42,6 +42,8 @@ macro_rules! effect_names {
             WallContact "wall-contact",
             /// A solid that rests is not computed until fluid comes near.
             SleepingSolid "sleeping-solid",
+            /// Thin plates show the fluid on each face a pressure of its own.
+            ThinPlateScreen "thin-plate-screen",
         }
     };
 }
