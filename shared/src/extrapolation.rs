@@ -38,17 +38,22 @@ impl ExtrapolationSum {
     pub fn weight(&self, k: usize) -> f64 {
         self.weight.0[k]
     }
-}
 
-impl<K: Kernel<D>, const D: usize> Extrapolation<'_, K, D> {
-    /// Adds source `j`; returns its weight W.
+    /// Adds a particle of this density and pressure; returns its weight W.
     #[inline(always)]
-    pub fn add_source<A: Arch>(&self, j: usize, dx: [Lane; D], r2: Lane, sum: &mut ExtrapolationSum) -> Lane {
-        let w = self.kernel.value::<A>(distance(r2, self.kernel.smoothing_length()));
-        let head = dot::<D, A>(self.gravity.map(Lane::splat), dx);
-        let p = A::mul_add(Lane::splat(self.density[j]), head, Lane::splat(self.pressure[j]));
-        sum.weight += w;
-        sum.pressure = A::mul_add(p, w, sum.pressure);
+    pub fn add<K: Kernel<D>, const D: usize, A: Arch>(
+        &mut self,
+        kernel: &K,
+        gravity: [f64; D],
+        (dx, r2): ([Lane; D], Lane),
+        density: f64,
+        pressure: f64,
+    ) -> Lane {
+        let w = kernel.value::<A>(distance(r2, kernel.smoothing_length()));
+        let head = dot::<D, A>(gravity.map(Lane::splat), dx);
+        let p = A::mul_add(Lane::splat(density), head, Lane::splat(pressure));
+        self.weight += w;
+        self.pressure = A::mul_add(p, w, self.pressure);
         w
     }
 }
@@ -69,6 +74,6 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for Extrapolation<'_, K, D> {
     fn target(&self, _: usize) {}
     #[inline(always)]
     fn add<A: Arch>(&self, _: &(), j: usize, dx: [Lane; D], r2: Lane, sum: &mut ExtrapolationSum) {
-        self.add_source::<A>(j, dx, r2, sum);
+        sum.add::<K, D, A>(&self.kernel, self.gravity, (dx, r2), self.density[j], self.pressure[j]);
     }
 }

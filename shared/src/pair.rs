@@ -4,7 +4,7 @@
 //! threads. Four targets are computed at once; a source is broadcast to them; the kernel itself is the cut-off.
 
 use crate::lane::{Arch, Fused, Isa, LANES, Lane, Unfused};
-use crate::neighbours::{CHUNK_CLUSTERS, Chunk, ClusterList};
+use crate::neighbours::{CHUNK_CLUSTERS, ClusterList};
 use rayon::prelude::*;
 
 /// A sum over neighbours.
@@ -30,23 +30,23 @@ trait Sink<S>: Copy + Sync {
     type Out: Send;
     /// What the sum begins with.
     fn begin(self, out: &Self::Out) -> S;
-    /// Takes the sum.
-    fn end(self, sum: S, out: &mut Self::Out);
+    /// Takes the sum of the targets that begin at `slot`.
+    fn end(self, slot: usize, sum: S, out: &mut Self::Out);
 }
 
 /// The sum takes the place of what was there.
 #[derive(Clone, Copy)]
 struct Replace<F>(F);
 
-impl<S: Default, T: Send, F: Fn(&S) -> T + Copy + Sync> Sink<S> for Replace<F> {
+impl<S: Default, T: Send, F: Fn(usize, &S) -> T + Copy + Sync> Sink<S> for Replace<F> {
     type Out = T;
     #[inline(always)]
     fn begin(self, _: &T) -> S {
         S::default()
     }
     #[inline(always)]
-    fn end(self, sum: S, out: &mut T) {
-        *out = (self.0)(&sum);
+    fn end(self, slot: usize, sum: S, out: &mut T) {
+        *out = (self.0)(slot, &sum);
     }
 }
 
@@ -61,117 +61,37 @@ impl<S: Copy + Send> Sink<S> for Add {
         *out
     }
     #[inline(always)]
-    fn end(self, sum: S, out: &mut S) {
+    fn end(self, _: usize, sum: S, out: &mut S) {
         *out = sum;
     }
 }
 
-/// Runs a law over all targets of a list; `sums` has one entry for each cluster.
-pub fn pass<const D: usize, L: PairLaw<D>>(isa: Isa, law: &L, list: &ClusterList, sums: &mut [L::Sum]) {
-    run_chunks(isa, law, list, Replace(|sum: &L::Sum| *sum), sums);
+/// A law with the list of its pairs, or several, each of which adds to the same sum in its turn.
+trait Work<const D: usize>: Copy + Sync {
+    /// What is summed up.
+    type Sum: Copy + Default + Send;
+    /// Number of clusters of targets.
+    fn clusters(self) -> usize;
+    /// Adds up the neighbours of the cluster number `k` of a chunk, whose targets begin at `slot`.
+    fn gather<A: Arch>(self, chunk: usize, k: usize, slot: usize, sum: &mut Self::Sum);
 }
 
-/// The same; the sums go on from what `sums` holds.
-pub fn pass_adding<const D: usize, L: PairLaw<D>>(
-    isa: Isa,
-    law: &L,
-    list: &ClusterList,
-    sums: &mut [L::Sum],
-) {
-    run_chunks(isa, law, list, Add, sums);
-}
-
-/// The same; each sum goes through `finish` before it is stored.
-pub fn pass_into<const D: usize, L: PairLaw<D>, T: Send>(
-    isa: Isa,
-    law: &L,
-    list: &ClusterList,
-    finish: impl Fn(&L::Sum) -> T + Copy + Sync,
-    out: &mut [T],
-) {
-    run_chunks(isa, law, list, Replace(finish), out);
-}
-
-fn run_chunks<const D: usize, L: PairLaw<D>, S: Sink<L::Sum>>(
-    isa: Isa,
-    law: &L,
-    list: &ClusterList,
-    sink: S,
-    out: &mut [S::Out],
-) {
-    assert_eq!(out.len(), list.clusters(), "one sum for each cluster");
-    // Never more than the processor has: that is what makes the calls below safe.
-    let isa = isa.min(Isa::detect());
-    if let [chunk] = list.chunks() {
-        return run_chunk(isa, law, 0, chunk, sink, out);
+impl<const D: usize, L: PairLaw<D>> Work<D> for (&L, &ClusterList) {
+    type Sum = L::Sum;
+    fn clusters(self) -> usize {
+        self.1.clusters()
     }
-    out.par_chunks_mut(CHUNK_CLUSTERS).zip(list.chunks()).enumerate().for_each(|(c, (out, chunk))| {
-        run_chunk(isa, law, c * CHUNK_CLUSTERS * LANES, chunk, sink, out);
-    });
-}
-
-fn run_chunk<const D: usize, L: PairLaw<D>, S: Sink<L::Sum>>(
-    isa: Isa,
-    law: &L,
-    first_slot: usize,
-    chunk: &Chunk,
-    sink: S,
-    out: &mut [S::Out],
-) {
-    match isa {
-        // SAFETY: `run_chunks` asked the processor.
-        #[cfg(target_arch = "x86_64")]
-        Isa::Avx512vl => unsafe { run_avx512vl(law, first_slot, chunk, sink, out) },
-        // SAFETY: as above.
-        #[cfg(target_arch = "x86_64")]
-        Isa::Avx2 => unsafe { run_avx2(law, first_slot, chunk, sink, out) },
-        _ => run::<D, L, S, Unfused>(law, first_slot, chunk, sink, out),
-    }
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512vl,avx2,fma")]
-unsafe fn run_avx512vl<const D: usize, L: PairLaw<D>, S: Sink<L::Sum>>(
-    law: &L,
-    slot: usize,
-    chunk: &Chunk,
-    sink: S,
-    out: &mut [S::Out],
-) {
-    run::<D, L, S, Fused>(law, slot, chunk, sink, out);
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
-unsafe fn run_avx2<const D: usize, L: PairLaw<D>, S: Sink<L::Sum>>(
-    law: &L,
-    slot: usize,
-    chunk: &Chunk,
-    sink: S,
-    out: &mut [S::Out],
-) {
-    run::<D, L, S, Fused>(law, slot, chunk, sink, out);
-}
-
-#[inline(always)]
-fn run<const D: usize, L: PairLaw<D>, S: Sink<L::Sum>, A: Arch>(
-    law: &L,
-    first_slot: usize,
-    chunk: &Chunk,
-    sink: S,
-    out: &mut [S::Out],
-) {
-    let positions = law.target_positions();
-    for (k, out) in out.iter_mut().enumerate() {
-        let neighbours = chunk.of(k);
-        let mut sum = sink.begin(out);
+    #[inline(always)]
+    fn gather<A: Arch>(self, chunk: usize, k: usize, slot: usize, sum: &mut L::Sum) {
+        let (law, list) = self;
+        let neighbours = list.chunks()[chunk].of(k);
         if neighbours.is_empty() {
-            sink.end(sum, out);
-            continue;
+            return;
         }
-        let slot = first_slot + k * LANES;
+        let positions = law.target_positions();
         let target = law.target(slot);
         let xi: [Lane; D] = std::array::from_fn(|d| Lane::load(&positions[d], slot));
+        let mut total = *sum;
         for &j in neighbours {
             let j = j as usize;
             let xj = law.source_position(j);
@@ -181,9 +101,131 @@ fn run<const D: usize, L: PairLaw<D>, S: Sink<L::Sum>, A: Arch>(
                 dx[d] = xi[d] - Lane::splat(xj[d]);
                 r2 = A::mul_add(dx[d], dx[d], r2);
             }
-            law.add::<A>(&target, j, dx, r2, &mut sum);
+            law.add::<A>(&target, j, dx, r2, &mut total);
         }
-        sink.end(sum, out);
+        *sum = total;
+    }
+}
+
+/// The second goes on from the sum of the first.
+#[derive(Clone, Copy)]
+struct Then<V, W>(V, W);
+
+impl<const D: usize, V: Work<D>, W: Work<D, Sum = V::Sum>> Work<D> for Then<V, W> {
+    type Sum = V::Sum;
+    fn clusters(self) -> usize {
+        assert_eq!(self.0.clusters(), self.1.clusters(), "both lists are of the same targets");
+        self.0.clusters()
+    }
+    #[inline(always)]
+    fn gather<A: Arch>(self, chunk: usize, k: usize, slot: usize, sum: &mut V::Sum) {
+        self.0.gather::<A>(chunk, k, slot, sum);
+        self.1.gather::<A>(chunk, k, slot, sum);
+    }
+}
+
+/// Runs a law over all targets of a list; `sums` has one entry for each cluster.
+pub fn pass<const D: usize, L: PairLaw<D>>(isa: Isa, law: &L, list: &ClusterList, sums: &mut [L::Sum]) {
+    run_chunks(isa, (law, list), Replace(|_, sum: &L::Sum| *sum), sums);
+}
+
+/// The same; the sums go on from what `sums` holds.
+pub fn pass_adding<const D: usize, L: PairLaw<D>>(
+    isa: Isa,
+    law: &L,
+    list: &ClusterList,
+    sums: &mut [L::Sum],
+) {
+    run_chunks(isa, (law, list), Add, sums);
+}
+
+/// The same; each cluster's sum goes through `finish`, with the first of its slots, before it is stored.
+pub fn pass_into<const D: usize, L: PairLaw<D>, T: Send>(
+    isa: Isa,
+    law: &L,
+    list: &ClusterList,
+    finish: impl Fn(usize, &L::Sum) -> T + Copy + Sync,
+    out: &mut [T],
+) {
+    run_chunks(isa, (law, list), Replace(finish), out);
+}
+
+/// The same over two sets of neighbours, the second after the first.
+pub fn pass_both_into<const D: usize, L: PairLaw<D>, M: PairLaw<D, Sum = L::Sum>, T: Send>(
+    isa: Isa,
+    first: (&L, &ClusterList),
+    second: (&M, &ClusterList),
+    finish: impl Fn(usize, &L::Sum) -> T + Copy + Sync,
+    out: &mut [T],
+) {
+    run_chunks(isa, Then(first, second), Replace(finish), out);
+}
+
+fn run_chunks<const D: usize, W: Work<D>, S: Sink<W::Sum>>(isa: Isa, work: W, sink: S, out: &mut [S::Out]) {
+    assert_eq!(out.len(), work.clusters(), "one sum for each cluster");
+    // Never more than the processor has: that is what makes the calls below safe.
+    let isa = isa.min(Isa::detect());
+    if out.len() <= CHUNK_CLUSTERS {
+        if !out.is_empty() {
+            run_chunk(isa, work, 0, sink, out);
+        }
+        return;
+    }
+    out.par_chunks_mut(CHUNK_CLUSTERS).enumerate().for_each(|(c, out)| run_chunk(isa, work, c, sink, out));
+}
+
+fn run_chunk<const D: usize, W: Work<D>, S: Sink<W::Sum>>(
+    isa: Isa,
+    work: W,
+    chunk: usize,
+    sink: S,
+    out: &mut [S::Out],
+) {
+    match isa {
+        // SAFETY: `run_chunks` asked the processor.
+        #[cfg(target_arch = "x86_64")]
+        Isa::Avx512vl => unsafe { run_avx512vl(work, chunk, sink, out) },
+        // SAFETY: as above.
+        #[cfg(target_arch = "x86_64")]
+        Isa::Avx2 => unsafe { run_avx2(work, chunk, sink, out) },
+        _ => run::<D, W, S, Unfused>(work, chunk, sink, out),
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512vl,avx2,fma")]
+unsafe fn run_avx512vl<const D: usize, W: Work<D>, S: Sink<W::Sum>>(
+    work: W,
+    chunk: usize,
+    sink: S,
+    out: &mut [S::Out],
+) {
+    run::<D, W, S, Fused>(work, chunk, sink, out);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+unsafe fn run_avx2<const D: usize, W: Work<D>, S: Sink<W::Sum>>(
+    work: W,
+    chunk: usize,
+    sink: S,
+    out: &mut [S::Out],
+) {
+    run::<D, W, S, Fused>(work, chunk, sink, out);
+}
+
+#[inline(always)]
+fn run<const D: usize, W: Work<D>, S: Sink<W::Sum>, A: Arch>(
+    work: W,
+    chunk: usize,
+    sink: S,
+    out: &mut [S::Out],
+) {
+    for (k, out) in out.iter_mut().enumerate() {
+        let slot = (chunk * CHUNK_CLUSTERS + k) * LANES;
+        let mut sum = sink.begin(out);
+        work.gather::<A>(chunk, k, slot, &mut sum);
+        sink.end(slot, sum, out);
     }
 }
 

@@ -9,6 +9,8 @@ use halfstep_shared::failure::Quantity;
 use halfstep_shared::kernel::Kernel;
 use halfstep_shared::lane::LANES;
 use halfstep_shared::neighbours::PADDING;
+use halfstep_shared::role::{Costs, fastest};
+use halfstep_shared::scene::{ArtificialViscosity, EffectName};
 use halfstep_shared::{pair, tensor, wide, with_kernel};
 
 /// A material that is compressed or stretched further has left what its law describes.
@@ -148,6 +150,39 @@ impl<const D: usize> TotalLagrangian<D> {
             }
         });
         contact
+    }
+
+    /// Parts of an evaluation's time, each effect's measured by leaving it out. The hourglass force and the clamps' gain are
+    /// factors of the passes: there is nothing to leave out.
+    pub(super) fn costs_of_effects(&mut self) -> Costs {
+        let (before, state) = (self.pair_evaluations, self.now.clone());
+        let evaluation = |model: &mut Self| fastest(|| model.evaluate());
+        let mut costs = Costs::default();
+        let whole = evaluation(self);
+        let mut note = |effect: EffectName, without: f64| {
+            costs.effects[effect as usize] = (1.0 - without / whole).max(0.0);
+        };
+        if let Some(mut contact) = self.contact.take() {
+            let walls = contact.walls().take();
+            // Where only walls can be touched, all that a contact does is theirs.
+            let (kept, aside) =
+                if contact.between_bodies() { (Some(contact), None) } else { (None, Some(contact)) };
+            self.contact = kept;
+            if walls.is_some() {
+                note(EffectName::WallContact, evaluation(self));
+            }
+            self.contact = aside.or_else(|| self.contact.take());
+            self.contact.iter_mut().zip(walls).for_each(|(contact, walls)| *contact.walls() = Some(walls));
+        }
+        let none = ArtificialViscosity { linear: 0.0, quadratic: 0.0 };
+        let viscosity = std::mem::replace(&mut self.material.artificial_viscosity, none);
+        if viscosity.linear > 0.0 || viscosity.quadratic > 0.0 {
+            note(EffectName::ArtificialViscosity, evaluation(self));
+        }
+        self.material.artificial_viscosity = viscosity;
+        self.now.copy_from(&state);
+        self.pair_evaluations = before;
+        costs
     }
 
     /// sum V0 psi, the hourglass energy and that of contacts between bodies, J.

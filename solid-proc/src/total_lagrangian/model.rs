@@ -18,6 +18,7 @@ use halfstep_shared::interface::wire_component;
 use halfstep_shared::lane::{Isa, LANES};
 use halfstep_shared::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_shared::protocol::StateRecord;
+use halfstep_shared::role::Costs;
 use halfstep_shared::scene::{EffectName, KernelName, Scene, Solid};
 use halfstep_shared::{wide, with_kernel};
 
@@ -33,7 +34,7 @@ pub(super) struct State<const D: usize> {
 }
 
 impl<const D: usize> State<D> {
-    fn copy_from(&mut self, other: &Self) {
+    pub(super) fn copy_from(&mut self, other: &Self) {
         for d in 0..D {
             self.displacement[d].clone_from(&other.displacement[d]);
             self.velocity[d].clone_from(&other.velocity[d]);
@@ -319,6 +320,14 @@ impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {
         r
     }
 
+    fn position(&self, particle: u32) -> [f64; D] {
+        self.position_at(self.slot_of[particle as usize] as usize)
+    }
+
+    fn density(&self, particle: u32) -> f64 {
+        self.material.density / self.volume_ratio[self.slot_of[particle as usize] as usize]
+    }
+
     fn velocity(&self, particle: u32) -> [f64; D] {
         let slot = self.slot_of[particle as usize] as usize;
         std::array::from_fn(|d| self.now.velocity[d][slot])
@@ -355,6 +364,10 @@ impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {
 
     fn strain_energy(&self) -> f64 {
         self.energy()
+    }
+
+    fn costs(&mut self) -> Costs {
+        self.costs_of_effects()
     }
 
     fn pair_evaluations(&self) -> u64 {
