@@ -3,6 +3,8 @@
 //! Each target gathers over its own neighbours in list order, so the bits of a sum do not depend on the number of
 //! threads. Four targets are computed at once; a source is broadcast to them; the kernel itself is the cut-off.
 
+use crate::columns::Vectors;
+use crate::kernel::Kernel;
 use crate::lane::{Arch, Fused, Isa, LANES, Lane, Unfused};
 use crate::neighbours::{CHUNK_CLUSTERS, ClusterList};
 use rayon::prelude::*;
@@ -105,6 +107,116 @@ impl<const D: usize, L: PairLaw<D>> Work<D> for (&L, &ClusterList) {
         }
         *sum = total;
     }
+}
+
+/// A sum over neighbours that stay where they are to each other: what depends on their distance alone is computed once.
+pub trait FixedLaw<const D: usize>: Sync {
+    /// What is loaded of four targets before their neighbours are visited.
+    type Target: Copy;
+    /// What is summed up for four targets.
+    type Sum: Copy + Default + Send;
+
+    /// Loads the targets at `slot..slot + 4`.
+    fn target(&self, slot: usize) -> Self::Target;
+    /// Adds the contribution of source `j`: `dx` = x_i - x_j, `slope` = F(r).
+    fn add<A: Arch>(&self, target: &Self::Target, j: usize, dx: [Lane; D], slope: Lane, sum: &mut Self::Sum);
+}
+
+/// Positions that do not change, with their neighbours and the kernel's slopes F between them.
+pub struct FixedPairs<const D: usize> {
+    position: Vectors<D>,
+    list: ClusterList,
+    /// By chunk, in the list's order.
+    slopes: Vec<Vec<Lane>>,
+}
+
+impl<const D: usize> FixedPairs<D> {
+    /// Of a list among these positions.
+    pub fn new<K: Kernel<D>>(isa: Isa, kernel: K, position: Vectors<D>, list: ClusterList) -> Self {
+        let mut pairs = Self { position, list, slopes: Vec::new() };
+        let fused = isa.min(Isa::detect()) != Isa::Baseline;
+        for (c, chunk) in pairs.list.chunks().iter().enumerate() {
+            let clusters = (c * CHUNK_CLUSTERS..pairs.list.clusters()).take(CHUNK_CLUSTERS);
+            let slopes = clusters.enumerate().flat_map(|(k, cluster)| {
+                let pairs = &pairs;
+                chunk.of(k).iter().map(move |&j| {
+                    let slot = cluster * LANES;
+                    if fused {
+                        pairs.slope::<K, Fused>(kernel, slot, j)
+                    } else {
+                        pairs.slope::<K, Unfused>(kernel, slot, j)
+                    }
+                })
+            });
+            let slopes = slopes.collect();
+            pairs.slopes.push(slopes);
+        }
+        pairs
+    }
+
+    /// The positions.
+    pub fn position(&self) -> &Vectors<D> {
+        &self.position
+    }
+
+    /// The list.
+    pub fn list(&self) -> &ClusterList {
+        &self.list
+    }
+
+    #[inline(always)]
+    fn apart<A: Arch>(&self, xi: &[Lane; D], j: usize) -> [Lane; D] {
+        std::array::from_fn(|d| xi[d] - Lane::splat(self.position[d][j]))
+    }
+
+    #[inline(always)]
+    fn at(&self, slot: usize) -> [Lane; D] {
+        std::array::from_fn(|d| Lane::load(&self.position[d], slot))
+    }
+
+    fn slope<K: Kernel<D>, A: Arch>(&self, kernel: K, slot: usize, j: u32) -> Lane {
+        let dx = self.apart::<A>(&self.at(slot), j as usize);
+        let r2 = dx.iter().fold(Lane::ZERO, |r2, &dx| A::mul_add(dx, dx, r2));
+        kernel.gradient_over_r::<A>(distance(r2, kernel.smoothing_length()))
+    }
+}
+
+struct OverFixed<'a, L, const D: usize>(&'a L, &'a FixedPairs<D>);
+
+impl<L, const D: usize> Clone for OverFixed<'_, L, D> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<L, const D: usize> Copy for OverFixed<'_, L, D> {}
+
+impl<const D: usize, L: FixedLaw<D>> Work<D> for OverFixed<'_, L, D> {
+    type Sum = L::Sum;
+    fn clusters(self) -> usize {
+        self.1.list.clusters()
+    }
+    #[inline(always)]
+    fn gather<A: Arch>(self, chunk: usize, k: usize, slot: usize, sum: &mut L::Sum) {
+        let Self(law, pairs) = self;
+        let (neighbours, first) = pairs.list.chunks()[chunk].range(k);
+        let (target, xi) = (law.target(slot), pairs.at(slot));
+        let mut total = *sum;
+        for (&j, &slope) in neighbours.iter().zip(&pairs.slopes[chunk][first..]) {
+            let dx = pairs.apart::<A>(&xi, j as usize);
+            law.add::<A>(&target, j as usize, dx, slope, &mut total);
+        }
+        *sum = total;
+    }
+}
+
+/// Runs a law over all of fixed pairs; `sums` has one entry for each cluster.
+pub fn fixed_pass<const D: usize, L: FixedLaw<D>>(
+    isa: Isa,
+    law: &L,
+    pairs: &FixedPairs<D>,
+    sums: &mut [L::Sum],
+) {
+    run_chunks(isa, OverFixed(law, pairs), Replace(|_, sum: &L::Sum| *sum), sums);
 }
 
 /// The second goes on from the sum of the first.

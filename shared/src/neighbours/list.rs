@@ -41,7 +41,14 @@ impl Chunk {
     /// Neighbours of the chunk's cluster number `k`.
     #[inline(always)]
     pub(crate) fn of(&self, k: usize) -> &[u32] {
-        &self.index[self.start[k] as usize..self.start[k + 1] as usize]
+        self.range(k).0
+    }
+
+    /// The same, and how many the clusters before it have.
+    #[inline(always)]
+    pub(crate) fn range(&self, k: usize) -> (&[u32], usize) {
+        let (first, end) = (self.start[k] as usize, self.start[k + 1] as usize);
+        (&self.index[first..end], first)
     }
 }
 

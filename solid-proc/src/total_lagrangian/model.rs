@@ -17,6 +17,7 @@ use halfstep_shared::geometry::{self, SolidPoint};
 use halfstep_shared::interface::wire_component;
 use halfstep_shared::lane::{Isa, LANES};
 use halfstep_shared::neighbours::{ClusterList, PADDING, Rows};
+use halfstep_shared::pair::FixedPairs;
 use halfstep_shared::protocol::StateRecord;
 use halfstep_shared::role::Costs;
 use halfstep_shared::scene::{EffectName, KernelName, Scene, Solid};
@@ -66,8 +67,9 @@ pub struct TotalLagrangian<const D: usize> {
     pub(super) id: Vec<u32>,
     /// Slot of a particle.
     pub(super) slot_of: Vec<u32>,
-    pub(super) fixed: Fixed<D>,
-    pub(super) list: ClusterList,
+    pub(super) fixed: Fixed,
+    /// X, neighbours and kernel of the reference configuration.
+    pub(super) pairs: FixedPairs<D>,
     /// L; zero where a particle has no deformation gradient.
     pub(super) correction: Vec<Matrix<D>>,
     /// a, Pa.
@@ -166,13 +168,13 @@ impl<const D: usize> TotalLagrangian<D> {
             sums: vec![Acceleration::default(); slots / LANES],
             correction: vec![Matrix::zeros(); slots],
             hourglass: vec![0.0; slots],
-            fixed: Fixed { position, clamped, excess_gain },
+            fixed: Fixed { clamped, excess_gain },
+            pairs: with_kernel!(scene.numerics.kernel, h, D, |k| FixedPairs::new(isa, k, position, list)),
             points: layout.solid,
             now,
             material,
             id,
             slot_of,
-            list,
             contact,
             failure: None,
             pair_evaluations: 0,
@@ -184,7 +186,7 @@ impl<const D: usize> TotalLagrangian<D> {
 
     /// Present position of the particle at a slot.
     pub(super) fn position_at(&self, slot: usize) -> [f64; D] {
-        std::array::from_fn(|d| self.fixed.position[d][slot] + self.now.displacement[d][slot])
+        std::array::from_fn(|d| self.pairs.position()[d][slot] + self.now.displacement[d][slot])
     }
 
     fn take_load(&mut self, load: &Load<D>) {
