@@ -89,8 +89,7 @@ impl<const D: usize> Shown<D> {
 
     #[inline(always)]
     fn four(&self, slot: usize, of: impl Fn(&Source<D>) -> f64) -> Lane {
-        let four: &[Source<D>; LANES] = self.sources[slot..slot + LANES].try_into().expect("a slice of four");
-        Lane(std::array::from_fn(|k| of(&four[k])))
+        four(&self.sources, slot, of)
     }
 
     /// Velocities of four slots.
@@ -110,6 +109,13 @@ impl<const D: usize> Shown<D> {
     pub fn pressure_terms(&self, slot: usize) -> Lane {
         self.four(slot, |s| s.pressure_term)
     }
+}
+
+/// One number of each of four consecutive records.
+#[inline(always)]
+pub(crate) fn four<T>(records: &[T], slot: usize, of: impl Fn(&T) -> f64) -> Lane {
+    let four: &[T; LANES] = records[slot..slot + LANES].try_into().expect("a slice of four");
+    Lane(std::array::from_fn(|k| of(&four[k])))
 }
 
 /// The fluid particles. State at the present stage, and the state at n while a step is under way.

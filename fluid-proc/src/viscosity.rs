@@ -4,7 +4,7 @@
 //! particle takes part in the gradient with the velocity it shows and repeats the stress of its fluid neighbour.
 
 use crate::artificial_viscosity::ArtificialViscosity;
-use crate::columns::Shown;
+use crate::columns::{Shown, four};
 use crate::effects::FluidEffect;
 use crate::fluid::Fluid;
 use crate::rates::{FluidPair, PairEffect, PairRates};
@@ -96,8 +96,7 @@ impl<const D: usize> VelocityGradient<D> {
 impl<const D: usize> StressTerm<D> {
     #[inline(always)]
     fn load(&self, slot: usize) -> [[Lane; D]; D] {
-        let four: &[[[f64; D]; D]; LANES] = self.0[slot..slot + LANES].try_into().expect("a slice of four");
-        std::array::from_fn(|a| std::array::from_fn(|b| Lane(std::array::from_fn(|k| four[k][a][b]))))
+        std::array::from_fn(|a| std::array::from_fn(|b| four(&self.0, slot, |stress| stress[a][b])))
     }
 }
 

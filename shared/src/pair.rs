@@ -91,7 +91,8 @@ impl<const D: usize, L: PairLaw<D>> Work<D> for (&L, &ClusterList) {
             return;
         }
         let positions = law.target_positions();
-        let target = law.target(slot);
+        // By way of memory: of a vector put together from scalars the compiler keeps some apart through the whole loop.
+        let target = std::hint::black_box(law.target(slot));
         let xi: [Lane; D] = std::array::from_fn(|d| Lane::load(&positions[d], slot));
         let mut total = *sum;
         for &j in neighbours {

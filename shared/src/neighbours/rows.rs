@@ -39,7 +39,6 @@ impl<const D: usize> Rows<D> {
         let mut keys = std::mem::take(&mut self.id_scratch);
         keys.clear();
         reserve(&mut keys, id.len().max(self.room));
-        self.filled.iter_mut().for_each(|f| *f = 0);
         for slot in 0..id.len() {
             let key = if id[slot] == PADDING {
                 u32::MAX
@@ -51,10 +50,9 @@ impl<const D: usize> Rows<D> {
             }
             keys.push(key);
         }
-        self.cursor.clear();
         let (mut total, mut slots) = (0, 0);
         for row in 0..rows {
-            self.cursor.push(total);
+            self.cursor[row] = total;
             self.start[row] = slots;
             total += self.filled[row];
             slots += self.filled[row].next_multiple_of(LANES as u32);
@@ -137,10 +135,11 @@ impl<const D: usize> Rows<D> {
             self.height *= 2.0;
         }
         let rows: usize = self.counts.iter().product();
-        self.start.clear();
-        self.start.resize(rows + 1, 0);
-        self.filled.clear();
-        self.filled.resize(rows, 0);
+        for (column, len) in [(&mut self.start, rows + 1), (&mut self.filled, rows), (&mut self.cursor, rows)]
+        {
+            column.clear();
+            fit(column, len, 0);
+        }
     }
 
     #[inline]
