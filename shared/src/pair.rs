@@ -166,7 +166,7 @@ impl<const D: usize> FixedPairs<D> {
     }
 
     #[inline(always)]
-    fn apart<A: Arch>(&self, xi: &[Lane; D], j: usize) -> [Lane; D] {
+    fn apart(&self, xi: &[Lane; D], j: usize) -> [Lane; D] {
         std::array::from_fn(|d| xi[d] - Lane::splat(self.position[d][j]))
     }
 
@@ -176,7 +176,7 @@ impl<const D: usize> FixedPairs<D> {
     }
 
     fn slope<K: Kernel<D>, A: Arch>(&self, kernel: K, slot: usize, j: u32) -> Lane {
-        let dx = self.apart::<A>(&self.at(slot), j as usize);
+        let dx = self.apart(&self.at(slot), j as usize);
         let r2 = dx.iter().fold(Lane::ZERO, |r2, &dx| A::mul_add(dx, dx, r2));
         kernel.gradient_over_r::<A>(distance(r2, kernel.smoothing_length()))
     }
@@ -203,7 +203,7 @@ impl<const D: usize, L: FixedLaw<D>> Work<D> for OverFixed<'_, L, D> {
         let (target, xi) = (law.target(slot), pairs.at(slot));
         let mut total = *sum;
         for (&j, &slope) in neighbours.iter().zip(&pairs.slopes[chunk][first..]) {
-            let dx = pairs.apart::<A>(&xi, j as usize);
+            let dx = pairs.apart(&xi, j as usize);
             law.add::<A>(&target, j as usize, dx, slope, &mut total);
         }
         *sum = total;

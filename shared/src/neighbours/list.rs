@@ -32,7 +32,7 @@ impl Chunk {
         let used = self.index.len();
         if self.index.capacity() != before || before < used + used / 32 {
             // Short lists, those of walls, change the most.
-            let room = if used < 16 * CHUNK_CLUSTERS { used + 256 } else { used / 8 };
+            let room = if used < 16 * CHUNK_CLUSTERS { 2 * used + 256 } else { used / 4 };
             self.index.shrink_to(used + room);
             self.index.reserve_exact(room);
         }
