@@ -91,11 +91,18 @@ pub(crate) fn share_coupled(report: &mut RunReport, outcome: &CoupledOutcome) {
         *seconds = sum(farewell::EFFECTS + k);
     }
     share(report, &costs, total);
+    let shown = |place: usize| {
+        let effect = place.checked_sub(farewell::EFFECTS).map(|k| EffectName::ALL[k]);
+        effect.is_none_or(|effect| is_on(report, effect))
+    };
+    let own = [&outcome.fluid, &outcome.solid].map(|header| {
+        let places = (farewell::WALLS..farewell::COUNT).filter(|&place| shown(place));
+        (header.seconds[0] - places.map(|place| told(header, place)).sum::<f64>()).max(0.0) / total
+    });
     share_row(report, INTERFACE, sum(farewell::INTERFACE) / total);
     share_row(report, CROSS_VISCOSITY, outcome.seconds.compute / total);
-    for (name, header) in [(FLUID, &outcome.fluid), (SOLID, &outcome.solid)] {
-        let effects: f64 = (farewell::WALLS..farewell::COUNT).map(|place| told(header, place)).sum();
-        share_row(report, name, (header.seconds[0] - effects).max(0.0) / total);
+    for (name, share) in [FLUID, SOLID].into_iter().zip(own) {
+        share_row(report, name, share);
     }
 }
 
@@ -103,7 +110,9 @@ pub(crate) fn share_coupled(report: &mut RunReport, outcome: &CoupledOutcome) {
 pub(crate) fn share_solo(report: &mut RunReport, outcome: &SoloOutcome) {
     let total = outcome.seconds.compute;
     share(report, &outcome.costs, total);
-    let effects = outcome.costs.walls + outcome.costs.effects.iter().sum::<f64>();
+    let shown =
+        EffectName::ALL.iter().zip(outcome.costs.effects).filter(|(effect, _)| is_on(report, **effect));
+    let effects = outcome.costs.walls + shown.map(|(_, seconds)| seconds).sum::<f64>();
     for name in [FLUID, SOLID] {
         share_row(report, name, (total - effects).max(0.0) / total);
     }
@@ -118,6 +127,12 @@ fn share(report: &mut RunReport, costs: &Costs, total: f64) {
     if costs.walls > 0.0 {
         share_row(report, WALLS, costs.walls / total);
     }
+}
+
+/// The ledger has a row that can show what the effect costs. (A solid's artificial viscosity has none without a fluid's:
+/// then it is part of the solid.)
+fn is_on(report: &RunReport, effect: EffectName) -> bool {
+    report.effects.iter().any(|row| row.on && row.name == effect.name())
 }
 
 fn share_row(report: &mut RunReport, name: &str, share: f64) {

@@ -8,6 +8,7 @@
 //!   [`crate::density_gradient`]. (Printed with a difference of the gradients in Kayaki's eq. (19); only the sum cancels a
 //!   linear field.)
 
+use crate::columns::four;
 use crate::effects::FluidEffect;
 use crate::fluid::Fluid;
 use crate::rates::{FluidPair, PairEffect, PairRates};
@@ -149,7 +150,7 @@ impl<const D: usize> PairEffect<D> for DeltaSph<'_, D> {
     type Own = [Lane; D];
     #[inline(always)]
     fn own(&self, slot: usize) -> [Lane; D] {
-        std::array::from_fn(|d| Lane(std::array::from_fn(|k| self.gradient[slot + k][d])))
+        std::array::from_fn(|d| four(self.gradient, slot, |g| g[d]))
     }
     #[inline(always)]
     fn add<A: Arch>(&self, own: &[Lane; D], j: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {

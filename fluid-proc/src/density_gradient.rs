@@ -66,7 +66,7 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for GradientLaw<'_, K, D> {
     }
     #[inline(always)]
     fn target(&self, slot: usize) -> Self::Target {
-        Lane::load(&self.fluid.density, slot)
+        self.fluid.densities(slot)
     }
     #[inline(always)]
     fn source_position(&self, j: usize) -> [f64; D] {

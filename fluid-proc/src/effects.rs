@@ -134,6 +134,14 @@ impl<'a, const D: usize> Effects<'a, D> {
                 pass.run::<(_, (DeltaSph<'a, D>, ()))>((damping, (diffusion, ())));
                 "artificial viscosity, delta-SPH diffusion"
             }
+            (3, Some(damping), Some(Diffusion::Simple(diffusion)), Some(stress)) => {
+                pass.run((damping, (diffusion, (stress, ()))));
+                "artificial viscosity, simple diffusion, viscosity"
+            }
+            (2, None, Some(Diffusion::DeltaSph(diffusion)), Some(stress)) => {
+                pass.run((diffusion, (stress, ())));
+                "delta-SPH diffusion, viscosity"
+            }
             (3, Some(damping), Some(Diffusion::DeltaSph(diffusion)), Some(stress)) => {
                 pass.run((damping, (diffusion, (stress, ()))));
                 "artificial viscosity, delta-SPH diffusion, viscosity"

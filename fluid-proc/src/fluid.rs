@@ -9,8 +9,8 @@ use crate::midpoint::{self, Extremes, Stage};
 use crate::moving_wall::motions;
 use crate::rates::RateSum;
 use crate::time_step::Limits;
-use crate::viscosity::{StressTerm, VelocityGradient};
-use crate::wall::{Damping, WallSum, Walls};
+use crate::viscosity::StressTerm;
+use crate::wall::{Damping, Walls};
 use crate::wall_guard::{self, GUARD};
 use halfstep_shared::bounds::Bounds;
 use halfstep_shared::failure::{Diverged, RoleName};
@@ -57,7 +57,6 @@ pub struct Fluid<const D: usize> {
     pub(crate) wall_list: ClusterList,
     pub(crate) list_of_walls: ClusterList,
     pub(crate) sums: Vec<RateSum<D>>,
-    pub(crate) extrapolations: Vec<WallSum<D>>,
     /// Renormalised density gradient of each cluster's particles.
     pub(crate) gradient: Vec<[[f64; D]; LANES]>,
     /// Computed once a step.
@@ -67,7 +66,6 @@ pub struct Fluid<const D: usize> {
     /// The gradient belongs to this step and order.
     pub(crate) gradient_known: bool,
     pub(crate) stress: StressTerm<D>,
-    pub(crate) velocity_gradients: Vec<VelocityGradient<D>>,
     displacement: f64,
     largest_speed: f64,
     largest_acceleration: f64,
@@ -129,13 +127,11 @@ impl<const D: usize> Fluid<D> {
                 wall_list: ClusterList::default(),
                 list_of_walls: ClusterList::default(),
                 sums: Vec::new(),
-                extrapolations: Vec::new(),
                 gradient: Vec::new(),
                 frozen: crate::density_gradient::decide(scene).on,
                 gradient_known: false,
                 composition: None,
                 stress: StressTerm::default(),
-                velocity_gradients: Vec::new(),
                 displacement: 0.0,
                 largest_speed: 0.0,
                 largest_acceleration: 0.0,
@@ -149,8 +145,8 @@ impl<const D: usize> Fluid<D> {
     fn prepared(mut self) -> Self {
         self.sort();
         self.largest_acceleration = self.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
-        let speed = |slot: usize| (0..D).map(|d| self.columns.now.velocity[d][slot].powi(2)).sum::<f64>();
-        self.largest_speed = (0..self.columns.slots()).map(speed).fold(0.0, f64::max).sqrt();
+        let speeds = self.columns.now.sources.iter().map(|s| s.velocity.map(|v| v.powi(2)).iter().sum());
+        self.largest_speed = speeds.fold(0.0, f64::max).sqrt();
         self
     }
 
@@ -178,16 +174,15 @@ impl<const D: usize> Fluid<D> {
             }
             self.wall_list.build(x, &walls.shown.position, &walls.rows, reach);
             self.list_of_walls.build(&walls.shown.position, x, &self.rows, reach);
-            fit(&mut self.extrapolations, self.list_of_walls.clusters(), WallSum::default());
         }
         let clusters = self.fluid_list.clusters();
         fit(&mut self.sums, clusters, RateSum::default());
         if self.needs_gradient() {
-            self.gradient.resize(clusters, [[0.0; D]; LANES]);
+            fit(&mut self.gradient, clusters, [[0.0; D]; LANES]);
             self.gradient_known = false;
         }
         if self.takes_part(EffectName::Viscosity) {
-            fit(&mut self.velocity_gradients, clusters, VelocityGradient::default());
+            fit(&mut self.stress.0, self.columns.slots(), [[0.0; D]; D]);
         }
         self.displacement = 0.0;
         self.sorted = true;
@@ -204,8 +199,9 @@ impl<const D: usize> Fluid<D> {
     fn find_divergence(&self, step: u64, stage: u32) -> Option<Diverged> {
         let c = &self.columns;
         let excess = |s: usize| {
-            let v2: f64 = (0..D).map(|d| c.now.velocity[d][s].powi(2)).sum();
-            Some((s, self.bounds.excess(c.now.density[s], v2.sqrt())?))
+            let particle = &c.now.sources[s];
+            let v2: f64 = particle.velocity.iter().map(|v| v.powi(2)).sum();
+            Some((s, self.bounds.excess(particle.density, v2.sqrt())?))
         };
         let found = (0..c.slots()).filter(|&s| c.id[s] != PADDING).filter_map(excess);
         let (s, worst) = found.max_by(|a, b| a.1.ratio.total_cmp(&b.1.ratio))?;

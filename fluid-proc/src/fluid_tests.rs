@@ -42,18 +42,15 @@ fn walls_show_the_hydrostatic_pressure() {
         let deep_corner = x[1] < -0.01 && !(0.0..0.2).contains(&x[0]);
         if !deep_corner && x[1] < 0.09 && x[1] > -0.02 && x[0] > -0.02 && x[0] < 0.22 {
             let exact = 1000.0 * 9.81 * (0.1 - x[1]);
-            assert!(
-                (walls.pressure[s] - exact).abs() < 0.005 * exact,
-                "{x:?}: {} {exact}",
-                walls.pressure[s]
-            );
+            let shown = walls.shown.sources[s].pressure;
+            assert!((shown - exact).abs() < 0.005 * exact, "{x:?}: {shown} {exact}");
             seen += 1;
         }
     }
     assert!(seen > 30);
     // Above the water nothing is near: zero.
     let dry = (0..walls.slots()).filter(|&s| walls.id[s] != PADDING && walls.shown.position[1][s] > 0.14);
-    assert!(dry.map(|s| walls.pressure[s]).all(|p| p == 0.0));
+    assert!(dry.map(|s| walls.shown.sources[s].pressure).all(|p| p == 0.0));
 }
 
 #[test]
@@ -67,7 +64,7 @@ fn walls_mirror_the_normal_velocity() {
             .find(|&s| {
                 (walls.shown.position[0][s] - x).abs() < 1e-9 && (walls.shown.position[1][s] - y).abs() < 1e-9
             })
-            .map(|s| [walls.shown.velocity[0][s], walls.shown.velocity[1][s]])
+            .map(|s| walls.shown.sources[s].velocity)
             .unwrap()
     };
     let near =

@@ -8,6 +8,7 @@ use halfstep_shared::lane::LANES;
 use halfstep_shared::neighbours::{PADDING, Rows};
 use halfstep_shared::protocol::StateRecord;
 use halfstep_shared::role::CoverageError;
+use halfstep_shared::wide;
 
 /// State of the coupling.
 pub struct Coupling<const D: usize> {
@@ -124,18 +125,16 @@ impl<const D: usize> Coupling<D> {
         out.reserve_exact(self.slots.capacity());
         for &slot in &self.slots {
             let s = slot as usize;
-            let mut r = StateRecord {
+            let particle = &fluid.now.sources[s];
+            out.push(StateRecord {
                 id: fluid.id[s],
-                density: fluid.now.density[s],
-                pressure: fluid.pressure[s],
+                position: wide(particle.position),
+                velocity: wide(particle.velocity),
+                density: particle.density,
+                pressure: particle.pressure,
                 mass: fluid.now.mass,
                 ..StateRecord::default()
-            };
-            for d in 0..D {
-                r.position[d] = fluid.now.position[d][s];
-                r.velocity[d] = fluid.now.velocity[d][s];
-            }
-            out.push(r);
+            });
         }
     }
 

@@ -1,5 +1,6 @@
 //! Probes, integral quantities, output and hash of the fluid.
 
+use crate::columns::Source;
 use crate::fluid::Fluid;
 use halfstep_shared::neighbours::PADDING;
 use halfstep_shared::output::{Frame, FramePoint};
@@ -19,7 +20,7 @@ impl<const D: usize> Fluid<D> {
     }
 
     fn speed_squared(&self, slot: usize) -> f64 {
-        (0..D).map(|d| self.columns.now.velocity[d][slot].powi(2)).sum()
+        self.columns.now.sources[slot].velocity.iter().map(|v| v.powi(2)).sum()
     }
 
     fn kinetic_energy(&self) -> f64 {
@@ -38,7 +39,8 @@ impl<const D: usize> Fluid<D> {
                     let w = halfstep_shared::kernel::value_at::<D>(self.kernel, h, r2.sqrt());
                     // Extrapolated along gravity, as toward a wall: exact at rest.
                     let head: f64 = (0..D).map(|d| self.gravity[d] * (at[d] - x[d])).sum();
-                    sum += w * (self.columns.pressure[s] + self.columns.now.density[s] * head);
+                    let particle = &self.columns.now.sources[s];
+                    sum += w * (particle.pressure + particle.density * head);
                     weight += w;
                 }
             }
@@ -83,16 +85,22 @@ impl<const D: usize> Fluid<D> {
     pub(crate) fn audit_values(&self) -> [f64; 8] {
         let mass = self.columns.now.mass;
         let mut values = [0.0; 8];
-        for d in 0..D {
-            values[audit::MOMENTUM + d] =
-                mass * self.real_slots().map(|s| self.columns.now.velocity[d][s]).sum::<f64>();
+        let (mut momentum, mut energy, mut error) = ([0.0; D], 0.0, 0.0_f64);
+        // All in one walk: it is done every step.
+        for (particle, _) in self.columns.now.sources.iter().zip(&self.columns.id).filter(|p| *p.1 != PADDING)
+        {
+            for d in 0..D {
+                momentum[d] += particle.velocity[d];
+            }
+            energy += particle.velocity.iter().map(|v| v.powi(2)).sum::<f64>();
+            error = error.max((particle.density / self.state.density - 1.0).abs());
         }
-        values[audit::KINETIC_ENERGY] = self.kinetic_energy();
+        for d in 0..D {
+            values[audit::MOMENTUM + d] = mass * momentum[d];
+        }
+        values[audit::KINETIC_ENERGY] = 0.5 * mass * energy;
         values[audit::MASS] = mass * self.columns.particles as f64;
-        values[audit::DENSITY_ERROR] = self
-            .real_slots()
-            .map(|s| (self.columns.now.density[s] / self.state.density - 1.0).abs())
-            .fold(0.0, f64::max);
+        values[audit::DENSITY_ERROR] = error;
         values[audit::GAP] = self.coupling.as_ref().map_or(f64::INFINITY, |c| c.gap()) / self.resolution;
         values
     }
@@ -100,29 +108,14 @@ impl<const D: usize> Fluid<D> {
     pub(crate) fn copy_to(&self, time: f64, frame: &mut Frame) {
         frame.clear();
         frame.time = time;
-        let c = &self.columns;
         for s in self.real_slots() {
-            frame.push(FramePoint {
-                position: wide(self.position(s)),
-                velocity: wide(std::array::from_fn::<_, D, _>(|d| c.now.velocity[d][s])),
-                density: c.now.density[s],
-                pressure: c.pressure[s],
-                stress: [0.0; 6],
-                phase: Phase::Fluid,
-                id: c.id[s],
-            });
+            let particle = &self.columns.now.sources[s];
+            frame.push(point(particle, particle.velocity, Phase::Fluid, self.columns.id[s]));
         }
         let Some(walls) = &self.walls else { return };
         for s in (0..walls.slots()).filter(|&s| walls.id[s] != PADDING) {
-            frame.push(FramePoint {
-                position: wide(std::array::from_fn::<_, D, _>(|d| walls.shown.position[d][s])),
-                velocity: wide(std::array::from_fn::<_, D, _>(|d| walls.own_velocity[d][s])),
-                density: walls.shown.density[s],
-                pressure: walls.pressure[s],
-                stress: [0.0; 6],
-                phase: Phase::Wall,
-                id: walls.id[s],
-            });
+            let velocity = std::array::from_fn(|d| walls.own_velocity[d][s]);
+            frame.push(point(&walls.shown.sources[s], velocity, Phase::Wall, walls.id[s]));
         }
     }
 
@@ -131,13 +124,26 @@ impl<const D: usize> Fluid<D> {
         slots.sort_unstable_by_key(|&s| self.columns.id[s]);
         let mut hash = Xxh3::new();
         for s in slots {
+            let particle = &self.columns.now.sources[s];
             hash.update(&self.columns.id[s].to_le_bytes());
             for d in 0..D {
-                hash.update(&self.columns.now.position[d][s].to_le_bytes());
-                hash.update(&self.columns.now.velocity[d][s].to_le_bytes());
+                hash.update(&particle.position[d].to_le_bytes());
+                hash.update(&particle.velocity[d].to_le_bytes());
             }
-            hash.update(&self.columns.now.density[s].to_le_bytes());
+            hash.update(&particle.density.to_le_bytes());
         }
         hash.digest()
+    }
+}
+
+fn point<const D: usize>(particle: &Source<D>, velocity: [f64; D], phase: Phase, id: u32) -> FramePoint {
+    FramePoint {
+        position: wide(particle.position),
+        velocity: wide(velocity),
+        density: particle.density,
+        pressure: particle.pressure,
+        stress: [0.0; 6],
+        phase,
+        id,
     }
 }

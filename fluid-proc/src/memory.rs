@@ -14,7 +14,7 @@ fn of_each<T, const D: usize>(columns: &[Vec<T>; D]) -> usize {
 
 impl<const D: usize> Shown<D> {
     fn bytes(&self) -> usize {
-        of_each(&self.position) + of_each(&self.velocity) + of(&self.density) + of(&self.sources)
+        of_each(&self.position) + of(&self.sources)
     }
 }
 
@@ -22,7 +22,6 @@ impl<const D: usize> Columns<D> {
     fn bytes(&self) -> usize {
         self.now.bytes()
             + of(&self.id)
-            + of(&self.pressure)
             + of_each(&self.position_n)
             + of_each(&self.velocity_n)
             + of(&self.density_n)
@@ -34,12 +33,10 @@ impl<const D: usize> Walls<D> {
     fn bytes(&self) -> usize {
         self.shown.bytes()
             + of(&self.id)
-            + of(&self.pressure)
             + of_each(&self.own_velocity)
             + of_each(&self.normal)
             + of(&self.reverse_all)
             + of(&self.damping)
-            + of(&self.dry)
             + self.moving.as_ref().map_or(0, |m| of(&m.shape) + of_each(&m.initial) + of_each(&m.surface))
             + self.rows.bytes()
     }
@@ -48,7 +45,6 @@ impl<const D: usize> Walls<D> {
 impl<const D: usize> Fluid<D> {
     /// Bytes allocated for particles, sums, walls and neighbour lists.
     pub(crate) fn allocated(&self) -> usize {
-        let stress: usize = self.stress.0.iter().map(of_each).sum();
         self.columns.bytes()
             + self.walls.as_ref().map_or(0, Walls::bytes)
             + self.rows.bytes()
@@ -57,9 +53,7 @@ impl<const D: usize> Fluid<D> {
                 .iter()
                 .sum::<usize>()
             + of(&self.sums)
-            + of(&self.extrapolations)
             + of(&self.gradient)
-            + of(&self.velocity_gradients)
-            + stress
+            + of(&self.stress.0)
     }
 }

@@ -1,7 +1,7 @@
 //! The midpoint step, Kayaki's eqs. (30) and (31): to n + 1/2 with the rates at n, then from n to n + 1 with the rates
 //! at n + 1/2. One walk over the particles also applies the state equation and finds what the next step depends on.
 
-use crate::columns::{Columns, Source, source};
+use crate::columns::{Columns, Source};
 use crate::rates::RateSum;
 use halfstep_shared::bounds::Bounds;
 use halfstep_shared::lane::LANES;
@@ -67,20 +67,15 @@ pub fn advance<const D: usize>(
     if stage.first {
         // The present state becomes that at n; what it takes the place of is overwritten.
         std::mem::swap(&mut columns.position_n, &mut columns.now.position);
-        std::mem::swap(&mut columns.velocity_n, &mut columns.now.velocity);
-        std::mem::swap(&mut columns.density_n, &mut columns.now.density);
     }
     let part = Part {
         id: &columns.id,
         sums,
         position_n: columns.position_n.each_ref().map(Vec::as_slice),
-        velocity_n: columns.velocity_n.each_ref().map(Vec::as_slice),
-        density_n: &columns.density_n,
+        velocity_n: columns.velocity_n.each_mut().map(Vec::as_mut_slice),
+        density_n: &mut columns.density_n,
         reference: columns.reference.each_ref().map(Vec::as_slice),
         position: columns.now.position.each_mut().map(Vec::as_mut_slice),
-        velocity: columns.now.velocity.each_mut().map(Vec::as_mut_slice),
-        density: &mut columns.now.density,
-        pressure: &mut columns.pressure,
         sources: &mut columns.now.sources,
     };
     walk(part, &stage)
@@ -91,13 +86,10 @@ struct Part<'a, const D: usize> {
     id: &'a [u32],
     sums: &'a [RateSum<D>],
     position_n: [&'a [f64]; D],
-    velocity_n: [&'a [f64]; D],
-    density_n: &'a [f64],
+    velocity_n: [&'a mut [f64]; D],
+    density_n: &'a mut [f64],
     reference: [&'a [f64]; D],
     position: [&'a mut [f64]; D],
-    velocity: [&'a mut [f64]; D],
-    density: &'a mut [f64],
-    pressure: &'a mut [f64],
     sources: &'a mut [Source<D>],
 }
 
@@ -120,30 +112,15 @@ fn split_mut<const D: usize>(columns: [&mut [f64]; D], at: usize) -> ([&mut [f64
 impl<const D: usize> Part<'_, D> {
     fn split_at(self, at: usize) -> (Self, Self) {
         let (position, position_) = split_mut(self.position, at);
-        let (velocity, velocity_) = split_mut(self.velocity, at);
-        let (density, density_) = self.density.split_at_mut(at);
-        let (pressure, pressure_) = self.pressure.split_at_mut(at);
         let (sources, sources_) = self.sources.split_at_mut(at);
         let (position_n, position_n_) = split(self.position_n, at);
-        let (velocity_n, velocity_n_) = split(self.velocity_n, at);
+        let (velocity_n, velocity_n_) = split_mut(self.velocity_n, at);
         let (reference, reference_) = split(self.reference, at);
-        let (density_n, density_n_) = self.density_n.split_at(at);
+        let (density_n, density_n_) = self.density_n.split_at_mut(at);
         let (id, id_) = self.id.split_at(at);
         let (sums, sums_) = self.sums.split_at(at / LANES);
         (
-            Self {
-                id,
-                sums,
-                position_n,
-                velocity_n,
-                density_n,
-                reference,
-                position,
-                velocity,
-                density,
-                pressure,
-                sources,
-            },
+            Self { id, sums, position_n, velocity_n, density_n, reference, position, sources },
             Self {
                 id: id_,
                 sums: sums_,
@@ -152,9 +129,6 @@ impl<const D: usize> Part<'_, D> {
                 density_n: density_n_,
                 reference: reference_,
                 position: position_,
-                velocity: velocity_,
-                density: density_,
-                pressure: pressure_,
                 sources: sources_,
             },
         )
@@ -177,26 +151,27 @@ fn update<const D: usize>(part: Part<'_, D>, stage: &Stage<'_, D>) -> Extremes {
     for slot in 0..part.id.len() {
         let sum = &part.sums[slot / LANES];
         let k = slot % LANES;
+        let present = &mut part.sources[slot];
+        if first {
+            for d in 0..D {
+                part.velocity_n[d][slot] = present.velocity[d];
+            }
+            part.density_n[slot] = present.density;
+        }
         let (mut x, mut v) = ([0.0; D], [0.0; D]);
         let (mut moved, mut speed, mut pushed) = (0.0, 0.0, 0.0);
         for d in 0..D {
             let a = gravity[d] + sum.acceleration[d].0[k];
-            let vn = part.velocity_n[d][slot];
-            let at_stage = if first { vn } else { part.velocity[d][slot] };
-            x[d] = part.position_n[d][slot] + dt * at_stage;
-            v[d] = vn + dt * a;
+            x[d] = part.position_n[d][slot] + dt * present.velocity[d];
+            v[d] = part.velocity_n[d][slot] + dt * a;
             part.position[d][slot] = x[d];
-            part.velocity[d][slot] = v[d];
             let dx = x[d] - part.reference[d][slot];
             moved += dx * dx;
             speed += v[d] * v[d];
             pushed += a * a;
         }
         let rho = part.density_n[slot] + dt * sum.density_rate.0[k];
-        let pressure = state.pressure(rho);
-        part.density[slot] = rho;
-        part.pressure[slot] = pressure;
-        part.sources[slot] = source(x, v, rho, pressure, mass);
+        *present = Source::new(x, v, rho, state.pressure(rho), mass);
         // Padding repeats particles without the solid's forces; what becomes of it must not steer the run.
         if part.id[slot] != PADDING {
             extremes = extremes.join(Extremes {

@@ -4,7 +4,7 @@ use crate::density_gradient::{GradientLaw, GradientSum};
 use crate::effects::{Effects, LIST, Pass};
 use crate::fluid::Fluid;
 use crate::rates::{PairEffect, RateLaw, RateSum};
-use crate::viscosity::{self, ViscosityAtWall};
+use crate::viscosity::{self, VelocityGradient, ViscosityAtWall};
 use crate::wall::WallLaw;
 use crate::wall_guard::WallViscosity;
 use halfstep_shared::kernel::Kernel;
@@ -34,28 +34,36 @@ impl<const D: usize> Fluid<D> {
     /// Pressure and velocity that the walls show.
     fn extrapolate<K: Kernel<D>>(&mut self, kernel: K) {
         let Some(walls) = &mut self.walls else { return };
+        let mut sources = std::mem::take(&mut walls.shown.sources);
         let law = WallLaw::new(kernel, self.gravity, walls, &self.columns);
-        pair::pass(self.isa, &law, &self.list_of_walls, &mut self.extrapolations);
-        walls.show(&self.extrapolations, &self.state);
+        let (fours, _) = sources.as_chunks_mut();
+        let show = |slot, sum: &_| walls.shows(slot, sum, &self.state);
+        pair::pass_into(self.isa, &law, &self.list_of_walls, show, fours);
+        walls.shown.sources = sources;
         self.pair_evaluations += evaluations(&self.list_of_walls);
     }
 
     fn density_gradient<K: Kernel<D>>(&mut self, kernel: K) {
         self.gradient_known = true;
         let law = GradientLaw { kernel, fluid: &self.columns.now };
-        pair::pass_into(self.isa, &law, &self.fluid_list, GradientSum::solve, &mut self.gradient);
+        let solve = |_, sum: &GradientSum<D>| sum.solve();
+        pair::pass_into(self.isa, &law, &self.fluid_list, solve, &mut self.gradient);
         self.pair_evaluations += evaluations(&self.fluid_list);
     }
 
     fn viscous_stress<K: Kernel<D>>(&mut self, kernel: K) {
         let fluid = &self.columns.now;
         let law = viscosity::GradientLaw { kernel, targets: fluid, sources: fluid };
-        pair::pass(self.isa, &law, &self.fluid_list, &mut self.velocity_gradients);
+        let viscosity = self.viscosity;
+        let finish = |slot, sum: &VelocityGradient<D>| sum.stress(viscosity, fluid.densities(slot));
+        let (out, _) = self.stress.0.as_chunks_mut();
         if let Some(walls) = &self.walls {
-            let law = viscosity::GradientLaw { kernel, targets: fluid, sources: &walls.shown };
-            pair::pass_adding(self.isa, &law, &self.wall_list, &mut self.velocity_gradients);
+            let at_walls = viscosity::GradientLaw { kernel, targets: fluid, sources: &walls.shown };
+            let (first, second) = ((&law, &self.fluid_list), (&at_walls, &self.wall_list));
+            pair::pass_both_into(self.isa, first, second, finish, out);
+        } else {
+            pair::pass_into(self.isa, &law, &self.fluid_list, finish, out);
         }
-        self.stress.set(self.viscosity, &self.velocity_gradients, &fluid.density);
         self.pair_evaluations += evaluations(&self.fluid_list) + evaluations(&self.wall_list);
     }
 

@@ -156,8 +156,8 @@ impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for RateLaw<'_, 
     #[inline(always)]
     fn target(&self, slot: usize) -> Self::Target {
         Target {
-            velocity: std::array::from_fn(|d| Lane::load(&self.targets.velocity[d], slot)),
-            density: Lane::load(&self.targets.density, slot),
+            velocity: self.targets.velocities(slot),
+            density: self.targets.densities(slot),
             pressure_term: self.targets.pressure_terms(slot),
             own: self.effects.own(slot),
         }

@@ -1,7 +1,7 @@
 //! Each term of the fluid's pass against values computed by hand, and the symmetries that they must keep.
 
 use crate::artificial_viscosity::ArtificialViscosity;
-use crate::columns::{Shown, Source};
+use crate::columns::Shown;
 use crate::density_diffusion::{DeltaSph, Hydrostatic, Simple, Strength};
 use crate::density_gradient::{GradientLaw, GradientSum};
 use crate::rates::{PairEffect, RateLaw, RateSum};
@@ -37,21 +37,16 @@ fn cloud(points: &[P], mass: f64) -> Cloud {
     for (i, p) in points.iter().enumerate() {
         for d in 0..2 {
             shown.position[d][i] = p.x[d];
-            shown.velocity[d][i] = p.v[d];
         }
-        shown.density[i] = p.rho;
+        (shown.sources[i].velocity, shown.sources[i].density) = (p.v, p.rho);
         pressure[i] = p.p;
     }
     let mut id: Vec<u32> = (0..n as u32).collect();
     let mut rows = Rows::<2>::default();
     rows.sort(&shown.position, &id, 2.0 * H, [-1e3; 2], [1e3; 2]);
-    let [x, y] = &mut shown.position;
-    let [u, v] = &mut shown.velocity;
-    for column in [x, y, u, v, &mut shown.density, &mut pressure] {
-        rows.permute(column);
-    }
+    shown.permute(&mut rows);
+    rows.permute(&mut pressure);
     rows.permute_ids(&mut id);
-    shown.sources.resize(id.len(), Source::ZERO);
     (0..id.len()).for_each(|slot| shown.show(slot, pressure[slot]));
     let mut list = ClusterList::default();
     list.build(&shown.position, &shown.position, &rows, 2.0 * H);
@@ -79,7 +74,8 @@ impl Cloud {
     fn gradients(&self) -> Vec<[f64; 2]> {
         let law = GradientLaw { kernel: CubicSpline::<2>::new(H), fluid: &self.shown };
         let mut gradient = vec![[[0.0; 2]; LANES]; self.list.clusters()];
-        pair::pass_into(Isa::detect(), &law, &self.list, GradientSum::solve, &mut gradient);
+        let solve = |_, sum: &GradientSum<2>| sum.solve();
+        pair::pass_into(Isa::detect(), &law, &self.list, solve, &mut gradient);
         gradient.as_flattened().to_vec()
     }
 }
@@ -191,14 +187,14 @@ fn shear_flow_has_the_stress_of_its_rate() {
     let c = cloud(&points, 1.0);
     let law =
         viscosity::GradientLaw { kernel: CubicSpline::<2>::new(H), targets: &c.shown, sources: &c.shown };
-    let mut sums = vec![VelocityGradient::default(); c.list.clusters()];
-    pair::pass(Isa::detect(), &law, &c.list, &mut sums);
-    let mut stress = StressTerm::default();
-    stress.set(0.5, &sums, &c.shown.density);
+    let mut stress = StressTerm(vec![[[0.0; 2]; 2]; LANES * c.list.clusters()]);
+    let finish = |slot, sum: &VelocityGradient<2>| sum.stress(0.5, c.shown.densities(slot));
+    pair::pass_into(Isa::detect(), &law, &c.list, finish, stress.0.as_chunks_mut().0);
     let middle = c.slot[40];
     // The lattice sum of V F x² is 1 up to the kernel's error.
-    assert!((stress.0[0][1][middle] - 1.5).abs() < 0.02, "{}", stress.0[0][1][middle]);
-    assert!(stress.0[0][0][middle].abs() < 1e-12 && stress.0[1][1][middle].abs() < 1e-12);
+    let tau = stress.0[middle];
+    assert!((tau[0][1] - 1.5).abs() < 0.02, "{}", tau[0][1]);
+    assert!(tau[0][0].abs() < 1e-12 && tau[1][1].abs() < 1e-12);
     // A uniform stress makes no force inside.
     let rates = c.rates((ViscousStress(&stress), ()));
     assert!(rates[40].0[0].abs() < 1e-10 && rates[40].0[1].abs() < 1e-10);

@@ -4,7 +4,7 @@
 //! particle takes part in the gradient with the velocity it shows and repeats the stress of its fluid neighbour.
 
 use crate::artificial_viscosity::ArtificialViscosity;
-use crate::columns::{Shown, Vectors, fit, vectors};
+use crate::columns::{Shown, four};
 use crate::effects::FluidEffect;
 use crate::fluid::Fluid;
 use crate::rates::{FluidPair, PairEffect, PairRates};
@@ -13,15 +13,9 @@ use halfstep_shared::lane::{Arch, LANES, Lane};
 use halfstep_shared::pair::{PairLaw, distance};
 use halfstep_shared::scene::{Decision, Derived, EffectName, Scene};
 
-/// tau_ab / rho² of each slot; a <= b filled.
-#[derive(Clone, Debug)]
-pub struct StressTerm<const D: usize>(pub [Vectors<D>; D]);
-
-impl<const D: usize> Default for StressTerm<D> {
-    fn default() -> Self {
-        Self(std::array::from_fn(|_| vectors(0)))
-    }
-}
+/// tau_ab / rho² of each slot.
+#[derive(Clone, Debug, Default)]
+pub struct StressTerm<const D: usize>(pub Vec<[[f64; D]; D]>);
 
 /// dv_a / dx_b of four particles.
 #[derive(Clone, Copy, Debug)]
@@ -54,7 +48,7 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for GradientLaw<'_, K, D> {
     }
     #[inline(always)]
     fn target(&self, slot: usize) -> Self::Target {
-        std::array::from_fn(|d| Lane::load(&self.targets.velocity[d], slot))
+        self.targets.velocities(slot)
     }
     #[inline(always)]
     fn source_position(&self, j: usize) -> [f64; D] {
@@ -81,31 +75,28 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for GradientLaw<'_, K, D> {
     }
 }
 
-impl<const D: usize> StressTerm<D> {
-    /// tau / rho² from the velocity gradients.
-    pub fn set(&mut self, viscosity: f64, gradients: &[VelocityGradient<D>], density: &[f64]) {
-        for a in 0..D {
-            for b in a..D {
-                fit(&mut self.0[a][b], density.len(), 0.0);
-            }
-        }
-        for slot in 0..density.len() {
-            let (c, k) = (slot / LANES, slot % LANES);
-            let gradient = |a: usize, b: usize| gradients[c].0[a][b].0[k];
+impl<const D: usize> VelocityGradient<D> {
+    /// tau / rho² of the four particles.
+    // Inlined, its scalar arithmetic would break up the vectors of the loop before it.
+    #[inline(never)]
+    pub fn stress(&self, viscosity: f64, density: Lane) -> [[[f64; D]; D]; LANES] {
+        std::array::from_fn(|k| {
+            let gradient = |a: usize, b: usize| self.0[a][b].0[k];
             let divergence: f64 = (0..D).map(|a| gradient(a, a)).sum();
-            let scale = viscosity / (density[slot] * density[slot]);
-            for a in 0..D {
-                for b in a..D {
-                    let isotropic = if a == b { 2.0 / 3.0 * divergence } else { 0.0 };
-                    self.0[a][b][slot] = scale * (gradient(a, b) + gradient(b, a) - isotropic);
-                }
-            }
-        }
+            let scale = viscosity / (density.0[k] * density.0[k]);
+            let component = |a: usize, b: usize| {
+                let isotropic = if a == b { 2.0 / 3.0 * divergence } else { 0.0 };
+                scale * (gradient(a, b) + gradient(b, a) - isotropic)
+            };
+            std::array::from_fn(|a| std::array::from_fn(|b| component(a.min(b), a.max(b))))
+        })
     }
+}
 
+impl<const D: usize> StressTerm<D> {
     #[inline(always)]
     fn load(&self, slot: usize) -> [[Lane; D]; D] {
-        std::array::from_fn(|a| std::array::from_fn(|b| Lane::load(&self.0[a.min(b)][a.max(b)], slot)))
+        std::array::from_fn(|a| std::array::from_fn(|b| four(&self.0, slot, |stress| stress[a][b])))
     }
 }
 
@@ -156,8 +147,7 @@ impl<const D: usize> FluidEffect<D> for Viscosity {
         Decision::new(scene, EffectName::Viscosity, derived)
     }
     fn bytes(_: &Scene) -> usize {
-        // tau_ab / rho² and dv_a / dx_b.
-        (D * (D + 1) / 2 + D * D) * size_of::<f64>()
+        size_of::<[[f64; D]; D]>()
     }
     fn pair(fluid: &Fluid<D>) -> ViscousStress<'_, D> {
         ViscousStress(&fluid.stress)
@@ -177,8 +167,8 @@ impl<const D: usize> PairEffect<D> for ViscousStress<'_, D> {
     }
     #[inline(always)]
     fn add<A: Arch>(&self, own: &Self::Own, j: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
-        let other = |a: usize, b: usize| Lane::splat(self.0.0[a.min(b)][a.max(b)][j]);
-        add_stress::<D, A>(|a, b| own[a][b] + other(a, b), &pair.dx, rates);
+        let other = &self.0.0[j];
+        add_stress::<D, A>(|a, b| own[a][b] + Lane::splat(other[a.min(b)][a.max(b)]), &pair.dx, rates);
     }
 }
 

@@ -7,10 +7,10 @@
 //! state's at p_w, the mass rho0 V. Without fluid around: p_w = 0, rho0, u_w. Of a wall that moves by prescription, g is
 //! less its own acceleration.
 
-use crate::columns::{Columns, Shown, Source, Vectors, vectors};
+use crate::columns::{Columns, Shown, Source, Vectors, fit, vectors};
 use crate::moving_wall::Moving;
 use halfstep_shared::columns::bounds;
-use halfstep_shared::extrapolation::{Extrapolation, ExtrapolationSum};
+use halfstep_shared::extrapolation::ExtrapolationSum;
 use halfstep_shared::geometry::WallPoint;
 use halfstep_shared::kernel::Kernel;
 use halfstep_shared::lane::{Arch, LANES, Lane};
@@ -35,8 +35,6 @@ pub struct Walls<const D: usize> {
     pub id: Vec<u32>,
     /// What the fluid sees.
     pub shown: Shown<D>,
-    /// Pressure shown, Pa.
-    pub pressure: Vec<f64>,
     /// Own velocity u_w, m/s.
     pub(crate) own_velocity: Vectors<D>,
     pub(crate) normal: Vectors<D>,
@@ -46,8 +44,6 @@ pub struct Walls<const D: usize> {
     pub damping: Vec<f64>,
     /// Order of the slots.
     pub rows: Rows<D>,
-    /// Clusters that show nothing already.
-    pub(crate) dry: Vec<bool>,
     pub(crate) moving: Option<Moving<D>>,
     height: f64,
     non_negative: bool,
@@ -68,13 +64,11 @@ impl<const D: usize> Walls<D> {
         let mut walls = Self {
             id: (0..n as u32).collect(),
             shown: Shown::new(n, state.density * volume),
-            pressure: Vec::new(),
             own_velocity: vectors(n),
             normal: vectors(n),
             reverse_all: vec![0.0; n],
             damping: vec![0.0; n],
             rows: Rows::default(),
-            dry: Vec::new(),
             moving: Moving::new(points, motions),
             height,
             non_negative,
@@ -90,7 +84,7 @@ impl<const D: usize> Walls<D> {
             walls.damping[i] = if reversed { damping.plain } else { damping.free_slip };
         }
         walls.sort();
-        (0..walls.slots()).for_each(|slot| walls.show_nothing(slot, state));
+        (0..walls.slots()).for_each(|slot| walls.shown.sources[slot] = walls.alone(slot, state));
         walls
     }
 
@@ -109,22 +103,13 @@ impl<const D: usize> Walls<D> {
             moving.permute(&mut self.rows);
         }
         self.rows.permute_ids(&mut self.id);
-        let slots = self.rows.slots();
-        for column in &mut self.shown.velocity {
-            column.resize(slots, 0.0);
-        }
-        self.shown.density.resize(slots, 0.0);
-        self.shown.sources.resize(slots, Source::ZERO);
-        self.pressure.resize(slots, 0.0);
-        self.dry.clear();
-        self.dry.resize(slots / LANES, false);
+        fit(&mut self.shown.sources, self.rows.slots(), Source::ZERO);
     }
 
     /// Brings the walls that move to where they are at a time.
     pub fn set_time(&mut self, time: f64) {
         let Some(moving) = &mut self.moving else { return };
         moving.place(time, &mut self.shown.position, &mut self.own_velocity);
-        self.dry.fill(false);
     }
 
     /// Largest displacement of a wall particle since the last sort, m.
@@ -137,57 +122,48 @@ impl<const D: usize> Walls<D> {
         self.id.len()
     }
 
-    /// What the walls show, from the sums over the fluid.
-    pub fn show(&mut self, sums: &[WallSum<D>], state: &StateEquation) {
-        for (c, sum) in sums.iter().enumerate() {
-            let wet = (0..LANES).any(|k| sum.extrapolated.weight(k) > 0.0);
-            if !wet && self.dry[c] {
-                continue;
-            }
-            self.dry[c] = !wet;
-            for k in 0..LANES {
-                let slot = c * LANES + k;
-                let Some(mut pressure) = sum.extrapolated.pressure(k) else {
-                    self.show_nothing(slot, state);
-                    continue;
-                };
-                let weight = sum.extrapolated.weight(k);
-                let u: [f64; D] = std::array::from_fn(|d| self.own_velocity[d][slot]);
-                let v: [f64; D] = std::array::from_fn(|d| sum.velocity[d].0[k] / weight);
-                let mut along_normal = 0.0;
-                for d in 0..D {
-                    along_normal += (v[d] - u[d]) * self.normal[d][slot];
-                }
-                for d in 0..D {
-                    self.shown.velocity[d][slot] = if self.reverse_all[slot] > 0.0 {
-                        2.0 * u[d] - v[d]
-                    } else {
-                        v[d] - 2.0 * along_normal * self.normal[d][slot]
-                    };
-                }
-                if let Some(moving) = &self.moving {
-                    let a = moving.acceleration(slot);
-                    let lever = |d: usize| sum.lever[d].0[k] / weight;
-                    pressure -= (0..D).map(|d| a[d] * lever(d)).sum::<f64>();
-                }
-                if self.non_negative {
-                    pressure = pressure.max(0.0);
-                }
-                let density = state.density_at(pressure);
-                self.pressure[slot] = pressure;
-                self.shown.density[slot] = density;
-                self.shown.show(slot, pressure);
-            }
-        }
+    /// What the four wall particles at `slot..slot + 4` show, from the sums over the fluid.
+    // Inlined, its scalar arithmetic would break up the vectors of the loop before it.
+    #[inline(never)]
+    pub fn shows(&self, slot: usize, sum: &WallSum<D>, state: &StateEquation) -> [Source<D>; LANES] {
+        std::array::from_fn(|k| self.one_shows(slot + k, k, sum, state))
     }
 
-    fn show_nothing(&mut self, slot: usize, state: &StateEquation) {
-        self.pressure[slot] = 0.0;
-        self.shown.density[slot] = state.density;
+    fn one_shows(&self, slot: usize, k: usize, sum: &WallSum<D>, state: &StateEquation) -> Source<D> {
+        let Some(mut pressure) = sum.extrapolated.pressure(k) else { return self.alone(slot, state) };
+        let weight = sum.extrapolated.weight(k);
+        let u: [f64; D] = std::array::from_fn(|d| self.own_velocity[d][slot]);
+        let v: [f64; D] = std::array::from_fn(|d| sum.velocity[d].0[k] / weight);
+        let mut along_normal = 0.0;
         for d in 0..D {
-            self.shown.velocity[d][slot] = self.own_velocity[d][slot];
+            along_normal += (v[d] - u[d]) * self.normal[d][slot];
         }
-        self.shown.show(slot, 0.0);
+        let velocity = std::array::from_fn(|d| {
+            if self.reverse_all[slot] > 0.0 {
+                2.0 * u[d] - v[d]
+            } else {
+                v[d] - 2.0 * along_normal * self.normal[d][slot]
+            }
+        });
+        if let Some(moving) = &self.moving {
+            let a = moving.acceleration(slot);
+            let lever = |d: usize| sum.lever[d].0[k] / weight;
+            pressure -= (0..D).map(|d| a[d] * lever(d)).sum::<f64>();
+        }
+        if self.non_negative {
+            pressure = pressure.max(0.0);
+        }
+        Source::new(self.position(slot), velocity, state.density_at(pressure), pressure, self.shown.mass)
+    }
+
+    /// What a wall particle shows without fluid around.
+    fn alone(&self, slot: usize, state: &StateEquation) -> Source<D> {
+        let velocity = std::array::from_fn(|d| self.own_velocity[d][slot]);
+        Source::new(self.position(slot), velocity, state.density, 0.0, self.shown.mass)
+    }
+
+    fn position(&self, slot: usize) -> [f64; D] {
+        std::array::from_fn(|d| self.shown.position[d][slot])
     }
 }
 
@@ -208,23 +184,18 @@ impl<const D: usize> Default for WallSum<D> {
 
 /// The law of the pass over wall particles: the pressure's extrapolation, and the fluid's velocity with the same weights.
 pub struct WallLaw<'a, K, const D: usize> {
-    pressure: Extrapolation<'a, K, D>,
-    velocity: &'a Vectors<D>,
+    kernel: K,
+    gravity: [f64; D],
+    targets: &'a Vectors<D>,
+    sources: &'a [Source<D>],
     moving: bool,
 }
 
 impl<'a, K: Kernel<D>, const D: usize> WallLaw<'a, K, D> {
     /// From the fluid to the walls.
     pub fn new(kernel: K, gravity: [f64; D], walls: &'a Walls<D>, fluid: &'a Columns<D>) -> Self {
-        let pressure = Extrapolation {
-            kernel,
-            gravity,
-            targets: &walls.shown.position,
-            sources: &fluid.now.position,
-            density: &fluid.now.density,
-            pressure: &fluid.pressure,
-        };
-        Self { pressure, velocity: &fluid.now.velocity, moving: walls.moving.is_some() }
+        let (targets, sources) = (&walls.shown.position, &fluid.now.sources);
+        Self { kernel, gravity, targets, sources, moving: walls.moving.is_some() }
     }
 }
 
@@ -234,22 +205,24 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for WallLaw<'_, K, D> {
 
     #[inline(always)]
     fn target_positions(&self) -> &[Vec<f64>; D] {
-        self.pressure.targets
+        self.targets
     }
     #[inline(always)]
     fn source_position(&self, j: usize) -> [f64; D] {
-        std::array::from_fn(|d| self.pressure.sources[d][j])
+        self.sources[j].position
     }
     #[inline(always)]
     fn target(&self, _: usize) {}
     #[inline(always)]
     fn add<A: Arch>(&self, _: &(), j: usize, dx: [Lane; D], r2: Lane, sum: &mut WallSum<D>) {
-        let w = self.pressure.add_source::<A>(j, dx, r2, &mut sum.extrapolated);
+        let fluid = &self.sources[j];
+        let (extrapolated, pair) = (&mut sum.extrapolated, (dx, r2));
+        let w = extrapolated.add_particle::<K, D, A>(&self.kernel, self.gravity, pair, fluid.density, fluid.pressure);
         for d in 0..D {
-            sum.velocity[d] = A::mul_add(Lane::splat(self.velocity[d][j]), w, sum.velocity[d]);
+            sum.velocity[d] = A::mul_add(Lane::splat(fluid.velocity[d]), w, sum.velocity[d]);
         }
         if self.moving {
-            let weight = Lane::splat(self.pressure.density[j]) * w;
+            let weight = Lane::splat(fluid.density) * w;
             for d in 0..D {
                 sum.lever[d] = A::mul_add(weight, dx[d], sum.lever[d]);
             }

@@ -45,23 +45,42 @@ impl ExtrapolationSum {
     pub fn weight(&self, k: usize) -> f64 {
         self.weight.0[k]
     }
+
+    /// Adds a particle of this density and pressure; returns its weight W.
+    #[inline(always)]
+    pub fn add_particle<K: Kernel<D>, const D: usize, A: Arch>(
+        &mut self,
+        kernel: &K,
+        gravity: [f64; D],
+        pair: ([Lane; D], Lane),
+        density: f64,
+        pressure: f64,
+    ) -> Lane {
+        let (w, p) = weighted::<K, D, A>(kernel, gravity, pair, density, pressure);
+        self.add::<A>(w, p);
+        w
+    }
+}
+
+/// W of a particle, and its pressure brought to the target's height.
+#[inline(always)]
+fn weighted<K: Kernel<D>, const D: usize, A: Arch>(
+    kernel: &K,
+    gravity: [f64; D],
+    (dx, r2): ([Lane; D], Lane),
+    density: f64,
+    pressure: f64,
+) -> (Lane, Lane) {
+    let w = kernel.value::<A>(distance(r2, kernel.smoothing_length()));
+    let head = dot::<D, A>(gravity.map(Lane::splat), dx);
+    (w, A::mul_add(Lane::splat(density), head, Lane::splat(pressure)))
 }
 
 impl<K: Kernel<D>, const D: usize> Extrapolation<'_, K, D> {
-    /// Adds source `j`; returns its weight W.
-    #[inline(always)]
-    pub fn add_source<A: Arch>(&self, j: usize, dx: [Lane; D], r2: Lane, sum: &mut ExtrapolationSum) -> Lane {
-        let (w, p) = self.source::<A>(j, dx, r2);
-        sum.add::<A>(w, p);
-        w
-    }
-
     /// W of source `j`, and its pressure brought to the target's height.
     #[inline(always)]
     pub fn source<A: Arch>(&self, j: usize, dx: [Lane; D], r2: Lane) -> (Lane, Lane) {
-        let w = self.kernel.value::<A>(distance(r2, self.kernel.smoothing_length()));
-        let head = dot::<D, A>(self.gravity.map(Lane::splat), dx);
-        (w, A::mul_add(Lane::splat(self.density[j]), head, Lane::splat(self.pressure[j])))
+        weighted::<K, D, A>(&self.kernel, self.gravity, (dx, r2), self.density[j], self.pressure[j])
     }
 }
 
@@ -81,6 +100,7 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for Extrapolation<'_, K, D> {
     fn target(&self, _: usize) {}
     #[inline(always)]
     fn add<A: Arch>(&self, _: &(), j: usize, dx: [Lane; D], r2: Lane, sum: &mut ExtrapolationSum) {
-        self.add_source::<A>(j, dx, r2, sum);
+        let (w, p) = self.source::<A>(j, dx, r2);
+        sum.add::<A>(w, p);
     }
 }

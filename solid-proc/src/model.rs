@@ -53,6 +53,10 @@ pub trait SolidModel<const D: usize>: Send {
         let record = self.record(particle);
         std::array::from_fn(|d| record.position[d])
     }
+    /// Density of a particle, kg/m³.
+    fn density(&self, particle: u32) -> f64 {
+        self.record(particle).density
+    }
     /// Velocity of a particle, m/s. (The record may show the mean over sub-steps instead.)
     fn velocity(&self, particle: u32) -> [f64; D];
     /// Largest stable time step of one sub-step, s.

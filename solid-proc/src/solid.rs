@@ -227,12 +227,12 @@ impl<const D: usize> Role for Solid<D> {
     fn audit(&self) -> [f64; 8] {
         let mut values = [0.0; 8];
         for p in self.all() {
-            let (record, mass) = (self.model.record(p), self.model.mass(p));
+            let (velocity, mass) = (self.model.velocity(p), self.model.mass(p));
             for d in 0..D {
-                values[audit::MOMENTUM + d] += mass * self.model.velocity(p)[d];
+                values[audit::MOMENTUM + d] += mass * velocity[d];
             }
             values[audit::MASS] += mass;
-            let error = (record.density / self.density - 1.0).abs();
+            let error = (self.model.density(p) / self.density - 1.0).abs();
             values[audit::DENSITY_ERROR] = values[audit::DENSITY_ERROR].max(error);
         }
         values[audit::KINETIC_ENERGY] = self.kinetic_energy();

@@ -4,7 +4,7 @@
 
 use crate::columns::{Vectors, vectors};
 use halfstep_shared::artificial_viscosity::damping;
-use halfstep_shared::columns::bounds;
+use halfstep_shared::columns::{bounds, fit};
 use halfstep_shared::extrapolation::{Extrapolation, ExtrapolationSum};
 use halfstep_shared::geometry::WallPoint;
 use halfstep_shared::kernel::Kernel;
@@ -66,8 +66,8 @@ impl<const D: usize> Walls<D> {
     pub(crate) fn relist(&mut self, solid: &Vectors<D>, rows: &Rows<D>, reach: f64) {
         self.neighbours.build(solid, &self.position, &self.rows, reach);
         self.sources.build(&self.position, solid, rows, reach);
-        self.sums.resize(self.sources.clusters(), ExtrapolationSum::default());
-        self.forces.resize(self.neighbours.clusters(), WallForce::default());
+        fit(&mut self.sums, self.sources.clusters(), ExtrapolationSum::default());
+        fit(&mut self.forces, self.neighbours.clusters(), WallForce::default());
     }
 
     /// Pairs listed between walls and solid, four targets each.

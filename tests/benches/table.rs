@@ -108,7 +108,7 @@ fn steps(report: &mut Value) {
             with(&["fluid.density_diffusion=delta-sph", "effects.frozen-diffusion=off"]),
         ),
         ("cubic spline", with(&["numerics.kernel=cubic-spline"])),
-        ("viscosity (complete law)", with(&["fluid.viscosity=1.0", "effects.viscosity=on"])),
+        ("physical viscosity", with(&["fluid.viscosity=1.0", "effects.viscosity=on"])),
         ("the defaults: cubic spline, delta-SPH", vec![]),
     ];
     for threads in [1, 2] {

@@ -1,6 +1,6 @@
 //! Fluid particles in the engine's order, outside any run: what instruction counts and benchmarks work on.
 
-use halfstep_fluid::columns::{Shown, Source};
+use halfstep_fluid::columns::Shown;
 use halfstep_shared::neighbours::{ClusterList, Rows};
 
 /// One particle, before the sort.
@@ -35,20 +35,15 @@ impl Patch {
         for (k, p) in particles.iter().enumerate() {
             for d in 0..2 {
                 shown.position[d][k] = p.position[d];
-                shown.velocity[d][k] = p.velocity[d];
             }
-            shown.density[k] = p.density;
+            (shown.sources[k].velocity, shown.sources[k].density) = (p.velocity, p.density);
         }
         let mut id: Vec<u32> = (0..particles.len() as u32).collect();
         let mut rows = Rows::<2>::default();
         rows.sort(&shown.position, &id, 2.0, [-1e3; 2], [1e3; 2]);
-        let [x, y] = &mut shown.position;
-        let [u, v] = &mut shown.velocity;
-        for column in [x, y, u, v, &mut shown.density, &mut pressure] {
-            rows.permute(column);
-        }
+        shown.permute(&mut rows);
+        rows.permute(&mut pressure);
         rows.permute_ids(&mut id);
-        shown.sources.resize(id.len(), Source::ZERO);
         (0..id.len()).for_each(|slot| shown.show(slot, pressure[slot]));
         let mut list = ClusterList::default();
         list.build(&shown.position, &shown.position, &rows, reach);

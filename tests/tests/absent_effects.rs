@@ -51,12 +51,12 @@ fn bytes_per_particle(overrides: &[&str]) -> f64 {
 
 #[test]
 fn an_absent_effect_takes_no_memory() {
-    // Per slot, padding included: two components of the density gradient; three of the stress and four of the velocity
-    // gradient. Padding and spare room add up to 10 % here.
+    // Per slot, padding included: two components of the density gradient; four of the stress. Padding and spare room add
+    // up to 10 % here.
     let lean = bytes_per_particle(&["fluid.density_diffusion=simple"]);
     let full = bytes_per_particle(&["fluid.density_diffusion=delta-sph"]) - lean;
     assert!((16.0..17.6).contains(&full), "{full}");
     let viscous = &["fluid.density_diffusion=simple", "fluid.viscosity=1", "effects.viscosity=on"];
     let stress = bytes_per_particle(viscous) - lean;
-    assert!((56.0..61.6).contains(&stress), "{stress}");
+    assert!((32.0..35.2).contains(&stress), "{stress}");
 }

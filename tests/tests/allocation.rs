@@ -72,10 +72,12 @@ fn allocations(mut step: impl FnMut(u64) + Send) -> u64 {
 fn alone(name: RoleName, scene: &Scene) -> u64 {
     let mut role: Option<Box<dyn Role>> = None;
     let mut records = Vec::new();
+    let mut time = 0.0;
     allocations(|n| {
         let role = role.get_or_insert_with(|| roles::build(name, scene).expect("the phase"));
         let mut dt = 0.0;
         for stage in 0..2 {
+            role.set_time(time + 0.5 * dt);
             role.publish(&[], &mut records);
             if stage == 0 {
                 dt = role.dt_limit();
@@ -83,6 +85,7 @@ fn alone(name: RoleName, scene: &Scene) -> u64 {
             role.own_sums();
             role.advance(n, stage, dt, &[]).unwrap();
         }
+        time += dt;
     })
 }
 
@@ -128,6 +131,18 @@ fn fluid_at_rest() {
 #[test]
 fn fluid_that_spreads() {
     assert_eq!(alone(RoleName::Fluid, &shipped("dam-break", &["resolution=0.0028575"])), 0);
+}
+
+#[test]
+fn fluid_between_moving_walls() {
+    assert_eq!(alone(RoleName::Fluid, &shipped("wave-paddle", &["resolution=0.02"])), 0);
+}
+
+#[test]
+fn viscous_fluid() {
+    assert_eq!(alone(RoleName::Fluid, &shipped("taylor-green", &[])), 0);
+    let overrides = ["resolution=0.0028575", "fluid.viscosity=1", "effects.viscosity=on"];
+    assert_eq!(alone(RoleName::Fluid, &shipped("dam-break", &overrides)), 0);
 }
 
 #[test]

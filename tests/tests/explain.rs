@@ -66,7 +66,7 @@ fn the_reason_is_the_key_or_the_fact() {
     let forced = effects("hydrostatic-tank", &["fluid.viscosity=1", "effects.viscosity=on"]);
     let viscosity = row(&forced, "viscosity");
     assert!(viscosity["on"] == true && viscosity["why"] == "effects.viscosity is \"on\"", "{viscosity}");
-    assert_eq!(viscosity["bytes_per_particle"], 56.0);
+    assert_eq!(viscosity["bytes_per_particle"], 32.0);
     assert_eq!(forced["composition"], "artificial viscosity, delta-SPH diffusion, viscosity");
     assert_eq!(row(&forced, "solid")["on"], false);
 

@@ -26,19 +26,29 @@ impl Chunk {
         self.index.clear();
     }
 
-    /// Makes room for the next lists to be somewhat longer without allocating.
-    fn keep_room(&mut self) {
+    /// Makes room for the next lists to be somewhat longer without allocating. Lists that outgrew their memory, which was
+    /// `before`, were given up to twice as much: where they allocate in any case, they are made to measure.
+    fn keep_room(&mut self, before: usize) {
         let used = self.index.len();
-        if self.index.capacity() < used + used / 32 {
+        if self.index.capacity() != before || before < used + used / 32 {
             // Short lists, those of walls, change the most.
-            self.index.reserve_exact(if used < 16 * CHUNK_CLUSTERS { 2 * used + 1024 } else { used / 6 });
+            let room = if used < 16 * CHUNK_CLUSTERS { 2 * used + 256 } else { used / 4 };
+            self.index.shrink_to(used + room);
+            self.index.reserve_exact(room);
         }
     }
 
     /// Neighbours of the chunk's cluster number `k`.
     #[inline(always)]
     pub(crate) fn of(&self, k: usize) -> &[u32] {
-        &self.index[self.start[k] as usize..self.start[k + 1] as usize]
+        self.range(k).0
+    }
+
+    /// The same, and how many the clusters before it have.
+    #[inline(always)]
+    pub(crate) fn range(&self, k: usize) -> (&[u32], usize) {
+        let (first, end) = (self.start[k] as usize, self.start[k + 1] as usize);
+        (&self.index[first..end], first)
     }
 }
 
@@ -57,19 +67,21 @@ impl ClusterList {
         // Chunks that are not needed now keep their memory for when they are.
         // One more stands ready: spreading particles need more padding.
         self.chunks.resize_with((used + 1).max(self.chunks.len()), Chunk::default);
-        self.chunks[used].start.reserve(CHUNK_CLUSTERS + 1);
-        self.chunks[used].keep_room();
+        self.chunks[used].clear();
+        self.chunks[used].start.reserve_exact(CHUNK_CLUSTERS + 1);
         self.chunks[used..].iter_mut().for_each(Chunk::clear);
         self.chunks[..used].par_iter_mut().enumerate().for_each(|(c, chunk)| {
             let first = c * CHUNK_CLUSTERS;
             let last = (first + CHUNK_CLUSTERS).min(clusters);
+            let before = chunk.index.capacity();
             chunk.clear();
+            chunk.start.reserve_exact(CHUNK_CLUSTERS + 1);
             chunk.start.push(0);
             for cluster in first..last {
                 push_neighbours(cluster * LANES, targets, sources, rows, reach, &mut chunk.index);
                 chunk.start.push(chunk.index.len() as u32);
             }
-            chunk.keep_room();
+            chunk.keep_room(before);
         });
     }
 

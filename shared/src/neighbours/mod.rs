@@ -3,7 +3,6 @@
 mod list;
 mod rows;
 
-pub(crate) use list::Chunk;
 pub use list::{CHUNK_CLUSTERS, ClusterList};
 pub use rows::Rows;
 

@@ -4,6 +4,7 @@
 //! its last particle; a padding slot is never anybody's neighbour, so what becomes of it does not matter.
 
 use super::PADDING;
+use crate::columns::fit;
 use crate::lane::LANES;
 use std::cmp::Ordering;
 
@@ -19,10 +20,9 @@ pub struct Rows<const D: usize> {
     filled: Vec<u32>,
     /// New slot -> old slot.
     permutation: Vec<u32>,
-    keys: Vec<u32>,
-    sorted: Vec<u32>,
     cursor: Vec<u32>,
     scratch: Vec<f64>,
+    /// Rows of the old slots during the sort, then the numbers' new order.
     id_scratch: Vec<u32>,
     /// Slots that every column has memory for.
     room: usize,
@@ -36,8 +36,9 @@ impl<const D: usize> Rows<D> {
         self.lay_out(x, id, real, height, low, high);
         let rows = self.start.len() - 1;
 
-        self.keys.clear();
-        self.filled.iter_mut().for_each(|f| *f = 0);
+        let mut keys = std::mem::take(&mut self.id_scratch);
+        keys.clear();
+        reserve(&mut keys, id.len().max(self.room));
         for slot in 0..id.len() {
             let key = if id[slot] == PADDING {
                 u32::MAX
@@ -47,50 +48,50 @@ impl<const D: usize> Rows<D> {
             if key != u32::MAX {
                 self.filled[key as usize] += 1;
             }
-            self.keys.push(key);
+            keys.push(key);
         }
-        self.sorted.clear();
-        self.sorted.resize(real, 0);
-        self.cursor.clear();
-        let mut total = 0;
+        let (mut total, mut slots) = (0, 0);
         for row in 0..rows {
-            self.cursor.push(total);
+            self.cursor[row] = total;
+            self.start[row] = slots;
             total += self.filled[row];
+            slots += self.filled[row].next_multiple_of(LANES as u32);
         }
-        for slot in 0..id.len() {
-            let key = self.keys[slot];
-            if key != u32::MAX {
-                let c = &mut self.cursor[key as usize];
-                self.sorted[*c as usize] = slot as u32;
-                *c += 1;
-            }
-        }
-        // Canonical order within a row: x, then the particle's number.
-        sort_rows(&self.filled, &mut self.sorted, &|a, b| {
-            x[0][a as usize].total_cmp(&x[0][b as usize]).then(id[a as usize].cmp(&id[b as usize]))
-        });
-
-        self.permutation.clear();
-        let mut from = 0;
-        for row in 0..rows {
-            self.start[row] = self.permutation.len() as u32;
-            let n = self.filled[row] as usize;
-            self.permutation.extend_from_slice(&self.sorted[from..from + n]);
-            from += n;
-            if n > 0 {
-                let last = self.sorted[from - 1];
-                let padded = n.next_multiple_of(LANES);
-                self.permutation.extend(std::iter::repeat_n(last, padded - n));
-            }
-        }
-        self.start[rows] = self.permutation.len() as u32;
+        self.start[rows] = slots;
         // Padding comes and goes with the shape of the whole: some ahead, so that a later sort does not allocate.
-        let slots = self.permutation.len();
+        let slots = slots as usize;
         if slots > self.room {
             self.room = slots + slots / 32 + 64;
         }
+        self.permutation.clear();
         reserve(&mut self.permutation, self.room);
-        reserve(&mut self.keys, self.room);
+        self.permutation.resize(slots, 0);
+        for (slot, &key) in keys.iter().enumerate().filter(|&(_, &key)| key != u32::MAX) {
+            let c = &mut self.cursor[key as usize];
+            self.permutation[*c as usize] = slot as u32;
+            *c += 1;
+        }
+        self.id_scratch = keys;
+        // Canonical order within a row: x, then the particle's number.
+        sort_rows(&self.filled, &mut self.permutation[..real], &|a, b| {
+            x[0][a as usize].total_cmp(&x[0][b as usize]).then(id[a as usize].cmp(&id[b as usize]))
+        });
+        self.pad(real);
+    }
+
+    /// Moves the rows, which stand one after the other, to where they start, the last one first.
+    fn pad(&mut self, real: usize) {
+        let mut end = real;
+        for row in (0..self.filled.len()).rev() {
+            let n = self.filled[row] as usize;
+            let (to, next) = (self.start[row] as usize, self.start[row + 1] as usize);
+            if n > 0 {
+                self.permutation.copy_within(end - n..end, to);
+                let last = self.permutation[to + n - 1];
+                self.permutation[to + n..next].fill(last);
+            }
+            end -= n;
+        }
     }
 
     fn lay_out(
@@ -134,10 +135,11 @@ impl<const D: usize> Rows<D> {
             self.height *= 2.0;
         }
         let rows: usize = self.counts.iter().product();
-        self.start.clear();
-        self.start.resize(rows + 1, 0);
-        self.filled.clear();
-        self.filled.resize(rows, 0);
+        for (column, len) in [(&mut self.start, rows + 1), (&mut self.filled, rows), (&mut self.cursor, rows)]
+        {
+            column.clear();
+            fit(column, len, 0);
+        }
     }
 
     #[inline]
@@ -158,15 +160,7 @@ impl<const D: usize> Rows<D> {
     /// Allocated bytes.
     pub fn bytes(&self) -> usize {
         let of_rows = 8 * (self.origin.capacity() + self.counts.capacity() + self.scratch.capacity());
-        let of_slots = [
-            &self.start,
-            &self.filled,
-            &self.permutation,
-            &self.keys,
-            &self.sorted,
-            &self.cursor,
-            &self.id_scratch,
-        ];
+        let of_slots = [&self.start, &self.filled, &self.permutation, &self.cursor, &self.id_scratch];
         of_rows + 4 * of_slots.iter().map(|c| c.capacity()).sum::<usize>()
     }
 
@@ -181,6 +175,24 @@ impl<const D: usize> Rows<D> {
         reserve(&mut self.scratch, self.room);
         self.scratch.extend(self.permutation.iter().map(|&old| column[old as usize]));
         std::mem::swap(column, &mut self.scratch);
+    }
+
+    /// Brings one number of each record into the new order; the records keep the length of the longer of both orders.
+    pub fn permute_field<T: Clone>(
+        &mut self,
+        records: &mut Vec<T>,
+        zero: T,
+        field: impl Fn(&mut T) -> &mut f64,
+    ) {
+        if records.len() < self.slots() {
+            fit(records, self.slots(), zero);
+        }
+        self.scratch.clear();
+        reserve(&mut self.scratch, self.room);
+        self.scratch.extend(self.permutation.iter().map(|&old| *field(&mut records[old as usize])));
+        for (record, &value) in records.iter_mut().zip(&self.scratch) {
+            *field(record) = value;
+        }
     }
 
     /// Brings the particle numbers into the new order; padding slots get [`PADDING`].

@@ -1,6 +1,7 @@
 //! Columns of the solid particles.
 
 use crate::columns::{Tensors, Vectors, tensors, vectors};
+use halfstep_shared::columns::fit;
 use halfstep_shared::geometry::SolidPoint;
 use halfstep_shared::neighbours::Rows;
 
@@ -101,11 +102,11 @@ impl<const D: usize> Rates<D> {
 
     pub(super) fn resize(&mut self, n: usize) {
         for d in 0..D {
-            self.acceleration[d].resize(n, 0.0);
+            fit(&mut self.acceleration[d], n, 0.0);
             for b in d..D {
-                self.stress[d][b].resize(n, 0.0);
+                fit(&mut self.stress[d][b], n, 0.0);
             }
         }
-        self.density.resize(n, 0.0);
+        fit(&mut self.density, n, 0.0);
     }
 }

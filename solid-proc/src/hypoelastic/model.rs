@@ -8,6 +8,7 @@ use crate::model::{Load, OutOfBounds, SolidModel};
 use crate::surface::surface_set;
 use crate::wall::Walls;
 use halfstep_shared::bounds::{Bounds, Excess};
+use halfstep_shared::columns::{copy, fit, moved_farther};
 use halfstep_shared::failure::Quantity;
 use halfstep_shared::geometry::{self, SolidPoint};
 use halfstep_shared::interface::wire_component;
@@ -138,27 +139,23 @@ impl<const D: usize> Hypoelastic<D> {
         }
         let slots = self.id.len();
         for d in 0..D {
-            self.reference[d].clone_from(&self.now.position[d]);
+            copy(&mut self.reference[d], &self.now.position[d]);
         }
-        self.pressure.resize(slots, 0.0);
-        self.sources.resize(slots, Source::ZERO);
+        fit(&mut self.pressure, slots, 0.0);
+        fit(&mut self.sources, slots, Source::ZERO);
         if self.artificial_stress.is_some() {
-            self.artificial.resize(slots, [[0.0; D]; D]);
+            fit(&mut self.artificial, slots, [[0.0; D]; D]);
         }
         self.rates.resize(slots);
         self.list.build(&self.now.position, &self.now.position, &self.rows, reach);
-        self.sums.resize(self.list.clusters(), SolidSum::default());
+        fit(&mut self.sums, self.list.clusters(), SolidSum::default());
         if let Some(walls) = &mut self.walls {
             walls.relist(&self.now.position, &self.rows, reach);
         }
     }
 
     pub(super) fn moved_too_far(&self) -> bool {
-        let limit = 0.25 * self.skin * self.skin;
-        (0..self.id.len()).filter(|&s| self.id[s] != PADDING).any(|s| {
-            let r2: f64 = (0..D).map(|d| (self.now.position[d][s] - self.reference[d][s]).powi(2)).sum();
-            r2 > limit
-        })
+        moved_farther(&self.now.position, &self.reference, &self.id, 0.5 * self.skin)
     }
 
     /// now = from + dt rates, for every advanced column; `from` is `at_n`.
@@ -263,6 +260,10 @@ impl<const D: usize> SolidModel<D> for Hypoelastic<D> {
     fn position(&self, particle: u32) -> [f64; D] {
         let s = self.slot_of[particle as usize] as usize;
         std::array::from_fn(|d| self.now.position[d][s])
+    }
+
+    fn density(&self, particle: u32) -> f64 {
+        self.now.density[self.slot_of[particle as usize] as usize]
     }
 
     fn velocity(&self, particle: u32) -> [f64; D] {

@@ -10,6 +10,7 @@ use crate::columns::{Vectors, vectors};
 use crate::effects::takes_part;
 use crate::surface::surface_set;
 use crate::wall::{Touching, Walls};
+use halfstep_shared::columns::{copy, fit, moved_farther};
 use halfstep_shared::geometry::{self, Layout, SolidPoint};
 use halfstep_shared::kernel::Kernel;
 use halfstep_shared::lane::{Arch, Isa, LANES, Lane};
@@ -114,23 +115,25 @@ impl<const D: usize> Contact<D> {
         }
         self.rows.permute_ids(&mut self.id);
         for d in 0..D {
-            self.listed[d].clone_from(&self.position[d]);
+            copy(&mut self.listed[d], &self.position[d]);
         }
         if self.several {
             self.list.build(&self.position, &self.position, &self.rows, self.spacing + skin);
-            self.sums.resize(self.list.clusters(), Repulsion::default());
+            fit(&mut self.sums, self.list.clusters(), Repulsion::default());
         }
         if let Some(walls) = &mut self.walls {
             walls.relist(&self.position, &self.rows, wall_reach);
         }
     }
 
-    fn moved_too_far(&self) -> bool {
-        let limit = (0.5 * SKIN * self.smoothing_length).powi(2);
-        (0..self.id.len()).filter(|&s| self.id[s] != PADDING).any(|s| {
-            let r2: f64 = (0..D).map(|d| (self.position[d][s] - self.listed[d][s]).powi(2)).sum();
-            r2 > limit
-        })
+    /// There are contacts between bodies.
+    pub(super) fn between_bodies(&self) -> bool {
+        self.several
+    }
+
+    /// The walls, for leaving them out for a while.
+    pub(super) fn walls(&mut self) -> &mut Option<Walls<D>> {
+        &mut self.walls
     }
 
     /// Takes over the present state.
@@ -146,7 +149,7 @@ impl<const D: usize> Contact<D> {
                 self.pressure[slot] = p.pressure;
             }
         }
-        if self.moved_too_far() {
+        if moved_farther(&self.position, &self.listed, &self.id, 0.5 * SKIN * self.smoothing_length) {
             self.sort();
         }
     }

@@ -3,12 +3,13 @@
 use super::contact::{Contact, Present};
 use super::material::Matrix;
 use super::model::TotalLagrangian;
-use super::pass::{Damping, Deformation, DeformationSum, Momentum, Viscous};
+use super::pass::{Damping, Deformation, DeformationSum, Moment, MomentSum, Momentum, Viscous};
 use crate::model::OutOfBounds;
 use halfstep_shared::failure::Quantity;
-use halfstep_shared::kernel::Kernel;
 use halfstep_shared::lane::LANES;
 use halfstep_shared::neighbours::PADDING;
+use halfstep_shared::role::{Costs, fastest};
+use halfstep_shared::scene::{ArtificialViscosity, EffectName};
 use halfstep_shared::{pair, tensor, wide, with_kernel};
 
 /// A material that is compressed or stretched further has left what its law describes.
@@ -21,10 +22,12 @@ fn at<const D: usize>(entries: &[[halfstep_shared::lane::Lane; D]; D], k: usize)
 impl<const D: usize> TotalLagrangian<D> {
     /// Inverse moment matrices: zero where singular, so that F = I and no stress.
     pub(super) fn correct(&mut self) {
-        with_kernel!(self.kernel, self.smoothing_length, D, |kernel| self.deformation(kernel));
+        let mut moments = vec![MomentSum::default(); self.deformations.len()];
+        pair::fixed_pass(self.isa, &Moment { volume: self.volume }, &self.pairs, &mut moments);
+        self.pair_evaluations += self.evaluations();
         for slot in 0..self.id.len() {
-            let sum = &self.deformations[slot / LANES];
-            let moment = Matrix::<D>::from_fn(|a, b| sum.moment[a.min(b)][a.max(b)].0[slot % LANES]);
+            let sum = &moments[slot / LANES];
+            let moment = Matrix::<D>::from_fn(|a, b| sum.0[a.min(b)][a.max(b)].0[slot % LANES]);
             // A clamped particle is rigid: it has neither strain nor error vectors. Nor has one that lacks neighbours.
             let rigid = self.rigid_clamps && self.fixed.clamped[slot] != 0.0;
             let correction = tensor::moment_inverse(&moment).filter(|_| !rigid);
@@ -33,25 +36,20 @@ impl<const D: usize> TotalLagrangian<D> {
         }
     }
 
-    fn deformation<K: Kernel<D>>(&mut self, kernel: K) {
-        let law = Deformation {
-            kernel,
-            fixed: &self.fixed,
-            displacement: &self.now.displacement,
-            volume: self.volume,
-        };
-        pair::pass(self.isa, &law, &self.list, &mut self.deformations);
-        self.pair_evaluations += (self.list.entries() * LANES) as u64;
+    /// Pairs that a pass evaluates.
+    fn evaluations(&self) -> u64 {
+        (self.pairs.list().entries() * LANES) as u64
     }
 
-    fn momentum<K: Kernel<D>, V: Damping<D>>(
-        &self,
-        kernel: K,
-        damping: V,
-        sums: &mut [super::pass::Acceleration<D>],
-    ) {
+    fn deformation(&mut self) {
+        let law =
+            Deformation { fixed: &self.fixed, displacement: &self.now.displacement, volume: self.volume };
+        pair::fixed_pass(self.isa, &law, &self.pairs, &mut self.deformations);
+        self.pair_evaluations += self.evaluations();
+    }
+
+    fn momentum<V: Damping<D>>(&self, damping: V, sums: &mut [super::pass::Acceleration<D>]) {
         let law = Momentum {
-            kernel,
             damping,
             fixed: &self.fixed,
             displacement: &self.now.displacement,
@@ -59,7 +57,7 @@ impl<const D: usize> TotalLagrangian<D> {
             hourglass: &self.hourglass,
             scale: self.volume / self.material.density,
         };
-        pair::pass(self.isa, &law, &self.list, sums);
+        pair::fixed_pass(self.isa, &law, &self.pairs, sums);
     }
 
     /// F of every particle from the sums of the first pass, and the second pass' brackets. The first particle whose
@@ -96,22 +94,23 @@ impl<const D: usize> TotalLagrangian<D> {
 
     /// Acceleration of the present state by everything but loads and gravity.
     pub(super) fn evaluate(&mut self) {
-        with_kernel!(self.kernel, self.smoothing_length, D, |kernel| self.deformation(kernel));
+        self.deformation();
         self.stresses();
         let mut sums = std::mem::take(&mut self.sums);
         let viscosity = self.material.artificial_viscosity;
         let damped = viscosity.linear > 0.0 || viscosity.quadratic > 0.0;
-        with_kernel!(self.kernel, self.smoothing_length, D, |kernel| if damped {
+        if damped {
             let viscous = Viscous {
                 velocity: &self.now.velocity,
+                smoothing_length: self.smoothing_length,
                 density: self.material.density,
                 linear: viscosity.linear * self.material.sound_speed(),
                 quadratic: viscosity.quadratic,
             };
-            self.momentum(kernel, viscous, &mut sums);
+            self.momentum(viscous, &mut sums);
         } else {
-            self.momentum(kernel, (), &mut sums);
-        });
+            self.momentum((), &mut sums);
+        }
         for slot in 0..self.id.len() {
             let free = self.id[slot] != PADDING && self.fixed.clamped[slot] == 0.0;
             for d in 0..D {
@@ -148,6 +147,39 @@ impl<const D: usize> TotalLagrangian<D> {
             }
         });
         contact
+    }
+
+    /// Parts of an evaluation's time, each effect's measured by leaving it out. The hourglass force and the clamps' gain are
+    /// factors of the passes: there is nothing to leave out.
+    pub(super) fn costs_of_effects(&mut self) -> Costs {
+        let (before, state) = (self.pair_evaluations, self.now.clone());
+        let evaluation = |model: &mut Self| fastest(|| model.evaluate());
+        let mut costs = Costs::default();
+        let whole = evaluation(self);
+        let mut note = |effect: EffectName, without: f64| {
+            costs.effects[effect as usize] = (1.0 - without / whole).max(0.0);
+        };
+        if let Some(mut contact) = self.contact.take() {
+            let walls = contact.walls().take();
+            // Where only walls can be touched, all that a contact does is theirs.
+            let (kept, aside) =
+                if contact.between_bodies() { (Some(contact), None) } else { (None, Some(contact)) };
+            self.contact = kept;
+            if walls.is_some() {
+                note(EffectName::WallContact, evaluation(self));
+            }
+            self.contact = aside.or_else(|| self.contact.take());
+            self.contact.iter_mut().zip(walls).for_each(|(contact, walls)| *contact.walls() = Some(walls));
+        }
+        let none = ArtificialViscosity { linear: 0.0, quadratic: 0.0 };
+        let viscosity = std::mem::replace(&mut self.material.artificial_viscosity, none);
+        if viscosity.linear > 0.0 || viscosity.quadratic > 0.0 {
+            note(EffectName::ArtificialViscosity, evaluation(self));
+        }
+        self.material.artificial_viscosity = viscosity;
+        self.now.copy_from(&state);
+        self.pair_evaluations = before;
+        costs
     }
 
     /// sum V0 psi, the hourglass energy and that of contacts between bodies, J.

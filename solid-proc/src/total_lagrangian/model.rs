@@ -17,7 +17,9 @@ use halfstep_shared::geometry::{self, SolidPoint};
 use halfstep_shared::interface::wire_component;
 use halfstep_shared::lane::{Isa, LANES};
 use halfstep_shared::neighbours::{ClusterList, PADDING, Rows};
+use halfstep_shared::pair::FixedPairs;
 use halfstep_shared::protocol::StateRecord;
+use halfstep_shared::role::Costs;
 use halfstep_shared::scene::{EffectName, KernelName, Scene, Solid};
 use halfstep_shared::{wide, with_kernel};
 
@@ -33,7 +35,7 @@ pub(super) struct State<const D: usize> {
 }
 
 impl<const D: usize> State<D> {
-    fn copy_from(&mut self, other: &Self) {
+    pub(super) fn copy_from(&mut self, other: &Self) {
         for d in 0..D {
             self.displacement[d].clone_from(&other.displacement[d]);
             self.velocity[d].clone_from(&other.velocity[d]);
@@ -65,8 +67,9 @@ pub struct TotalLagrangian<const D: usize> {
     pub(super) id: Vec<u32>,
     /// Slot of a particle.
     pub(super) slot_of: Vec<u32>,
-    pub(super) fixed: Fixed<D>,
-    pub(super) list: ClusterList,
+    pub(super) fixed: Fixed,
+    /// X, neighbours and kernel of the reference configuration.
+    pub(super) pairs: FixedPairs<D>,
     /// L; zero where a particle has no deformation gradient.
     pub(super) correction: Vec<Matrix<D>>,
     /// a, Pa.
@@ -165,13 +168,13 @@ impl<const D: usize> TotalLagrangian<D> {
             sums: vec![Acceleration::default(); slots / LANES],
             correction: vec![Matrix::zeros(); slots],
             hourglass: vec![0.0; slots],
-            fixed: Fixed { position, clamped, excess_gain },
+            fixed: Fixed { clamped, excess_gain },
+            pairs: with_kernel!(scene.numerics.kernel, h, D, |k| FixedPairs::new(isa, k, position, list)),
             points: layout.solid,
             now,
             material,
             id,
             slot_of,
-            list,
             contact,
             failure: None,
             pair_evaluations: 0,
@@ -183,7 +186,7 @@ impl<const D: usize> TotalLagrangian<D> {
 
     /// Present position of the particle at a slot.
     pub(super) fn position_at(&self, slot: usize) -> [f64; D] {
-        std::array::from_fn(|d| self.fixed.position[d][slot] + self.now.displacement[d][slot])
+        std::array::from_fn(|d| self.pairs.position()[d][slot] + self.now.displacement[d][slot])
     }
 
     fn take_load(&mut self, load: &Load<D>) {
@@ -319,6 +322,14 @@ impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {
         r
     }
 
+    fn position(&self, particle: u32) -> [f64; D] {
+        self.position_at(self.slot_of[particle as usize] as usize)
+    }
+
+    fn density(&self, particle: u32) -> f64 {
+        self.material.density / self.volume_ratio[self.slot_of[particle as usize] as usize]
+    }
+
     fn velocity(&self, particle: u32) -> [f64; D] {
         let slot = self.slot_of[particle as usize] as usize;
         std::array::from_fn(|d| self.now.velocity[d][slot])
@@ -355,6 +366,10 @@ impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {
 
     fn strain_energy(&self) -> f64 {
         self.energy()
+    }
+
+    fn costs(&mut self) -> Costs {
+        self.costs_of_effects()
     }
 
     fn pair_evaluations(&self) -> u64 {

@@ -10,17 +10,14 @@
 
 use crate::columns::Vectors;
 use halfstep_shared::artificial_viscosity::damping;
-use halfstep_shared::kernel::Kernel;
 use halfstep_shared::lane::{Arch, Lane};
-use halfstep_shared::pair::{PairLaw, distance, dot};
+use halfstep_shared::pair::{FixedLaw, dot};
 
 /// Full tensors, entry by entry.
 pub(super) type Matrices<const D: usize> = [[Vec<f64>; D]; D];
 
-/// What the reference configuration fixes.
-pub(super) struct Fixed<const D: usize> {
-    /// X, m.
-    pub position: Vectors<D>,
+/// What the reference configuration fixes beside pairs and their slopes.
+pub(super) struct Fixed {
     /// 1 where clamped, else 0.
     pub clamped: Vec<f64>,
     /// gain - 1.
@@ -33,10 +30,42 @@ fn excess<A: Arch>(clamped: Lane, gain: Lane, clamped_j: f64, gain_j: f64) -> La
     A::mul_add(Lane::splat(clamped_j), gain, clamped * Lane::splat(gain_j))
 }
 
-/// First pass: displacement gradient before its correction, and the moment matrix.
-pub(super) struct Deformation<'a, K, const D: usize> {
-    pub kernel: K,
-    pub fixed: &'a Fixed<D>,
+/// The moment matrices, once.
+pub(super) struct Moment {
+    /// V0.
+    pub volume: f64,
+}
+
+/// M of four particles; a <= b filled.
+#[derive(Clone, Copy)]
+pub(super) struct MomentSum<const D: usize>(pub [[Lane; D]; D]);
+
+impl<const D: usize> Default for MomentSum<D> {
+    fn default() -> Self {
+        Self([[Lane::ZERO; D]; D])
+    }
+}
+
+impl<const D: usize> FixedLaw<D> for Moment {
+    type Target = ();
+    type Sum = MomentSum<D>;
+    #[inline(always)]
+    fn target(&self, _: usize) {}
+    #[inline(always)]
+    fn add<A: Arch>(&self, _: &(), _: usize, dx: [Lane; D], slope: Lane, sum: &mut MomentSum<D>) {
+        let weight = Lane::splat(-self.volume) * slope;
+        for a in 0..D {
+            let moment = weight * dx[a];
+            for b in a..D {
+                sum.0[a][b] = A::mul_add(moment, dx[b], sum.0[a][b]);
+            }
+        }
+    }
+}
+
+/// First pass: displacement gradient before its correction.
+pub(super) struct Deformation<'a, const D: usize> {
+    pub fixed: &'a Fixed,
     pub displacement: &'a Vectors<D>,
     /// V0.
     pub volume: f64,
@@ -47,15 +76,13 @@ pub(super) struct Deformation<'a, K, const D: usize> {
 pub(super) struct DeformationSum<const D: usize> {
     /// H M.
     pub gradient: [[Lane; D]; D],
-    /// M; a <= b filled.
-    pub moment: [[Lane; D]; D],
     /// sum w |beta u_ij|².
     pub square: Lane,
 }
 
 impl<const D: usize> Default for DeformationSum<D> {
     fn default() -> Self {
-        Self { gradient: [[Lane::ZERO; D]; D], moment: [[Lane::ZERO; D]; D], square: Lane::ZERO }
+        Self { gradient: [[Lane::ZERO; D]; D], square: Lane::ZERO }
     }
 }
 
@@ -66,17 +93,9 @@ pub(super) struct Displaced<const D: usize> {
     gain: Lane,
 }
 
-impl<K: Kernel<D>, const D: usize> PairLaw<D> for Deformation<'_, K, D> {
+impl<const D: usize> FixedLaw<D> for Deformation<'_, D> {
     type Target = Displaced<D>;
     type Sum = DeformationSum<D>;
-    #[inline(always)]
-    fn target_positions(&self) -> &[Vec<f64>; D] {
-        &self.fixed.position
-    }
-    #[inline(always)]
-    fn source_position(&self, j: usize) -> [f64; D] {
-        std::array::from_fn(|d| self.fixed.position[d][j])
-    }
     #[inline(always)]
     fn target(&self, slot: usize) -> Displaced<D> {
         Displaced {
@@ -86,20 +105,23 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for Deformation<'_, K, D> {
         }
     }
     #[inline(always)]
-    fn add<A: Arch>(&self, i: &Displaced<D>, j: usize, dx: [Lane; D], r2: Lane, sum: &mut DeformationSum<D>) {
-        let f = self.kernel.gradient_over_r::<A>(distance(r2, self.kernel.smoothing_length()));
-        let weight = Lane::splat(-self.volume) * f;
+    fn add<A: Arch>(
+        &self,
+        i: &Displaced<D>,
+        j: usize,
+        dx: [Lane; D],
+        slope: Lane,
+        sum: &mut DeformationSum<D>,
+    ) {
+        let weight = Lane::splat(-self.volume) * slope;
         let excess = excess::<A>(i.clamped, i.gain, self.fixed.clamped[j], self.fixed.excess_gain[j]);
         for a in 0..D {
             let u = i.displacement[a] - Lane::splat(self.displacement[a][j]);
             let u = A::mul_add(excess, u, u);
             sum.square = A::mul_add(weight * u, u, sum.square);
-            let (row, moment) = (weight * u, weight * dx[a]);
+            let row = weight * u;
             for b in 0..D {
                 sum.gradient[a][b] = A::mul_add(row, dx[b], sum.gradient[a][b]);
-                if a <= b {
-                    sum.moment[a][b] = A::mul_add(moment, dx[b], sum.moment[a][b]);
-                }
             }
         }
     }
@@ -111,7 +133,7 @@ pub(super) trait Damping<const D: usize>: Copy + Send + Sync {
     type Own: Copy;
     fn own(&self, slot: usize) -> Self::Own;
     /// -m Pi_ij rho0 / V0 for a pair at x_ij: coefficient of -w x_ij beside the brackets of the pass.
-    fn coefficient<A: Arch>(&self, own: &Self::Own, j: usize, h: f64, x: [Lane; D]) -> Lane;
+    fn coefficient<A: Arch>(&self, own: &Self::Own, j: usize, x: [Lane; D]) -> Lane;
     const ACTS: bool;
 }
 
@@ -121,7 +143,7 @@ impl<const D: usize> Damping<D> for () {
     #[inline(always)]
     fn own(&self, _: usize) {}
     #[inline(always)]
-    fn coefficient<A: Arch>(&self, _: &(), _: usize, _: f64, _: [Lane; D]) -> Lane {
+    fn coefficient<A: Arch>(&self, _: &(), _: usize, _: [Lane; D]) -> Lane {
         Lane::ZERO
     }
 }
@@ -130,6 +152,8 @@ impl<const D: usize> Damping<D> for () {
 #[derive(Clone, Copy)]
 pub(super) struct Viscous<'a, const D: usize> {
     pub velocity: &'a Vectors<D>,
+    /// h, m.
+    pub smoothing_length: f64,
     /// rho0, kg/m³.
     pub density: f64,
     /// A c_s, m/s.
@@ -146,20 +170,26 @@ impl<const D: usize> Damping<D> for Viscous<'_, D> {
         std::array::from_fn(|d| Lane::load(&self.velocity[d], slot))
     }
     #[inline(always)]
-    fn coefficient<A: Arch>(&self, own: &[Lane; D], j: usize, h: f64, x: [Lane; D]) -> Lane {
+    fn coefficient<A: Arch>(&self, own: &[Lane; D], j: usize, x: [Lane; D]) -> Lane {
         let v: [Lane; D] = std::array::from_fn(|d| own[d] - Lane::splat(self.velocity[d][j]));
         let (approach, r2) = (dot::<D, A>(v, x), dot::<D, A>(x, x));
         let sum = Lane::splat(2.0 * self.density);
-        let pi = damping::<A>(h, Lane::splat(self.linear), Lane::splat(self.quadratic), approach, r2, sum);
+        let pi = damping::<A>(
+            self.smoothing_length,
+            Lane::splat(self.linear),
+            Lane::splat(self.quadratic),
+            approach,
+            r2,
+            sum,
+        );
         Lane::splat(-self.density * self.density) * pi
     }
 }
 
 /// Second pass: acceleration.
-pub(super) struct Momentum<'a, K, V, const D: usize> {
-    pub kernel: K,
+pub(super) struct Momentum<'a, V, const D: usize> {
     pub damping: V,
-    pub fixed: &'a Fixed<D>,
+    pub fixed: &'a Fixed,
     pub displacement: &'a Vectors<D>,
     /// B, Pa.
     pub stress: &'a Matrices<D>,
@@ -187,17 +217,9 @@ impl<const D: usize> Default for Acceleration<D> {
     }
 }
 
-impl<K: Kernel<D>, V: Damping<D>, const D: usize> PairLaw<D> for Momentum<'_, K, V, D> {
+impl<V: Damping<D>, const D: usize> FixedLaw<D> for Momentum<'_, V, D> {
     type Target = Stressed<V::Own, D>;
     type Sum = Acceleration<D>;
-    #[inline(always)]
-    fn target_positions(&self) -> &[Vec<f64>; D] {
-        &self.fixed.position
-    }
-    #[inline(always)]
-    fn source_position(&self, j: usize) -> [f64; D] {
-        std::array::from_fn(|d| self.fixed.position[d][j])
-    }
     #[inline(always)]
     fn target(&self, slot: usize) -> Self::Target {
         let displaced = Displaced {
@@ -213,9 +235,15 @@ impl<K: Kernel<D>, V: Damping<D>, const D: usize> PairLaw<D> for Momentum<'_, K,
         }
     }
     #[inline(always)]
-    fn add<A: Arch>(&self, i: &Self::Target, j: usize, dx: [Lane; D], r2: Lane, sum: &mut Acceleration<D>) {
-        let h = self.kernel.smoothing_length();
-        let f = Lane::splat(self.scale) * self.kernel.gradient_over_r::<A>(distance(r2, h));
+    fn add<A: Arch>(
+        &self,
+        i: &Self::Target,
+        j: usize,
+        dx: [Lane; D],
+        slope: Lane,
+        sum: &mut Acceleration<D>,
+    ) {
+        let f = Lane::splat(self.scale) * slope;
         let d = &i.displaced;
         let excess = excess::<A>(d.clamped, d.gain, self.fixed.clamped[j], self.fixed.excess_gain[j]);
         let beta = Lane::splat(1.0) + excess;
@@ -230,7 +258,7 @@ impl<K: Kernel<D>, V: Damping<D>, const D: usize> PairLaw<D> for Momentum<'_, K,
         }
         if V::ACTS {
             let x: [Lane; D] = std::array::from_fn(|a| dx[a] + u[a]);
-            let viscous = f * self.damping.coefficient::<A>(&i.own, j, h, x);
+            let viscous = f * self.damping.coefficient::<A>(&i.own, j, x);
             for a in 0..D {
                 sum.0[a] = A::mul_add(viscous, x[a], sum.0[a]);
             }

@@ -43,7 +43,7 @@ impl TotalLagrangian<2> {
     /// Brings every particle to x(X) and evaluates.
     fn deform(&mut self, x: impl Fn([f64; 2]) -> [f64; 2]) {
         for slot in 0..self.id.len() {
-            let at: [f64; 2] = std::array::from_fn(|d| self.fixed.position[d][slot]);
+            let at: [f64; 2] = std::array::from_fn(|d| self.pairs.position()[d][slot]);
             let to = x(at);
             for d in 0..2 {
                 self.now.displacement[d][slot] = to[d] - at[d];
