@@ -93,6 +93,8 @@ impl<const D: usize> Fluid<D> {
             .real_slots()
             .map(|s| (self.columns.now.density[s] / self.state.density - 1.0).abs())
             .fold(0.0, f64::max);
+        values[audit::STORED_ENERGY] =
+            mass * self.real_slots().map(|s| self.state.energy(self.columns.now.density[s])).sum::<f64>();
         values[audit::GAP] = self.coupling.as_ref().map_or(f64::INFINITY, |c| c.gap()) / self.resolution;
         values
     }
