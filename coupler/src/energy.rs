@@ -7,7 +7,8 @@
 //!
 //! S is the energy in play, U the speed that the flow is expected to reach ([`flow_speed`]). Every sum is there anyway: G
 //! follows from the momenta (dG/dt = g . P), W from the forces on the solid over the ways of its particles. Dissipation
-//! makes growth negative; above [`LIMIT`] the run ends.
+//! makes growth negative. Above [`LIMIT`] for [`PATIENCE`] states the run ends: a fast blow-up leaves the bounds of a
+//! particle before that, and a particle says more.
 //!
 //! The walls of a scene must be at rest for the fluid to be judged. A foreign solid's energy is not known. With the
 //! phase-blind interface the fluid strains the solid as well, so both are judged as one.
@@ -21,6 +22,9 @@ use halfstep_shared::scene::{Phase, Scene, Treatment};
 /// Largest growth: a tenth of the energy in play.
 pub const LIMIT: f64 = 0.1;
 
+/// States in a row above the limit.
+pub const PATIENCE: u32 = 100;
+
 /// One judged phase, or both as one.
 #[derive(Clone, Copy, Debug, Default)]
 struct Ledger {
@@ -33,6 +37,8 @@ struct Ledger {
     growth: f64,
     /// What nothing explains now, J.
     unexplained: f64,
+    /// States in a row above the limit.
+    above: u32,
 }
 
 impl Ledger {
@@ -50,9 +56,13 @@ impl Ledger {
         let in_play =
             start.abs() + self.most_gravity + self.most_other + 0.5 * sums[audit::MASS] * speed * speed;
         self.unexplained = energy - start - self.gravity - self.other;
-        if in_play > 0.0 {
-            self.growth = self.growth.max(self.unexplained / in_play);
-        }
+        let growth = if in_play > 0.0 { self.unexplained / in_play } else { 0.0 };
+        self.growth = self.growth.max(growth);
+        self.above = if growth > LIMIT { self.above + 1 } else { 0 };
+    }
+
+    fn excess(&self) -> Option<f64> {
+        (self.above >= PATIENCE).then_some(self.unexplained)
     }
 }
 
@@ -100,11 +110,11 @@ impl EnergyBalance {
         let (gravity, speed) = (self.gravity, self.speed);
         if let (true, Some(f), Some(s)) = (self.joint, fluid, solid) {
             let both = std::array::from_fn(|k| f[k] + s[k]);
-            return self.walls_rest.then(|| {
+            if self.walls_rest {
                 self.judged[0] = true;
                 self.fluid.note(&both, 0.0, gravity, dt, speed);
-                (self.fluid.growth > LIMIT).then_some((RoleName::Coupler, self.fluid.unexplained))
-            })?;
+            }
+            return self.fluid.excess().map(|joules| (RoleName::Coupler, joules));
         }
         if let Some(f) = fluid.filter(|_| self.walls_rest) {
             self.judged[0] = true;
@@ -115,8 +125,7 @@ impl EnergyBalance {
             self.solid.note(s, work_on_solid, gravity, dt, speed);
         }
         let ledgers = [(RoleName::Fluid, &self.fluid), (RoleName::Solid, &self.solid)];
-        let worst = ledgers.into_iter().max_by(|a, b| a.1.growth.total_cmp(&b.1.growth))?;
-        (worst.1.growth > LIMIT).then_some((worst.0, worst.1.unexplained))
+        ledgers.into_iter().find_map(|(role, ledger)| Some((role, ledger.excess()?)))
     }
 
     /// Largest growth so far.
@@ -171,8 +180,17 @@ mod tests {
         // U: free fall through the domain, three times the box in each direction.
         let in_play = 0.5 * 1000.0 * 2.0 * 9.81 * 3.0;
         assert_eq!(balance.note(0.0, Some(&sums(0.0, 0.0)), None, 0.0), None);
-        assert_eq!(balance.note(0.1, Some(&sums(0.0, 0.09 * in_play)), None, 0.0), None);
-        let (role, joules) = balance.note(0.2, Some(&sums(0.0, 0.11 * in_play)), None, 0.0).unwrap();
+        let mut told = |share: f64| {
+            let after = |k: &u32| {
+                balance
+                    .note(0.1 + 1e-3 * f64::from(*k), Some(&sums(0.0, share * in_play)), None, 0.0)
+                    .is_some()
+            };
+            (1..=2 * PATIENCE).find(after)
+        };
+        assert_eq!(told(0.09), None);
+        assert_eq!(told(0.11), Some(PATIENCE), "and not before");
+        let (role, joules) = balance.note(0.3, Some(&sums(0.0, 0.11 * in_play)), None, 0.0).unwrap();
         assert_eq!(role, RoleName::Fluid);
         assert!((joules / (0.11 * in_play) - 1.0).abs() < 1e-12);
     }
@@ -185,7 +203,8 @@ mod tests {
         // 4e5 J go from the fluid to the solid.
         assert_eq!(balance.note(0.1, Some(&sums(0.0, 6e5)), Some(&sums(0.0, 4e5)), 4e5), None);
         // The solid has them again, and nobody gave them.
-        let told = balance.note(0.2, Some(&sums(0.0, 6e5)), Some(&sums(0.0, 8e5)), 0.0);
+        let hot = sums(0.0, 8e5);
+        let told = (0..PATIENCE).fold(None, |_, _| balance.note(0.2, Some(&sums(0.0, 6e5)), Some(&hot), 0.0));
         assert_eq!(told.map(|(role, _)| role), Some(RoleName::Solid));
     }
 
@@ -195,7 +214,7 @@ mod tests {
                     motion = { velocity = [1.0, 0.0] }\n";
         let mut balance = EnergyBalance::new(&scene(wall));
         balance.note(0.0, Some(&sums(0.0, 0.0)), None, 0.0);
-        assert_eq!(balance.note(0.1, Some(&sums(0.0, 1e9)), None, 0.0), None);
+        assert!((0..=PATIENCE).all(|_| balance.note(0.1, Some(&sums(0.0, 1e9)), None, 0.0).is_none()));
         assert_eq!(balance.growth().fluid, None);
     }
 }

@@ -6,6 +6,7 @@ pub mod curve;
 pub mod patch;
 pub mod process;
 pub mod run;
+pub mod stability;
 
 pub use curve::Curve;
 pub use run::{Finished, Outcome, RunBuilder, Running, scene};
