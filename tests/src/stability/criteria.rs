@@ -243,11 +243,8 @@ pub(super) fn short(value: f64) -> String {
 pub fn evaluate(criteria: &[Criterion], run: &Outcome, dx: f64, others: &[Option<Outcome>]) -> Vec<Measured> {
     let report = run.report();
     let finished = report.status == Some(RunStatus::Finished) && run.code() == Some(0);
-    let mut all = vec![Measured {
-        label: "finished".into(),
-        value: report.time,
-        holds: finished && (!finished || numbers(run)),
-    }];
+    let mut all =
+        vec![Measured { label: "finished".into(), value: report.time, holds: finished && numbers(run) }];
     for (criterion, other) in criteria.iter().zip(others) {
         let value = criterion.measure(run, &report, dx, other.as_ref());
         let holds = !value.is_nan()
