@@ -1,6 +1,6 @@
 # What people run. Every target first installs what is missing (setup.sh) and then calls cargo.
 
-.PHONY: gate test validate bench prices docs setup
+.PHONY: gate test validate stability bench prices docs setup
 
 # Where rustup puts cargo, for shells that were open before.
 export PATH := $(PATH):$(HOME)/.cargo/bin
@@ -19,6 +19,10 @@ test: setup
 # The benchmarks of the literature at full resolution: long.
 validate: setup
 	cargo test --release -p halfstep-tests -- --ignored --nocapture
+
+# Hard cases with and without their remedies, at all resolutions: renews the table of docs/stability.md. Minutes.
+stability: setup
+	HALFSTEP_PAGE=1 cargo test --release -p halfstep-tests --test stability -- --ignored --nocapture
 
 # What accuracy costs in the shipped scenes, docs/price-lists.md: minutes to an hour. SCENES="..." renews some of them.
 prices: setup

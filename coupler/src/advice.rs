@@ -36,6 +36,14 @@ pub(crate) fn advice(diverged: &Diverged, scene: &Scene, clock: &Clock, foreign:
             look at the last frames for what goes wrong before"
                 .into()
         }
+        (Quantity::Energy, RoleName::Solid) => {
+            format!("{change}; or raise solid.artificial_viscosity: the last frames show where it moves")
+        }
+        (Quantity::Energy, _) => {
+            format!(
+                "{change}; or raise fluid.artificial_viscosity.linear: the last frames show where it moves"
+            )
+        }
         (Quantity::Density, RoleName::Solid) => {
             format!("{change}; or the load is too much for solid.youngs_modulus")
         }
@@ -92,6 +100,8 @@ mod tests {
         assert!(advised(&scene, 1e-5, 1e-5, &DIVERGED).contains("numerics.solid_cfl (now 0.6)"));
         let fluid = Diverged { role: RoleName::Fluid, ..DIVERGED };
         assert!(advised(&scene, 1e-5, 1e-5, &fluid).contains("numerics.cfl (now 0.4)"));
+        let hot = Diverged { quantity: Quantity::Energy, ..fluid };
+        assert!(advised(&scene, 1e-5, 1e-5, &hot).contains("fluid.artificial_viscosity.linear"));
         let dense = Diverged { quantity: Quantity::Density, ..DIVERGED };
         assert!(advised(&scene, 1e-5, 1e-5, &dense).contains("solid.youngs_modulus"));
     }

@@ -92,6 +92,11 @@ impl Clock {
         self.time
     }
 
+    /// Number of the state at n.
+    pub fn step(&self) -> u64 {
+        self.step
+    }
+
     /// Looks at the state at n: what to do with it and how far to go next, given the limits of the phases.
     ///
     /// # Errors

@@ -10,7 +10,7 @@ use halfstep_shared::interface::{Interface, Parameters};
 use halfstep_shared::lane::Isa;
 use halfstep_shared::link::{CouplerLink, Expect, StateSample, Transport};
 use halfstep_shared::output::run_json::RoleSeconds;
-use halfstep_shared::protocol::{ForceHeader, ForceRecord, StateHeader, order, status};
+use halfstep_shared::protocol::{ForceHeader, ForceRecord, StateHeader, StateRecord, order, status};
 use halfstep_shared::scene::Scene;
 use halfstep_shared::wide;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -53,6 +53,8 @@ pub struct Coupler<S: Transport, const D: usize> {
     frame: u64,
     solid_count: Option<usize>,
     foreign: Option<ForeignSolid>,
+    /// The solid's positions at n, m.
+    solid_at_n: Vec<[f64; 3]>,
 }
 
 impl<S: Transport, const D: usize> Coupler<S, D> {
@@ -74,6 +76,7 @@ impl<S: Transport, const D: usize> Coupler<S, D> {
             frame: 0,
             solid_count: None,
             foreign,
+            solid_at_n: Vec::new(),
         })
     }
 
@@ -94,7 +97,11 @@ impl<S: Transport, const D: usize> Coupler<S, D> {
             let stopped = stop.load(Ordering::Relaxed);
             let limit = |role, header: &StateHeader| Limit { role, dt: header.dt_limit };
             let limits = [limit(RoleName::Fluid, fluid.header()), limit(RoleName::Solid, solid.header())];
-            let tick = clock.tick(&limits, stopped)?;
+            let work = self.work_on_solid(solid.records());
+            let of_solid = self.foreign.is_none().then_some(&solid.header().audit);
+            let grown = recorder.judge(step, time, Some(&fluid.header().audit), of_solid, work);
+            // Energy from nowhere ends the run in order, with its last state on disk.
+            let tick = clock.tick(&limits, stopped || grown.is_some())?;
             self.answer(&tick, 0, &fluid, &solid)?;
             let mut of_solid = Measured::of(solid.header());
             if let Some(foreign) = &mut self.foreign {
@@ -113,6 +120,9 @@ impl<S: Transport, const D: usize> Coupler<S, D> {
                 let (fluid, solid) = self.receive(&last)?;
                 if let Some(foreign) = self.foreign.take() {
                     foreign.finish()?;
+                }
+                if let Some(diverged) = grown {
+                    return Err(diverged.into());
                 }
                 return Ok(self.outcome(stopped, *fluid.header(), *solid.header()));
             };
@@ -142,6 +152,24 @@ impl<S: Transport, const D: usize> Coupler<S, D> {
         }
         self.checks += 2;
         Ok((fluid, solid))
+    }
+
+    /// Work of the fluid on the solid from the state at n before to this one, J: the force of n + 1/2 moved the solid
+    /// all the way.
+    fn work_on_solid(&mut self, records: &[StateRecord]) -> f64 {
+        let ways = records.iter().zip(&self.solid_at_n).zip(&self.solid_forces);
+        let work = ways.map(|((record, from), force)| {
+            (0..3)
+                .map(|d| {
+                    let f = force.stress_force[d] + record.mass * force.cross_viscosity[d];
+                    f * (record.position[d] - from[d])
+                })
+                .sum::<f64>()
+        });
+        let work = work.sum();
+        self.solid_at_n.clear();
+        self.solid_at_n.extend(records.iter().map(|r| r.position));
+        work
     }
 
     fn answer(

@@ -6,6 +6,7 @@ pub mod clock;
 pub mod couple;
 pub mod cross_viscosity;
 pub mod effects;
+pub mod energy;
 pub mod error;
 pub mod explain;
 pub mod foreign;

@@ -1,6 +1,8 @@
 //! What a run writes down as it goes: probe log, statistics, progress.
 
 use crate::clock::Tick;
+use crate::energy::{self, EnergyBalance};
+use halfstep_shared::failure::Diverged;
 use halfstep_shared::output::{OutputError, ProbeLog, RunReport, run_json};
 use halfstep_shared::protocol::StateHeader;
 use halfstep_shared::role::audit;
@@ -59,6 +61,7 @@ pub struct Recorder {
     removed: u64,
     first_fluid: Option<u64>,
     isolated: bool,
+    balance: EnergyBalance,
 }
 
 impl Recorder {
@@ -105,7 +108,21 @@ impl Recorder {
             removed: 0,
             first_fluid: None,
             isolated,
+            balance: EnergyBalance::new(scene),
         })
+    }
+
+    /// Judges the energies of the state at n, by the work done on the solid since the state before, J. `None` stands for
+    /// a phase that is not there or whose energy is not known.
+    pub fn judge(
+        &mut self,
+        step: u64,
+        time: f64,
+        fluid: Option<&[f64; 8]>,
+        solid: Option<&[f64; 8]>,
+        work_on_solid: f64,
+    ) -> Option<Diverged> {
+        self.balance.note(time, fluid, solid, work_on_solid).map(|excess| energy::diverged(excess, step))
     }
 
     /// Notes the state at n.
@@ -219,6 +236,7 @@ impl Recorder {
             .filter(|&e| self.isolated && self.first_fluid.is_none() && e > 0.0)
             .map(|e| self.energy / e - 1.0);
         report.particles.removed = self.removed;
+        report.audit.energy_growth = self.balance.growth();
         report.audit.density_error = self.first_fluid.map(|_| self.density_error);
         report.audit.min_gap = self.gap.is_finite().then_some(self.gap);
     }

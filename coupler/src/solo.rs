@@ -3,6 +3,7 @@
 use crate::clock::{Clock, Limit};
 use crate::error::RunError;
 use crate::recorder::{Measured, Recorder};
+use halfstep_shared::failure::RoleName;
 use halfstep_shared::output::FrameWriter;
 use halfstep_shared::output::run_json::RoleSeconds;
 use halfstep_shared::protocol::MAX_PROBE_VALUES;
@@ -40,28 +41,33 @@ pub fn run_solo(
     let mut probes = [0.0; MAX_PROBE_VALUES];
     let mut scratch = Vec::new();
     let mut seconds = RoleSeconds::default();
-    let mut sums = 0.0;
+    let mut in_sums = 0.0;
     loop {
         let start = Instant::now();
         let stopped = stop.load(Ordering::Relaxed);
         role.set_time(clock.time());
         role.publish(&[], &mut scratch);
-        let tick = clock.tick(&[Limit { role: role.name(), dt: role.dt_limit() }], stopped)?;
+        let sums = role.audit();
+        let of = |name| (role.name() == name).then_some(&sums);
+        let grown = recorder.judge(clock.step(), clock.time(), of(RoleName::Fluid), of(RoleName::Solid), 0.0);
+        // Energy from nowhere ends the run in order, with its last state on disk.
+        let stop = stopped || grown.is_some();
+        let tick = clock.tick(&[Limit { role: role.name(), dt: role.dt_limit() }], stop)?;
         let n = role.probes(&mut probes);
         let measured = Measured {
             probes: &probes[..n],
-            audit: &role.audit(),
+            audit: &sums,
             sub_steps: role.sub_steps(),
             particles: role.particles(),
         };
         let mut notes = [None, None];
-        notes[usize::from(role.name() == halfstep_shared::failure::RoleName::Solid)] = Some(measured);
+        notes[usize::from(role.name() == RoleName::Solid)] = Some(measured);
         let [fluid, solid] = notes;
         recorder.note(&tick, fluid, solid)?;
         // What walls show belongs to the state at n once the sums are there: frames come after them.
         let summed = Instant::now();
         role.own_sums();
-        sums += summed.elapsed().as_secs_f64();
+        in_sums += summed.elapsed().as_secs_f64();
         let computed = Instant::now();
         seconds.compute += (computed - start).as_secs_f64();
         if tick.frame {
@@ -70,12 +76,15 @@ pub fn run_solo(
         }
         let written = Instant::now();
         seconds.output += (written - computed).as_secs_f64();
+        if let Some(diverged) = grown {
+            return Err(diverged.into());
+        }
         let Some(dt) = tick.dt else {
             return Ok(SoloOutcome {
                 stopped,
                 state_hash: role.state_hash(),
                 seconds,
-                costs: role.costs().of(sums, seconds.compute),
+                costs: role.costs().of(in_sums, seconds.compute),
                 pair_evaluations: role.pair_evaluations(),
             });
         };
@@ -85,7 +94,7 @@ pub fn run_solo(
                 role.publish(&[], &mut scratch);
                 let start = Instant::now();
                 role.own_sums();
-                sums += start.elapsed().as_secs_f64();
+                in_sums += start.elapsed().as_secs_f64();
             }
             if let Err(diverged) = role.advance(tick.step, stage, dt, &[]) {
                 let time = tick.time + if stage == 0 { 0.5 * dt } else { dt };

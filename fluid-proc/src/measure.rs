@@ -85,7 +85,7 @@ impl<const D: usize> Fluid<D> {
     pub(crate) fn audit_values(&self) -> [f64; 8] {
         let mass = self.columns.now.mass;
         let mut values = [0.0; 8];
-        let (mut momentum, mut energy, mut error) = ([0.0; D], 0.0, 0.0_f64);
+        let (mut momentum, mut energy, mut stored, mut error) = ([0.0; D], 0.0, 0.0, 0.0_f64);
         // All in one walk: it is done every step.
         for (particle, _) in self.columns.now.sources.iter().zip(&self.columns.id).filter(|p| *p.1 != PADDING)
         {
@@ -93,6 +93,7 @@ impl<const D: usize> Fluid<D> {
                 momentum[d] += particle.velocity[d];
             }
             energy += particle.velocity.iter().map(|v| v.powi(2)).sum::<f64>();
+            stored += self.state.energy(particle.density);
             error = error.max((particle.density / self.state.density - 1.0).abs());
         }
         for d in 0..D {
@@ -101,6 +102,7 @@ impl<const D: usize> Fluid<D> {
         values[audit::KINETIC_ENERGY] = 0.5 * mass * energy;
         values[audit::MASS] = mass * self.columns.particles as f64;
         values[audit::DENSITY_ERROR] = error;
+        values[audit::STORED_ENERGY] = mass * stored;
         values[audit::GAP] = self.coupling.as_ref().map_or(f64::INFINITY, |c| c.gap()) / self.resolution;
         values
     }

@@ -217,7 +217,13 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for WallLaw<'_, K, D> {
     fn add<A: Arch>(&self, _: &(), j: usize, dx: [Lane; D], r2: Lane, sum: &mut WallSum<D>) {
         let fluid = &self.sources[j];
         let (extrapolated, pair) = (&mut sum.extrapolated, (dx, r2));
-        let w = extrapolated.add_particle::<K, D, A>(&self.kernel, self.gravity, pair, fluid.density, fluid.pressure);
+        let w = extrapolated.add_particle::<K, D, A>(
+            &self.kernel,
+            self.gravity,
+            pair,
+            fluid.density,
+            fluid.pressure,
+        );
         for d in 0..D {
             sum.velocity[d] = A::mul_add(Lane::splat(fluid.velocity[d]), w, sum.velocity[d]);
         }

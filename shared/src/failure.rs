@@ -40,12 +40,14 @@ pub enum Quantity {
     Stress = 4,
     /// Time step, s.
     TimeStep = 5,
+    /// Energy of a whole phase, J.
+    Energy = 6,
 }
 
 impl Quantity {
     /// The quantity with this number on the wire.
     pub fn from_wire(number: u32) -> Option<Self> {
-        [Self::Density, Self::Speed, Self::Position, Self::Stress, Self::TimeStep]
+        [Self::Density, Self::Speed, Self::Position, Self::Stress, Self::TimeStep, Self::Energy]
             .into_iter()
             .find(|q| *q as u32 == number)
     }
@@ -60,6 +62,7 @@ impl Quantity {
             Self::Position => "m",
             Self::Stress => "Pa",
             Self::TimeStep => "s",
+            Self::Energy => "J",
         }
     }
 }
@@ -72,24 +75,21 @@ impl std::fmt::Display for Quantity {
             Self::Position => "position",
             Self::Stress => "stress",
             Self::TimeStep => "time step",
+            Self::Energy => "energy",
         })
     }
 }
 
-/// A particle's quantity is out of bounds: the run cannot go on.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error, Serialize, Deserialize)]
-#[error(
-    "the {role} diverged at step {step}, stage {stage}: {quantity} of particle {particle} is {value:.4e} {} at \
-     ({:.6}, {:.6}, {:.6}) m", quantity.unit(), position[0], position[1], position[2]
-)]
+/// A quantity is out of bounds: the run cannot go on.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Diverged {
     /// Whose particle.
     pub role: RoleName,
-    /// Its number.
+    /// Its number; 0 where the quantity is no particle's.
     pub particle: u32,
     /// Which quantity.
     pub quantity: Quantity,
-    /// Its value.
+    /// Its value; of an energy what nothing explains.
     pub value: f64,
     /// Step n.
     pub step: u64,
@@ -98,6 +98,27 @@ pub struct Diverged {
     /// Where, m.
     pub position: [f64; 3],
 }
+
+impl std::fmt::Display for Diverged {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { role, particle, quantity, value, step, stage, position: [x, y, z] } = self;
+        write!(f, "the {role} diverged at step {step}, stage {stage}: ")?;
+        match quantity {
+            Quantity::Energy => write!(
+                f,
+                "its energy is {value:.4e} J above what its start, gravity and the other phase explain"
+            ),
+            Quantity::TimeStep => write!(f, "{quantity} is {value:.4e} s"),
+            _ => write!(
+                f,
+                "{quantity} of particle {particle} is {value:.4e} {} at ({x:.6}, {y:.6}, {z:.6}) m",
+                quantity.unit()
+            ),
+        }
+    }
+}
+
+impl std::error::Error for Diverged {}
 
 /// Added to the quantity's number on the wire where the particle is not the sender's but the other phase's.
 const OF_PEER: u32 = 16;
@@ -132,6 +153,25 @@ impl Diverged {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_energy_is_the_phases_and_no_particles() {
+        let diverged = Diverged {
+            role: RoleName::Fluid,
+            particle: 0,
+            quantity: Quantity::Energy,
+            value: 12.5,
+            step: 7,
+            stage: 0,
+            position: [0.0; 3],
+        };
+        let text = diverged.to_string();
+        assert!(
+            text.starts_with("the fluid diverged at step 7, stage 0: its energy is 1.2500e1 J above"),
+            "{text}"
+        );
+        assert!(!text.contains("particle"), "{text}");
+    }
 
     #[test]
     fn what_is_told_arrives_whoever_owns_the_particle() {

@@ -18,7 +18,7 @@ pub mod audit {
     pub const DENSITY_ERROR: usize = 5;
     /// Smallest distance to the other phase over dx (infinite where none is near).
     pub const GAP: usize = 6;
-    /// Energy stored in the material, J; 0 for a fluid.
+    /// Energy stored in the material, J: strain energy of a solid, work of compression of a fluid.
     pub const STORED_ENERGY: usize = 7;
 }
 

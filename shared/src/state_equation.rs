@@ -31,6 +31,14 @@ impl StateEquation {
         self.stiffness * (x3 * x3 * x - 1.0) + self.background
     }
 
+    /// Work that compressed a kilogram from the reference density, J/kg: the integral of p / rho² d rho.
+    pub fn energy(&self, density: f64) -> f64 {
+        let x = density / self.density;
+        let x3 = x * x * x;
+        let compressed = self.stiffness * (x3 * x3 - 1.0) / 6.0;
+        (compressed + (self.stiffness - self.background) * (1.0 / x - 1.0)) / self.density
+    }
+
     /// Density at a pressure, kg/m³. Pressures at or below the equation's vacuum (-p0) give the density of 1e-3 p0
     /// above it, so that the result is always positive.
     pub fn density_at(&self, pressure: f64) -> f64 {
@@ -50,6 +58,16 @@ mod tests {
         assert!((e.pressure(1010.0) - 1e5 / 7.0 * 0.072_135_352_107).abs() < 1e-5);
         assert_eq!(e.pressure(1000.0), 0.0);
         assert!((StateEquation::new(1000.0, 10.0, 5.0).pressure(1000.0) - 5.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_energy_is_the_work_of_the_pressure() {
+        let e = StateEquation::new(1000.0, 16.0, 100.0);
+        assert_eq!(e.energy(1000.0), 0.0);
+        for rho in [900.0, 1100.0] {
+            let slope = (e.energy(rho + 0.1) - e.energy(rho - 0.1)) / 0.2;
+            assert!((slope * rho * rho / e.pressure(rho) - 1.0).abs() < 1e-6, "{slope}");
+        }
     }
 
     #[test]

@@ -64,7 +64,7 @@ pub trait SolidModel<const D: usize>: Send {
     /// Goes to n + 1/2 (stage 0) or from n to n + 1 (stage 1). The load is the force of the stage's own state.
     ///
     /// # Errors
-    /// The first particle found out of bounds.
+    /// The particle that is farthest out of bounds.
     fn advance(&mut self, stage: u32, dt: f64, sub_steps: u32, load: &Load<D>) -> Result<(), OutOfBounds>;
     /// Position in the reference configuration, m.
     fn reference(&self, particle: u32) -> [f64; D];

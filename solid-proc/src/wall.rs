@@ -1,6 +1,10 @@
 //! Rigid walls toward the solid (Kayaki section 4.1, after Adami): velocity zero always, pressure extrapolated from the
 //! solid around, density rho_w = rho_s0 (1 + p_w / K), no deviatoric stress. A wall that could pull would glue the solid
 //! to it, so only pressures above zero act, and only walls that the scene lets the solid touch are here.
+//!
+//! The pressure at a surface is nearly zero, so that alone a wall would carry a body by its damping only, and a body at
+//! rest would creep into it. Below the spacing dx, at which two surfaces meet, particles repel each other as those of
+//! different bodies do: F = k (dx - r) x / r with k = (K + 4 G / 3) / 2 dx^(D-2).
 
 use crate::columns::{Vectors, vectors};
 use halfstep_shared::artificial_viscosity::damping;
@@ -141,6 +145,15 @@ pub(crate) struct Touching<'a, const D: usize> {
     pub(crate) linear: f64,
     /// B of the artificial viscosity.
     pub(crate) quadratic: f64,
+    /// dx, m.
+    pub(crate) spacing: f64,
+    /// k over a particle's mass, 1/s²: see [`repulsion`].
+    pub(crate) repulsion: f64,
+}
+
+/// k over a particle's mass, 1/s², for a material's pressure waves and spacing.
+pub(crate) fn repulsion(pressure_wave_speed: f64, spacing: f64) -> f64 {
+    0.5 * (pressure_wave_speed / spacing).powi(2)
 }
 
 /// Acceleration of four solid particles by the walls.
@@ -208,7 +221,10 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for Push<'_, K, D> {
             i.density + Lane::splat(rho),
         );
         let term = i.pressure_term + Lane::splat(self.pressure[j] / (rho * rho)) + pi;
-        let coefficient = Lane::splat(-self.solid.mass) * f * term;
+        let r = distance(r2, self.solid.spacing);
+        let overlap = (Lane::splat(self.solid.spacing) - r).max(Lane::ZERO);
+        let coefficient =
+            Lane::splat(-self.solid.mass) * f * term + Lane::splat(self.solid.repulsion) * overlap / r;
         for d in 0..D {
             sum.0[d] = A::mul_add(coefficient, dx[d], sum.0[d]);
         }

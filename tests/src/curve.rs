@@ -85,6 +85,15 @@ impl Curve {
         self.values.iter().sum::<f64>() / self.values.len() as f64
     }
 
+    /// Slope of the line through the curve by least squares, per second.
+    pub fn slope(&self) -> f64 {
+        let n = self.times.len() as f64;
+        let (time, value) = (self.times.iter().sum::<f64>() / n, self.mean());
+        let rows = || self.times.iter().zip(&self.values);
+        let moment: f64 = rows().map(|(t, v)| (t - time) * (v - value)).sum();
+        moment / rows().map(|(t, _)| (t - time).powi(2)).sum::<f64>()
+    }
+
     /// Root mean square of the difference to a reference, at the reference's times within this curve's.
     pub fn rms_to(&self, reference: &Self) -> f64 {
         let last = *self.times.last().expect("a curve has rows");
@@ -144,6 +153,7 @@ mod tests {
         let reference = Curve { times: vec![0.5, 0.7, 3.0], values: vec![1.3, 1.4, 9.0] };
         assert!((line.rms_to(&reference) - 0.3 / 2.0_f64.sqrt()).abs() < 1e-9);
         assert_eq!(line.first_above(1.0), Some(0.5));
+        assert!((line.slope() - 2.0).abs() < 1e-12);
     }
 
     #[test]

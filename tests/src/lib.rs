@@ -8,6 +8,7 @@ pub mod finite_elements;
 pub mod patch;
 pub mod process;
 pub mod run;
+pub mod stability;
 
 pub use curve::Curve;
 pub use run::{Finished, Outcome, RunBuilder, Running, scene};

@@ -140,6 +140,17 @@ pub struct Percentiles {
     pub p99: f64,
 }
 
+/// Largest energy that neither start, gravity nor the other phase explains, over the energy in play; `None` where it
+/// cannot be judged.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct EnergyGrowth {
+    /// Of the fluid; of both phases together with the phase-blind interface.
+    pub fluid: Option<f64>,
+    /// Of the solid.
+    pub solid: Option<f64>,
+}
+
 /// What the run checked about itself.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -148,6 +159,8 @@ pub struct Audit {
     pub momentum_drift: Option<f64>,
     /// Relative drift of kinetic plus stored energy of an isolated solid.
     pub energy_drift: Option<f64>,
+    /// Energy of each phase that nothing explains, over the energy in play.
+    pub energy_growth: EnergyGrowth,
     /// Largest relative mismatch of the forces that both phases exert on each other.
     pub action_reaction: Option<f64>,
     /// Largest relative deviation of the fluid's density.
@@ -230,7 +243,7 @@ mod tests {
             "/particle_steps_per_second /dt/min /dt/mean /dt/max /sub_steps /roles/fluid/compute /roles/fluid/wait",
             "/roles/fluid/exchange /roles/fluid/output /roles/solid /roles/coupler /round_trip_us/p50",
             "/round_trip_us/p99 /audit/momentum_drift /audit/energy_drift /audit/action_reaction",
-            "/audit/density_error /audit/min_gap /audit/checks /audit/isa",
+            "/audit/energy_growth/fluid /audit/energy_growth/solid /audit/density_error /audit/min_gap /audit/checks /audit/isa",
             "/work/pair_evaluations/fluid /work/pair_evaluations/solid /work/pair_evaluations/coupler",
             "/effects/0/name /effects/0/on /effects/0/why /effects/0/share",
         ]

@@ -7,7 +7,7 @@ use super::model::Hypoelastic;
 use super::rates::{ArtificialStress, Moment, Plain, Renormalised, SolidLaw, TensileCorrection};
 use super::stress_rate::jaumann;
 use crate::model::Load;
-use crate::wall::Touching;
+use crate::wall::{Touching, repulsion};
 use halfstep_shared::kernel::Kernel;
 use halfstep_shared::lane::LANES;
 use halfstep_shared::neighbours::PADDING;
@@ -89,6 +89,8 @@ impl<const D: usize> Hypoelastic<D> {
                 bulk_modulus: self.material.bulk_modulus(),
                 linear: self.material.artificial_viscosity.linear * self.material.sound_speed(),
                 quadratic: self.material.artificial_viscosity.quadratic,
+                spacing: self.resolution,
+                repulsion: repulsion(self.material.pressure_wave_speed(), self.resolution),
             };
             walls.act(self.isa, kernel, self.gravity, solid);
             self.pair_evaluations += walls.pairs() as u64;

@@ -9,7 +9,7 @@
 use crate::columns::{Vectors, vectors};
 use crate::effects::takes_part;
 use crate::surface::surface_set;
-use crate::wall::{Touching, Walls};
+use crate::wall::{Touching, Walls, repulsion};
 use halfstep_shared::columns::{copy, fit, moved_farther};
 use halfstep_shared::geometry::{self, Layout, SolidPoint};
 use halfstep_shared::kernel::Kernel;
@@ -173,6 +173,8 @@ impl<const D: usize> Contact<D> {
                 // The wall begins to push a body by stopping it: a solid without viscosity would not be stopped.
                 linear: viscosity.linear.max(1.0) * solid.sound_speed(),
                 quadratic: viscosity.quadratic,
+                spacing: self.spacing,
+                repulsion: repulsion(solid.pressure_wave_speed(), self.spacing),
             };
             walls.act(isa, kernel, self.gravity, touching);
         }

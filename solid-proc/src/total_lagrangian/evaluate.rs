@@ -4,16 +4,12 @@ use super::contact::{Contact, Present};
 use super::material::Matrix;
 use super::model::TotalLagrangian;
 use super::pass::{Damping, Deformation, DeformationSum, Moment, MomentSum, Momentum, Viscous};
-use crate::model::OutOfBounds;
-use halfstep_shared::failure::Quantity;
+use halfstep_shared::bounds::Excess;
 use halfstep_shared::lane::LANES;
 use halfstep_shared::neighbours::PADDING;
 use halfstep_shared::role::{Costs, fastest};
 use halfstep_shared::scene::{ArtificialViscosity, EffectName};
-use halfstep_shared::{pair, tensor, wide, with_kernel};
-
-/// A material that is compressed or stretched further has left what its law describes.
-const VOLUME_RATIO: std::ops::Range<f64> = 0.1..10.0;
+use halfstep_shared::{pair, tensor, with_kernel};
 
 fn at<const D: usize>(entries: &[[halfstep_shared::lane::Lane; D]; D], k: usize) -> Matrix<D> {
     Matrix::from_fn(|a, b| entries[a][b].0[k])
@@ -60,9 +56,10 @@ impl<const D: usize> TotalLagrangian<D> {
         pair::fixed_pass(self.isa, &law, &self.pairs, sums);
     }
 
-    /// F of every particle from the sums of the first pass, and the second pass' brackets. The first particle whose
-    /// volume ratio left its bounds is kept in `failure`.
+    /// F of every particle from the sums of the first pass, and the second pass' brackets. Of the first evaluation
+    /// in which volumes leave their bounds, the one farthest out is kept in `failure`.
     fn stresses(&mut self) {
+        let mut worst: Option<(u32, Excess)> = None;
         for slot in 0..self.id.len() {
             if self.id[slot] == PADDING {
                 continue;
@@ -71,14 +68,10 @@ impl<const D: usize> TotalLagrangian<D> {
             let h = at(&self.deformations[slot / LANES].gradient, slot % LANES) * correction;
             let f = Matrix::identity() + h;
             let j = tensor::determinant(&f);
-            // What is no number shows in the speed as well, nearer to its cause.
-            if !VOLUME_RATIO.contains(&j) && !j.is_nan() && self.failure.is_none() {
-                self.failure = Some(OutOfBounds {
-                    particle: self.id[slot],
-                    quantity: Quantity::Density,
-                    value: self.material.density / j,
-                    position: wide(self.position_at(slot)),
-                });
+            if let Some(excess) = self.bounds.excess_of_volume(j, 0.0)
+                && worst.is_none_or(|(_, other)| excess.ratio > other.ratio)
+            {
+                worst = Some((self.id[slot], excess));
             }
             let p = self.law.first_piola_kirchhoff(&f, j);
             let bracket = p * correction - h * self.hourglass[slot];
@@ -90,6 +83,7 @@ impl<const D: usize> TotalLagrangian<D> {
                 }
             }
         }
+        self.failure = self.failure.or(worst);
     }
 
     /// Acceleration of the present state by everything but loads and gravity.

@@ -12,7 +12,7 @@ use crate::columns::{Vectors, vectors};
 use crate::effects::takes_part;
 use crate::model::{Load, OutOfBounds, SolidModel};
 use crate::surface::surface_set;
-use halfstep_shared::failure::Quantity;
+use halfstep_shared::bounds::{Bounds, Excess};
 use halfstep_shared::geometry::{self, SolidPoint};
 use halfstep_shared::interface::wire_component;
 use halfstep_shared::lane::{Isa, LANES};
@@ -92,7 +92,9 @@ pub struct TotalLagrangian<const D: usize> {
     pub(super) deformations: Vec<DeformationSum<D>>,
     pub(super) sums: Vec<Acceleration<D>>,
     pub(super) contact: Option<Contact<D>>,
-    pub(super) failure: Option<OutOfBounds>,
+    pub(super) bounds: Bounds,
+    /// The particle whose volume left its bounds first, or of several the one farthest out.
+    pub(super) failure: Option<(u32, Excess)>,
     pub(super) pair_evaluations: u64,
 }
 
@@ -176,6 +178,7 @@ impl<const D: usize> TotalLagrangian<D> {
             id,
             slot_of,
             contact,
+            bounds: Bounds::of_solid(scene)?,
             failure: None,
             pair_evaluations: 0,
         };
@@ -243,24 +246,18 @@ impl<const D: usize> TotalLagrangian<D> {
         }
     }
 
+    /// Names the particle that is farthest out of bounds, if any is.
     fn check(&self) -> Result<(), OutOfBounds> {
-        if let Some(failure) = self.failure {
-            return Err(failure);
-        }
-        let fastest = self.material.pressure_wave_speed();
-        for (p, &slot) in self.slot_of.iter().enumerate() {
-            let slot = slot as usize;
-            let v2: f64 = (0..D).map(|d| self.now.velocity[d][slot].powi(2)).sum();
-            if v2.is_nan() || v2 > fastest * fastest {
-                return Err(OutOfBounds {
-                    particle: p as u32,
-                    quantity: Quantity::Speed,
-                    value: v2.sqrt(),
-                    position: wide(self.position_at(slot)),
-                });
-            }
-        }
-        Ok(())
+        let excess = |(p, &slot): (usize, &u32)| {
+            let v2: f64 = (0..D).map(|d| self.now.velocity[d][slot as usize].powi(2)).sum();
+            Some((p as u32, self.bounds.excess_of_volume(1.0, v2.sqrt())?))
+        };
+        let all = self.slot_of.iter().enumerate().filter_map(excess).chain(self.failure);
+        let Some((particle, worst)) = all.max_by(|a, b| a.1.ratio.total_cmp(&b.1.ratio)) else {
+            return Ok(());
+        };
+        let position = wide(self.position_at(self.slot_of[particle as usize] as usize));
+        Err(OutOfBounds { particle, quantity: worst.quantity, value: worst.value, position })
     }
 }
 
