@@ -25,9 +25,12 @@ pub(super) fn stroke(color: RGBColor, width: i32) -> ShapeStyle {
     ShapeStyle { color: color.to_rgba(), filled: false, stroke_width: px(width) as u32 }
 }
 
+/// Colour of the k-th series: a palette, then its lighter shades.
 pub(super) fn color(k: usize) -> RGBColor {
     let all = [&plot::CURVES[..], &plot::REFERENCES[..]].concat();
-    all[k % all.len()]
+    let RGBColor(r, g, b) = all[k % all.len()];
+    let lighter = |c: u8| if k < all.len() { c } else { c / 2 + 127 };
+    RGBColor(lighter(r), lighter(g), lighter(b))
 }
 
 pub(super) fn write(area: &Area<'_>, text: &str, at: (i32, i32), size: i32, place: (HPos, VPos)) -> Drawn {
