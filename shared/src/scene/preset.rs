@@ -70,10 +70,11 @@ impl Defaults {
     pub(super) fn with_model(self, model: SolidModelName) -> Self {
         match model {
             SolidModelName::Hypoelastic => self,
-            // Fixed neighbours and corrected gradients: eight neighbours are enough, and nothing has to be damped.
+            // Fixed neighbours and corrected gradients: eight neighbours are enough. The viscosity is for a plate in water,
+            // whose short waves grow with those of the water's pressure where nothing damps them.
             SolidModelName::TotalLagrangian => Self {
                 solid_smoothing_ratio: 0.75,
-                solid_viscosity: ArtificialViscosity { linear: 0.0, quadratic: 0.0 },
+                solid_viscosity: ArtificialViscosity { linear: 0.1, quadratic: 0.0 },
                 ..self
             },
         }
