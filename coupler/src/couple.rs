@@ -159,12 +159,8 @@ impl<S: Transport, const D: usize> Coupler<S, D> {
     fn work_on_solid(&mut self, records: &[StateRecord]) -> f64 {
         let ways = records.iter().zip(&self.solid_at_n).zip(&self.solid_forces);
         let work = ways.map(|((record, from), force)| {
-            (0..3)
-                .map(|d| {
-                    let f = force.stress_force[d] + record.mass * force.cross_viscosity[d];
-                    f * (record.position[d] - from[d])
-                })
-                .sum::<f64>()
+            let force = force.force(record.mass);
+            (0..3).map(|d| force[d] * (record.position[d] - from[d])).sum::<f64>()
         });
         let work = work.sum();
         self.solid_at_n.clear();
@@ -243,9 +239,7 @@ impl<S: Transport, const D: usize> Coupler<S, D> {
             add(force.cross_viscosity.map(|a| a * record.mass));
         }
         for (slot, record) in self.interface.solid.slots() {
-            let force = &self.solid_forces[record];
-            let mass = self.interface.solid.own_mass[slot];
-            add(std::array::from_fn(|d| force.stress_force[d] + mass * force.cross_viscosity[d]));
+            add(self.solid_forces[record].force(self.interface.solid.own_mass[slot]));
         }
         if scale > 0.0 {
             let mismatch = sum.iter().fold(0.0_f64, |m, s| m.max(s.abs())) / scale;

@@ -12,8 +12,8 @@ pub struct ForeignSolid {
     kinds: Vec<ProbeKind>,
     dimension: usize,
     first: Vec<[f64; 3]>,
-    /// For each displacement probe the records that are nearest to its point at first.
-    nearest: Vec<Vec<usize>>,
+    /// The records that each probe is about, where it is not about all of them.
+    chosen: Vec<Vec<usize>>,
     values: Vec<f64>,
 }
 
@@ -28,7 +28,7 @@ impl ForeignSolid {
             kinds: scene.probes.iter().map(|p| p.kind).filter(|k| k.phase() == Phase::Solid).collect(),
             dimension: scene.dimension,
             first: Vec::new(),
-            nearest: Vec::new(),
+            chosen: Vec::new(),
             values: Vec::new(),
         })
     }
@@ -39,16 +39,16 @@ impl ForeignSolid {
     pub fn measure(&mut self, records: &[StateRecord], forces: &[ForceRecord]) -> &[f64] {
         if self.first.is_empty() {
             self.first = records.iter().map(|r| r.position).collect();
-            self.nearest = self.kinds.iter().map(|kind| self.nearest_to(kind)).collect();
+            self.chosen = self.kinds.iter().map(|kind| self.choose(kind)).collect();
         }
         self.values.clear();
-        for (kind, nearest) in self.kinds.iter().zip(&self.nearest) {
+        for (kind, chosen) in self.kinds.iter().zip(&self.chosen) {
             match kind {
                 ProbeKind::Displacement { .. } => {
                     for d in 0..self.dimension {
                         let sum: f64 =
-                            nearest.iter().map(|&i| records[i].position[d] - self.first[i][d]).sum();
-                        self.values.push(sum / nearest.len() as f64);
+                            chosen.iter().map(|&i| records[i].position[d] - self.first[i][d]).sum();
+                        self.values.push(sum / chosen.len() as f64);
                     }
                 }
                 ProbeKind::KineticEnergy { .. } => {
@@ -56,13 +56,10 @@ impl ForeignSolid {
                         |r: &StateRecord| 0.5 * r.mass * r.velocity.iter().map(|v| v * v).sum::<f64>();
                     self.values.push(records.iter().map(energy).sum());
                 }
-                ProbeKind::Force { within } => {
+                ProbeKind::Force { .. } => {
                     for d in 0..self.dimension {
-                        let inside = |i: &usize| within.is_none_or(|b| holds(&b, &self.first[*i], 0.0));
-                        let force = |i: usize| {
-                            records[i].mass * forces[i].cross_viscosity[d] + forces[i].stress_force[d]
-                        };
-                        self.values.push((0..records.len()).filter(inside).map(force).sum());
+                        let force = |&i: &usize| forces[i].force(records[i].mass)[d];
+                        self.values.push(chosen.iter().map(force).sum());
                     }
                 }
                 _ => {
@@ -76,9 +73,15 @@ impl ForeignSolid {
         &self.values
     }
 
-    fn nearest_to(&self, kind: &ProbeKind) -> Vec<usize> {
-        let ProbeKind::Displacement { at } = kind else { return Vec::new() };
-        nearest(self.first.iter().copied(), *at)
+    fn choose(&self, kind: &ProbeKind) -> Vec<usize> {
+        match *kind {
+            ProbeKind::Displacement { at } => nearest(self.first.iter().copied(), at),
+            ProbeKind::Force { within } => {
+                let inside = |i: &usize| within.is_none_or(|b| holds(&b, &self.first[*i], 0.0));
+                (0..self.first.len()).filter(inside).collect()
+            }
+            _ => Vec::new(),
+        }
     }
 
     /// Writes the records as a frame.

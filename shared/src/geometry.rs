@@ -229,8 +229,7 @@ fn solid_point<const D: usize>(
     SolidPoint { position, velocity: if clamped { [0.0; D] } else { velocity }, clamped, body: index as u32 }
 }
 
-/// Whether a box, its surface included, holds a point.
-/// A point lies in a box or within `tolerance` (m) of it.
+/// Whether a point lies in a box, its surface included, or within `tolerance` (m) of it.
 pub fn holds<const D: usize>(block: &Block, position: &[f64; D], tolerance: f64) -> bool {
     (0..D).all(|a| block.min[a] - tolerance <= position[a] && position[a] <= block.max[a] + tolerance)
 }

@@ -50,6 +50,13 @@ pub struct ForceRecord {
     pub stress_force: [f64; 3],
 }
 
+impl ForceRecord {
+    /// Whole force on a particle of this mass (kg, 2D: kg/m), N (2D: N/m).
+    pub fn force(&self, mass: f64) -> [f64; 3] {
+        std::array::from_fn(|d| mass * self.cross_viscosity[d] + self.stress_force[d])
+    }
+}
+
 /// How the sender of a state is.
 pub mod status {
     /// The run goes on.

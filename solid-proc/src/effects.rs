@@ -45,16 +45,13 @@ fn derive(scene: &Scene, effect: EffectName) -> Derived {
         EffectName::ClampFace if hypoelastic => {
             Derived::Impossible("only the total-Lagrangian solid corrects its clamps".into())
         }
-        EffectName::ClampFace if scene.shapes.iter().all(|s| s.clamp.is_empty()) => {
-            Derived::Impossible("nothing is clamped".into())
-        }
-        EffectName::ClampFace => Derived::On("clamps hold at their boxes' faces".into()),
         EffectName::WallClamp if !hypoelastic => {
             Derived::Impossible("only the hypoelastic solid's clamps carry stress".into())
         }
-        EffectName::WallClamp if scene.shapes.iter().all(|s| s.clamp.is_empty()) => {
+        EffectName::ClampFace | EffectName::WallClamp if scene.shapes.iter().all(|s| s.clamp.is_empty()) => {
             Derived::Impossible("nothing is clamped".into())
         }
+        EffectName::ClampFace => Derived::On("clamps hold at their boxes' faces".into()),
         EffectName::WallClamp => Derived::Off("clamped rows carry the solid's own stress".into()),
         EffectName::SleepingSolid if scene.fluid.is_none() => {
             Derived::Impossible("no fluid that could wake it".into())

@@ -150,9 +150,8 @@ impl<const D: usize> Role for Solid<D> {
 
     fn advance(&mut self, step: u64, stage: u32, dt: f64, forces: &[ForceRecord]) -> Result<(), Diverged> {
         for force in forces {
-            let mass = self.model.mass(force.id);
-            self.load.force[force.id as usize] =
-                std::array::from_fn(|d| mass * force.cross_viscosity[d] + force.stress_force[d]);
+            let whole = force.force(self.model.mass(force.id));
+            self.load.force[force.id as usize] = std::array::from_fn(|d| whole[d]);
         }
         if stage == 0 {
             self.taken = self.sub_steps.choose(dt, self.limit);

@@ -1,7 +1,15 @@
 //! Fluid particles in the engine's order, outside any run: what instruction counts and benchmarks work on.
 
 use halfstep_fluid::columns::Shown;
+use halfstep_fluid::effects::Pass;
+use halfstep_fluid::rates::{PairEffect, RateLaw, RateSum};
+use halfstep_shared::kernel::{CubicSpline, Kernel};
+use halfstep_shared::lane::Isa;
 use halfstep_shared::neighbours::{ClusterList, Rows};
+use halfstep_shared::pair;
+
+/// Smoothing length of [`RatePass`], m, for particles about 1 m apart.
+pub const SMOOTHING_LENGTH: f64 = 1.33;
 
 /// One particle, before the sort.
 #[derive(Clone, Copy, Debug)]
@@ -48,5 +56,18 @@ impl Patch {
         let mut list = ClusterList::default();
         list.build(&shown.position, &shown.position, &rows, reach);
         Self { shown, list, id }
+    }
+}
+
+/// The fluid's rate pass over a patch, with the cubic spline.
+#[derive(Debug)]
+pub struct RatePass<'a>(pub &'a Patch, pub &'a mut [RateSum<2>]);
+
+impl Pass<2> for RatePass<'_> {
+    fn run<E: PairEffect<2>>(self, effects: E) {
+        let shown = &self.0.shown;
+        let kernel = CubicSpline::<2>::new(SMOOTHING_LENGTH);
+        let law = RateLaw { kernel, effects, targets: shown, sources: shown };
+        pair::pass(Isa::detect(), &law, &self.0.list, self.1);
     }
 }

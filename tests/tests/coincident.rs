@@ -3,30 +3,16 @@
 use halfstep::cross_viscosity::CrossViscosity;
 use halfstep_fluid::artificial_viscosity::ArtificialViscosity;
 use halfstep_fluid::density_diffusion::{Diffusion, Simple, Strength};
-use halfstep_fluid::effects::{Effects, Pass};
-use halfstep_fluid::rates::{PairEffect, RateLaw, RateSum};
+use halfstep_fluid::effects::Effects;
+use halfstep_fluid::rates::RateSum;
 use halfstep_shared::geometry;
 use halfstep_shared::interface::{Interface, Parameters};
-use halfstep_shared::kernel::{CubicSpline, Kernel};
 use halfstep_shared::lane::{Isa, LANES};
 use halfstep_shared::neighbours::PADDING;
-use halfstep_shared::pair;
 use halfstep_shared::protocol::StateRecord;
 use halfstep_shared::scene::{self, ArtificialViscosity as Coefficients, Scene};
-use halfstep_tests::patch::{Particle, Patch};
+use halfstep_tests::patch::{Particle, Patch, RatePass, SMOOTHING_LENGTH as H};
 use std::path::Path;
-
-const H: f64 = 1.33;
-
-struct Over<'a>(&'a Patch, &'a mut [RateSum<2>]);
-
-impl Pass<2> for Over<'_> {
-    fn run<E: PairEffect<2>>(self, effects: E) {
-        let shown = &self.0.shown;
-        let law = RateLaw { kernel: CubicSpline::<2>::new(H), effects, targets: shown, sources: shown };
-        pair::pass(Isa::detect(), &law, &self.0.list, self.1);
-    }
-}
 
 /// Acceleration and density rate of each particle, with artificial viscosity and density diffusion.
 fn rates(particles: &[Particle]) -> Vec<[f64; 3]> {
@@ -36,7 +22,7 @@ fn rates(particles: &[Particle]) -> Vec<[f64; 3]> {
     let coefficients = Coefficients { linear: 1.0, quadratic: 2.0 };
     effects.artificial_viscosity = Some(ArtificialViscosity::new(coefficients, 10.0, H));
     effects.density_diffusion = Some(Diffusion::Simple(Simple(Strength(1.0))));
-    effects.composition(Over(&patch, &mut sums));
+    effects.composition(RatePass(&patch, &mut sums));
     let mut rates = vec![[0.0; 3]; particles.len()];
     for (slot, &id) in patch.id.iter().enumerate().filter(|(_, id)| **id != PADDING) {
         let (sum, k) = (&sums[slot / LANES], slot % LANES);

@@ -7,7 +7,7 @@
 //!   D rho_f / Dt += rho_f sum_s m_s / rho_s v_fs . grad W,   m_f a_f += -sum_s m_f m_s (p_f/rho_f² + p_s/rho_s²) grad W,
 //! and the solid receives the opposite of each pair force. Its density and strain do not see the fluid.
 
-use super::{FluidSum, Interface, Side, SolidForce};
+use super::{FluidSum, Interface, Parameters, Side, SolidForce};
 use crate::extrapolation::{Extrapolation, ExtrapolationSum};
 use crate::kernel::Kernel;
 use crate::lane::{Arch, LANES, Lane};
@@ -19,28 +19,39 @@ pub(super) fn show_pressure<const D: usize>(interface: &mut Interface<D>) {
     sums.resize(interface.solid_list.clusters(), ExtrapolationSum::default());
     let p = &interface.parameters;
     with_kernel!(p.kernel, p.smoothing_length, D, |kernel| {
-        let law = Extrapolation {
-            kernel,
-            gravity: p.gravity,
-            targets: &interface.solid.position,
-            sources: &interface.fluid.position,
-            density: &interface.fluid.density,
-            pressure: &interface.fluid.pressure,
-        };
+        let law = extrapolation(interface, kernel);
         pair::pass(p.isa, &law, &interface.solid_list, &mut sums);
     });
     let displaced = p.fluid.density / p.solid_density;
     let side = &mut interface.solid;
     for slot in 0..side.density.len() {
-        let mut pressure = sums[slot / LANES].pressure(slot % LANES).unwrap_or(0.0);
-        if p.non_negative_pressure {
-            pressure = pressure.max(0.0);
-        }
+        let pressure = extrapolated(p, &sums[slot / LANES], slot % LANES);
         side.pressure[slot] = pressure;
         side.density[slot] = p.fluid.density_at(pressure);
         side.mass[slot] = side.own_mass[slot] * displaced;
     }
     interface.wall_sums = sums;
+}
+
+/// The fluid's pressure, extrapolated to the solid.
+pub(super) fn extrapolation<K: Kernel<D>, const D: usize>(
+    interface: &Interface<D>,
+    kernel: K,
+) -> Extrapolation<'_, K, D> {
+    Extrapolation {
+        kernel,
+        gravity: interface.parameters.gravity,
+        targets: &interface.solid.position,
+        sources: &interface.fluid.position,
+        density: &interface.fluid.density,
+        pressure: &interface.fluid.pressure,
+    }
+}
+
+/// The pressure that the k-th of four solid particles shows; 0 without fluid around, and not below 0 unless the scene lets it.
+pub(super) fn extrapolated<const D: usize>(p: &Parameters<D>, sum: &ExtrapolationSum, k: usize) -> f64 {
+    let pressure = sum.pressure(k).unwrap_or(0.0);
+    if p.non_negative_pressure { pressure.max(0.0) } else { pressure }
 }
 
 /// What a solid particle shows the fluid, which may depend on where the fluid is.

@@ -13,7 +13,7 @@
 //! Fluid and coupler have the same records, so they have the same normals without a message. Solid particles of no thin
 //! plate have n = 0, o = 0: half of everything on either side, which is the one state that they show.
 
-use super::moving_wall::Shown;
+use super::moving_wall::{Shown, extrapolated, extrapolation};
 use super::{Interface, Parameters, Side};
 use crate::extrapolation::{Extrapolation, ExtrapolationSum};
 use crate::kernel::Kernel;
@@ -249,17 +249,8 @@ pub(super) fn show_pressures<const D: usize>(interface: &mut Interface<D>, recor
     sums.resize(interface.solid_list.clusters(), Default::default());
     let p = &interface.parameters;
     with_kernel!(p.kernel, p.smoothing_length, D, |kernel| {
-        let law = FromBothSides {
-            extrapolation: Extrapolation {
-                kernel,
-                gravity: p.gravity,
-                targets: &interface.solid.position,
-                sources: &interface.fluid.position,
-                density: &interface.fluid.density,
-                pressure: &interface.fluid.pressure,
-            },
-            shown: screen.shown(interface),
-        };
+        let law =
+            FromBothSides { extrapolation: extrapolation(interface, kernel), shown: screen.shown(interface) };
         pair::pass(p.isa, &law, &interface.solid_list, &mut sums);
     });
     let displaced = p.fluid.density / p.solid_density;
@@ -272,10 +263,7 @@ pub(super) fn show_pressures<const D: usize>(interface: &mut Interface<D>, recor
         let mass = solid.own_mass[slot] * displaced;
         let mut mean = 0.0;
         for (face, sum) in screen.faces.iter_mut().zip(sums[slot / LANES]) {
-            let mut pressure = sum.pressure(slot % LANES).unwrap_or(0.0);
-            if p.non_negative_pressure {
-                pressure = pressure.max(0.0);
-            }
+            let pressure = extrapolated(p, &sum, slot % LANES);
             let density = p.fluid.density_at(pressure);
             face.pressure_term[slot] = pressure / (density * density);
             face.volume[slot] = mass / density;

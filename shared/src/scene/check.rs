@@ -291,21 +291,19 @@ impl Check<'_> {
         if self.report.has_any(&["resolution", "shape", "dimension"]) {
             return;
         }
-        let holds = |b: &Block, margin: f64, at: &[f64; 3]| {
-            (0..self.scene.dimension).all(|a| b.min[a] - margin <= at[a] && at[a] <= b.max[a] + margin)
-        };
         match &probe.kind {
             ProbeKind::Displacement { at } => {
                 let near = |s: &&Shape| {
                     let bounds = geometry::bounding_box(s, self.scene);
-                    s.phase == Phase::Solid && holds(&bounds, 2.0 * self.scene.resolution, at)
+                    s.phase == Phase::Solid && geometry::holds(&bounds, at, 2.0 * self.scene.resolution)
                 };
                 if !self.scene.shapes.iter().any(|s| near(&s)) {
                     self.wrong(&format!("{key}.at"), "is in or beside no solid shape");
                 }
             }
             ProbeKind::Pressure { at }
-                if !self.report.has("numerics.domain") && !holds(&geometry::domain(self.scene), 0.0, at) =>
+                if !self.report.has("numerics.domain")
+                    && !geometry::holds(&geometry::domain(self.scene), at, 0.0) =>
             {
                 self.wrong(&format!("{key}.at"), "is outside the domain: no fluid gets there");
             }

@@ -26,23 +26,28 @@ impl<const D: usize> Hypoelastic<D> {
         let (k, rho0) = (self.material.bulk_modulus(), self.material.density);
         for slot in 0..self.id.len() {
             let rho = self.now.density[slot];
-            let p = k * (rho / rho0 - 1.0);
-            self.pressure[slot] = p;
-            let s = self.stress_at(slot);
-            let sigma: [[f64; D]; D] =
-                std::array::from_fn(|a| std::array::from_fn(|b| if a == b { s[a][b] - p } else { s[a][b] }));
-            let inverse = 1.0 / (rho * rho);
-            self.sources[slot] = Source {
-                position: std::array::from_fn(|d| self.now.position[d][slot]),
-                velocity: std::array::from_fn(|d| self.now.velocity[d][slot]),
-                density: rho,
-                volume: self.mass / rho,
-                stress_term: sigma.map(|row| row.map(|s| s * inverse)),
-            };
-            if self.artificial_stress.is_some() {
-                let strength = self.material.artificial_stress.strength;
-                self.artificial[slot] = artificial_stress::tensor(strength, sigma, rho);
-            }
+            self.show(slot, k * (rho / rho0 - 1.0));
+        }
+    }
+
+    /// What neighbours read of a particle at a pressure, from its other columns.
+    pub(super) fn show(&mut self, slot: usize, p: f64) {
+        let rho = self.now.density[slot];
+        self.pressure[slot] = p;
+        let s = self.stress_at(slot);
+        let sigma: [[f64; D]; D] =
+            std::array::from_fn(|a| std::array::from_fn(|b| if a == b { s[a][b] - p } else { s[a][b] }));
+        let inverse = 1.0 / (rho * rho);
+        self.sources[slot] = Source {
+            position: std::array::from_fn(|d| self.now.position[d][slot]),
+            velocity: std::array::from_fn(|d| self.now.velocity[d][slot]),
+            density: rho,
+            volume: self.mass / rho,
+            stress_term: sigma.map(|row| row.map(|s| s * inverse)),
+        };
+        if self.artificial_stress.is_some() {
+            let strength = self.material.artificial_stress.strength;
+            self.artificial[slot] = artificial_stress::tensor(strength, sigma, rho);
         }
     }
 

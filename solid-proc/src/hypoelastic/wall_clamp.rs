@@ -4,8 +4,6 @@
 //! Kayaki's text leaves open whether the plate's clamp is made of the solid's particles or of the wall's: this is the second
 //! reading. Off unless `effects.wall-clamp` is on.
 
-use super::artificial_stress;
-use super::columns::Source;
 use super::model::Hypoelastic;
 use crate::columns::{Vectors, vectors};
 use halfstep_shared::extrapolation::{Extrapolation, ExtrapolationSum};
@@ -63,26 +61,13 @@ impl<const D: usize> Hypoelastic<D> {
                 continue;
             }
             let p = clamp.sums[slot / LANES].pressure(slot % LANES).unwrap_or(0.0);
-            let rho = rho0 * (1.0 + p / k);
-            let sigma: [[f64; D]; D] =
-                std::array::from_fn(|a| std::array::from_fn(|b| if a == b { -p } else { 0.0 }));
-            self.pressure[slot] = p;
-            self.now.density[slot] = rho;
-            self.sources[slot] = Source {
-                density: rho,
-                volume: self.mass / rho,
-                stress_term: sigma.map(|row| row.map(|s| s / (rho * rho))),
-                ..self.sources[slot]
-            };
+            self.now.density[slot] = rho0 * (1.0 + p / k);
             for a in 0..D {
                 for b in a..D {
                     self.now.stress[a][b][slot] = 0.0;
                 }
             }
-            if self.artificial_stress.is_some() {
-                let strength = self.material.artificial_stress.strength;
-                self.artificial[slot] = artificial_stress::tensor(strength, sigma, rho);
-            }
+            self.show(slot, p);
         }
         self.wall_clamp = Some(clamp);
     }

@@ -5,15 +5,10 @@
 use halfstep_fluid::artificial_viscosity::ArtificialViscosity;
 use halfstep_fluid::density_diffusion::{DeltaSph, Diffusion, Simple, Strength};
 use halfstep_fluid::effects::{Effects, Pass};
-use halfstep_fluid::rates::{PairEffect, RateLaw, RateSum};
-use halfstep_shared::kernel::{CubicSpline, Kernel};
-use halfstep_shared::lane::Isa;
-use halfstep_shared::pair;
+use halfstep_fluid::rates::RateSum;
 use halfstep_shared::scene::ArtificialViscosity as Coefficients;
-use halfstep_tests::patch::{Particle, Patch};
+use halfstep_tests::patch::{Particle, Patch, RatePass, SMOOTHING_LENGTH as H};
 use std::process::ExitCode;
-
-const H: f64 = 1.33;
 
 /// 1600 particles on a disturbed lattice.
 fn patch() -> Patch {
@@ -29,22 +24,12 @@ fn patch() -> Patch {
     Patch::new(&(0..1600).map(particle).collect::<Vec<_>>(), 2.3 * H)
 }
 
-struct Over<'a>(&'a Patch, &'a mut [RateSum<2>]);
-
-impl Pass<2> for Over<'_> {
-    fn run<E: PairEffect<2>>(self, effects: E) {
-        let shown = &self.0.shown;
-        let law = RateLaw { kernel: CubicSpline::<2>::new(H), effects, targets: shown, sources: shown };
-        pair::pass(Isa::detect(), &law, &self.0.list, self.1);
-    }
-}
-
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let patch = patch();
     let gradient = vec![[0.01, 0.02]; patch.id.len()];
     let mut sums = vec![RateSum::default(); patch.list.clusters()];
-    let pass = Over(&patch, &mut sums);
+    let pass = RatePass(&patch, &mut sums);
     let damping = ArtificialViscosity::new(Coefficients { linear: 0.1, quadratic: 0.0 }, 10.0, H);
     let simple = Simple(Strength(0.1));
     let full = DeltaSph { strength: Strength(0.1), gradient: &gradient };

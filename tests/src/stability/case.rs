@@ -38,9 +38,6 @@ pub struct Case {
     /// As three processes instead of threads of one.
     #[serde(default)]
     pub processes: bool,
-    /// Only in the long form.
-    #[serde(default)]
-    pub long: bool,
     /// What must hold.
     pub criteria: Vec<Criterion>,
     /// Runs without its remedies.

@@ -26,10 +26,8 @@ pub struct Criterion {
     /// What is taken of a probe's curve.
     #[serde(default)]
     pub of: Of,
-    /// Part of the curve, s.
+    /// Where the part of the curve that counts begins, s.
     pub from: Option<f64>,
-    /// Part of the curve, s.
-    pub to: Option<f64>,
     /// The probe's value, or its range, is given over this.
     pub over: Option<f64>,
     /// For `beyond`: 0 for x, 1 for y.
@@ -59,12 +57,8 @@ pub enum What {
     Gap,
     /// Largest unexplained energy of any phase over the energy in play.
     EnergyGrowth,
-    /// Change of kinetic plus stored energy of a solid alone, over its first value.
-    EnergyDrift,
     /// Largest drift of momentum where nothing outside acts.
     Momentum,
-    /// Largest relative change of the fluid's density.
-    Density,
     /// Fluid particles taken out because they left the domain, over their number at the start.
     Removed,
     /// Something of a probe's curve.
@@ -94,8 +88,6 @@ pub enum Of {
     Last,
     /// Its largest value.
     Max,
-    /// Its smallest value.
-    Min,
     /// Its mean over time.
     Mean,
     /// Largest minus smallest value.
@@ -124,9 +116,7 @@ impl Criterion {
         match self.what {
             What::Gap => "gap, dx",
             What::EnergyGrowth => "energy growth",
-            What::EnergyDrift => "energy drift",
             What::Momentum => "momentum drift",
-            What::Density => "density error",
             What::Removed => "part removed",
             What::Probe => return self.probe.clone(),
             What::Beyond => "behind the wall, dx",
@@ -159,9 +149,7 @@ impl Criterion {
                 let both = [audit.energy_growth.fluid, audit.energy_growth.solid];
                 both.into_iter().flatten().fold(f64::NAN, f64::max)
             }
-            What::EnergyDrift => audit.energy_drift.map_or(f64::NAN, f64::abs),
             What::Momentum => audit.momentum_drift.unwrap_or(f64::NAN),
-            What::Density => audit.density_error.unwrap_or(f64::NAN),
             What::Removed => report.particles.removed as f64 / report.particles.fluid as f64,
             What::Probe => self.of_curve(run),
             What::Beyond => self.farthest(&run.frames_or_empty("fluid"), FLUID) / dx,
@@ -183,7 +171,7 @@ impl Criterion {
 
     fn curve(&self, run: &Outcome) -> crate::Curve {
         let curve = crate::Curve::of(&run.probes(), &self.probe);
-        curve.between(self.from.unwrap_or(0.0), self.to.unwrap_or(f64::INFINITY))
+        curve.between(self.from.unwrap_or(0.0), f64::INFINITY)
     }
 
     fn of_curve(&self, run: &Outcome) -> f64 {
@@ -192,7 +180,6 @@ impl Criterion {
         let value = match self.of {
             Of::Last => curve.values.last().copied().unwrap_or(f64::NAN),
             Of::Max => most(1.0),
-            Of::Min => most(-1.0),
             Of::Mean => curve.mean(),
             Of::Range => most(1.0) - most(-1.0),
             Of::Rate => curve.slope(),
