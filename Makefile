@@ -8,7 +8,7 @@ BIN := $(or $(CARGO_TARGET_DIR),target)/release/halfstep
 
 # Builds, and runs the elastic gate coarse enough to watch: three particles across the plate.
 gate: setup
-	cargo build --release -p halfstep
+	cargo build --release -p halfstep-cli
 	$(BIN) run scenes/elastic-gate.toml --set resolution=0.00166666666666666667 --out out/elastic-gate --force
 	@echo "The gate's tip beside the experiment: $(CURDIR)/out/elastic-gate/plot.png"
 

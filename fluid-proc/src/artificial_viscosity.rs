@@ -1,12 +1,10 @@
-//! Monaghan's artificial viscosity between fluid particles: -Pi_ij of [`halfstep_shared::artificial_viscosity`] in the
+//! Monaghan's artificial viscosity between fluid particles: -Pi_ij of [`halfstep_sph::artificial_viscosity`] in the
 //! bracket of the momentum equation, Kayaki's eq. (22).
 
 use crate::effects::FluidEffect;
 use crate::rates::{FluidPair, PairEffect, PairRates};
-use halfstep_shared::lane::Arch;
-use halfstep_shared::scene::{
-    ArtificialViscosity as Coefficients, Decision, Derived, EffectName, Fluid, Scene,
-};
+use halfstep_scene::{ArtificialViscosity as Coefficients, Decision, Derived, EffectName, Fluid, Scene};
+use halfstep_sph::lane::Arch;
 
 /// The effect.
 #[derive(Clone, Copy, Debug)]

@@ -1,11 +1,11 @@
 //! Columns of the fluid particles and what the pair pass reads of any source set.
 
-use halfstep_shared::columns::copy;
-pub use halfstep_shared::columns::{Vectors, fit, vectors};
-use halfstep_shared::geometry::FluidPoint;
-use halfstep_shared::lane::{LANES, Lane};
-use halfstep_shared::neighbours::{PADDING, Rows};
-use halfstep_shared::state_equation::StateEquation;
+use halfstep_scene::geometry::FluidPoint;
+use halfstep_sph::columns::copy;
+pub use halfstep_sph::columns::{Vectors, fit, vectors};
+use halfstep_sph::lane::{LANES, Lane};
+use halfstep_sph::neighbours::{PADDING, Rows};
+use halfstep_sph::state_equation::StateEquation;
 
 /// A particle's state but for where it is as a target, and what the pair pass reads of a neighbour, side by side: one
 /// cache line in two dimensions.

@@ -12,9 +12,9 @@ use crate::columns::four;
 use crate::effects::FluidEffect;
 use crate::fluid::Fluid;
 use crate::rates::{FluidPair, PairEffect, PairRates};
-use halfstep_shared::lane::{Arch, Lane};
-use halfstep_shared::pair::dot;
-use halfstep_shared::scene::{Decision, DensityDiffusion as Variant, Derived, EffectName, Scene};
+use halfstep_scene::{Decision, DensityDiffusion as Variant, Derived, EffectName, Scene};
+use halfstep_sph::lane::{Arch, Lane};
+use halfstep_sph::pair::dot;
 
 /// delta h c0, m²/s.
 #[derive(Clone, Copy, Debug)]

@@ -7,11 +7,11 @@
 use crate::columns::Shown;
 use crate::density_diffusion::DensityDiffusion as Diffusion;
 use crate::effects::FluidEffect;
-use halfstep_shared::kernel::Kernel;
-use halfstep_shared::lane::{Arch, LANES, Lane};
-use halfstep_shared::pair::{PairLaw, distance};
-use halfstep_shared::scene::{Decision, DensityDiffusion, Derived, EffectName, Preset, Scene};
-use halfstep_shared::tensor::moment_inverse;
+use halfstep_scene::{Decision, DensityDiffusion, Derived, EffectName, Preset, Scene};
+use halfstep_sph::kernel::Kernel;
+use halfstep_sph::lane::{Arch, LANES, Lane};
+use halfstep_sph::pair::{PairLaw, distance};
+use halfstep_sph::tensor::moment_inverse;
 use nalgebra::{SMatrix, SVector};
 
 /// Whether the gradient is computed at stage 0 only and used at both stages: unless the scene asks for Kayaki's scheme,

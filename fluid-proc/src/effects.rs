@@ -1,6 +1,6 @@
 //! The fluid's effects: what takes part in the pair pass, decided once by the scene.
 //!
-//! [`halfstep_shared::fluid_effects`] is the list. A pass is compiled for the compositions named in
+//! [`halfstep_scene::fluid_effects`] is the list. A pass is compiled for the compositions named in
 //! [`Effects::composition`]; there an absent effect does not exist. Any other composition runs the complete law, which
 //! asks for each effect whether it is there.
 
@@ -9,8 +9,8 @@ use crate::density_gradient;
 use crate::fluid::Fluid;
 use crate::rates::PairEffect;
 use crate::wall_guard;
-use halfstep_shared::interface::{non_negative_pressure, thin_plate_screen};
-use halfstep_shared::scene::{Decision, EffectName, Scene};
+use halfstep_interface::{non_negative_pressure, thin_plate_screen};
+use halfstep_scene::{Decision, EffectName, Scene};
 
 /// An effect of the list.
 pub trait FluidEffect<const D: usize> {
@@ -95,7 +95,7 @@ macro_rules! chain {
     ($effects:ident $module:ident $($rest:tt)*) => { ($effects.$module, chain!($effects $($rest)*)) };
 }
 
-halfstep_shared::fluid_effects!(compose);
+halfstep_scene::fluid_effects!(compose);
 
 /// What a scene with fluid decides about each of the fluid's effects.
 pub fn decide(scene: &Scene) -> Vec<Decision> {

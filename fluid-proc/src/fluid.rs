@@ -12,18 +12,18 @@ use crate::time_step::Limits;
 use crate::viscosity::StressTerm;
 use crate::wall::{Damping, Walls};
 use crate::wall_guard::{self, GUARD};
-use halfstep_shared::bounds::Bounds;
-use halfstep_shared::failure::{Diverged, RoleName};
-use halfstep_shared::geometry;
-use halfstep_shared::interface::{Parameters, non_negative_pressure};
-use halfstep_shared::lane::{Isa, LANES};
-use halfstep_shared::neighbours::{ClusterList, PADDING, Rows};
-use halfstep_shared::output::Frame;
-use halfstep_shared::protocol::{ForceRecord, MAX_PROBE_VALUES, StateRecord};
-use halfstep_shared::role::{Costs, CoverageError, Role};
-use halfstep_shared::scene::{DensityDiffusion, EffectName, KernelName, Phase, ProbeKind, Scene};
-use halfstep_shared::state_equation::StateEquation;
-use halfstep_shared::with_kernel;
+use halfstep_interface::{Parameters, non_negative_pressure};
+use halfstep_output::Frame;
+use halfstep_role::role::{Costs, CoverageError, Role};
+use halfstep_scene::bounds::Bounds;
+use halfstep_scene::geometry;
+use halfstep_scene::{DensityDiffusion, EffectName, KernelName, Phase, ProbeKind, Scene};
+use halfstep_sph::lane::{Isa, LANES};
+use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
+use halfstep_sph::state_equation::StateEquation;
+use halfstep_sph::with_kernel;
+use halfstep_wire::failure::{Diverged, RoleName};
+use halfstep_wire::protocol::{ForceRecord, MAX_PROBE_VALUES, StateRecord};
 
 /// Margin of the neighbour lists over h: lists are renewed when two particles may have come that much closer.
 const SKIN: f64 = 0.3;
@@ -213,7 +213,7 @@ impl<const D: usize> Fluid<D> {
             value: worst.value,
             step,
             stage,
-            position: halfstep_shared::wide(position),
+            position: halfstep_wire::wide(position),
         })
     }
 

@@ -2,10 +2,10 @@
 
 use crate::Fluid;
 use crate::time_step::Limits;
-use halfstep_shared::lane::Isa;
-use halfstep_shared::neighbours::PADDING;
-use halfstep_shared::role::{Role, audit};
-use halfstep_shared::scene::{self, Scene};
+use halfstep_role::role::{Role, audit};
+use halfstep_scene::{self as scene, Scene};
+use halfstep_sph::lane::Isa;
+use halfstep_sph::neighbours::PADDING;
 use std::path::Path;
 
 fn tank(overrides: &[&str]) -> Scene {

@@ -2,13 +2,13 @@
 
 use crate::columns::Columns;
 use crate::rates::RateSum;
-use halfstep_shared::columns::bounds;
-use halfstep_shared::interface::{Interface, Parameters};
-use halfstep_shared::lane::LANES;
-use halfstep_shared::neighbours::{PADDING, Rows};
-use halfstep_shared::protocol::StateRecord;
-use halfstep_shared::role::CoverageError;
-use halfstep_shared::wide;
+use halfstep_interface::{Interface, Parameters};
+use halfstep_role::role::CoverageError;
+use halfstep_sph::columns::bounds;
+use halfstep_sph::lane::LANES;
+use halfstep_sph::neighbours::{PADDING, Rows};
+use halfstep_wire::protocol::StateRecord;
+use halfstep_wire::wide;
 
 /// State of the coupling.
 pub struct Coupling<const D: usize> {

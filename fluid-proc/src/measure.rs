@@ -2,12 +2,12 @@
 
 use crate::columns::Source;
 use crate::fluid::Fluid;
-use halfstep_shared::neighbours::PADDING;
-use halfstep_shared::output::{Frame, FramePoint};
-use halfstep_shared::protocol::MAX_PROBE_VALUES;
-use halfstep_shared::role::audit;
-use halfstep_shared::scene::{Phase, ProbeKind};
-use halfstep_shared::wide;
+use halfstep_output::{Frame, FramePoint};
+use halfstep_role::role::audit;
+use halfstep_scene::{Phase, ProbeKind};
+use halfstep_sph::neighbours::PADDING;
+use halfstep_wire::protocol::MAX_PROBE_VALUES;
+use halfstep_wire::wide;
 use xxhash_rust::xxh3::Xxh3;
 
 impl<const D: usize> Fluid<D> {
@@ -36,7 +36,7 @@ impl<const D: usize> Fluid<D> {
                 let x = self.position(s);
                 let r2: f64 = (0..D).map(|d| (x[d] - at[d]).powi(2)).sum();
                 if r2 < 4.0 * h * h {
-                    let w = halfstep_shared::kernel::value_at::<D>(self.kernel, h, r2.sqrt());
+                    let w = halfstep_sph::kernel::value_at::<D>(self.kernel, h, r2.sqrt());
                     // Extrapolated along gravity, as toward a wall: exact at rest.
                     let head: f64 = (0..D).map(|d| self.gravity[d] * (at[d] - x[d])).sum();
                     let particle = &self.columns.now.sources[s];

@@ -3,10 +3,10 @@
 
 use crate::columns::{Columns, Source};
 use crate::rates::RateSum;
-use halfstep_shared::bounds::Bounds;
-use halfstep_shared::lane::LANES;
-use halfstep_shared::neighbours::PADDING;
-use halfstep_shared::state_equation::StateEquation;
+use halfstep_scene::bounds::Bounds;
+use halfstep_sph::lane::LANES;
+use halfstep_sph::neighbours::PADDING;
+use halfstep_sph::state_equation::StateEquation;
 
 /// Slots that one task walks over; a whole number of clusters.
 const TASK: usize = 1024;

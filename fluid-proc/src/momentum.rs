@@ -12,6 +12,6 @@ pub fn pressure_and_continuity<const D: usize>(pair: &FluidPair<D>) -> PairRates
     PairRates {
         bracket: -(pair.pressure_term_i + pair.pressure_term_j),
         density: pair.density_i * pair.approach,
-        vector: [halfstep_shared::lane::Lane::ZERO; D],
+        vector: [halfstep_sph::lane::Lane::ZERO; D],
     }
 }

@@ -1,9 +1,9 @@
 //! Walls that move by prescription.
 
 use crate::columns::{Vectors, vectors};
-use halfstep_shared::geometry::WallPoint;
-use halfstep_shared::neighbours::Rows;
-use halfstep_shared::scene::{Motion, Phase, Placement, Scene};
+use halfstep_scene::geometry::WallPoint;
+use halfstep_scene::{Motion, Phase, Placement, Scene};
+use halfstep_sph::neighbours::Rows;
 
 /// Where walls move, and where they are now.
 #[derive(Clone, Debug)]
@@ -25,7 +25,7 @@ pub struct Moving<const D: usize> {
 
 /// The motion of each shape of a scene; empty where no wall moves.
 pub fn motions(scene: &Scene) -> Vec<Option<Motion>> {
-    let walls = |s: &halfstep_shared::scene::Shape| s.motion.filter(|_| s.phase == Phase::Wall);
+    let walls = |s: &halfstep_scene::Shape| s.motion.filter(|_| s.phase == Phase::Wall);
     let motions: Vec<_> = scene.shapes.iter().map(walls).collect();
     if motions.iter().all(Option::is_none) { Vec::new() } else { motions }
 }

@@ -7,12 +7,12 @@ use crate::rates::{PairEffect, RateLaw, RateSum};
 use crate::viscosity::{self, VelocityGradient, ViscosityAtWall};
 use crate::wall::WallLaw;
 use crate::wall_guard::WallViscosity;
-use halfstep_shared::kernel::Kernel;
-use halfstep_shared::lane::LANES;
-use halfstep_shared::neighbours::ClusterList;
-use halfstep_shared::pair;
-use halfstep_shared::role::{Costs, fastest};
-use halfstep_shared::scene::EffectName;
+use halfstep_role::role::{Costs, fastest};
+use halfstep_scene::EffectName;
+use halfstep_sph::kernel::Kernel;
+use halfstep_sph::lane::LANES;
+use halfstep_sph::neighbours::ClusterList;
+use halfstep_sph::pair;
 
 impl<const D: usize> Fluid<D> {
     /// All sums of a half-step over fluid and walls.

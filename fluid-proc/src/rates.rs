@@ -2,10 +2,10 @@
 
 use crate::columns::Shown;
 use crate::momentum::pressure_and_continuity;
-use halfstep_shared::artificial_viscosity::damping;
-use halfstep_shared::kernel::Kernel;
-use halfstep_shared::lane::{Arch, Lane};
-use halfstep_shared::pair::{PairLaw, distance, dot};
+use halfstep_sph::artificial_viscosity::damping;
+use halfstep_sph::kernel::Kernel;
+use halfstep_sph::lane::{Arch, Lane};
+use halfstep_sph::pair::{PairLaw, distance, dot};
 
 /// One particle with one of its neighbours, four times.
 #[derive(Clone, Copy, Debug)]

@@ -6,11 +6,11 @@ use crate::density_diffusion::{DeltaSph, Hydrostatic, Simple, Strength};
 use crate::density_gradient::{GradientLaw, GradientSum};
 use crate::rates::{PairEffect, RateLaw, RateSum};
 use crate::viscosity::{self, StressTerm, VelocityGradient, ViscousStress};
-use halfstep_shared::kernel::{CubicSpline, Kernel};
-use halfstep_shared::lane::{Fused, Isa, LANES, Lane};
-use halfstep_shared::neighbours::{ClusterList, PADDING, Rows};
-use halfstep_shared::pair;
-use halfstep_shared::scene::ArtificialViscosity as Coefficients;
+use halfstep_scene::ArtificialViscosity as Coefficients;
+use halfstep_sph::kernel::{CubicSpline, Kernel};
+use halfstep_sph::lane::{Fused, Isa, LANES, Lane};
+use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
+use halfstep_sph::pair;
 use proptest::prelude::*;
 
 const H: f64 = 1.3;

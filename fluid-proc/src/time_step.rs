@@ -4,7 +4,7 @@
 //! the cross-phase viscosity acts on the lighter side with the heavier's mass. With the moving wall and a light solid
 //! the first is divided by sqrt(rho_f / rho_s).
 
-use halfstep_shared::scene::{Scene, Treatment};
+use halfstep_scene::{Scene, Treatment};
 
 /// The limits that do not change during a run, and the factors of those that do.
 #[derive(Clone, Copy, Debug, PartialEq)]

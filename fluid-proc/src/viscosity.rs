@@ -8,10 +8,10 @@ use crate::columns::{Shown, four};
 use crate::effects::FluidEffect;
 use crate::fluid::Fluid;
 use crate::rates::{FluidPair, PairEffect, PairRates};
-use halfstep_shared::kernel::Kernel;
-use halfstep_shared::lane::{Arch, LANES, Lane};
-use halfstep_shared::pair::{PairLaw, distance};
-use halfstep_shared::scene::{Decision, Derived, EffectName, Scene};
+use halfstep_scene::{Decision, Derived, EffectName, Scene};
+use halfstep_sph::kernel::Kernel;
+use halfstep_sph::lane::{Arch, LANES, Lane};
+use halfstep_sph::pair::{PairLaw, distance};
 
 /// tau_ab / rho² of each slot.
 #[derive(Clone, Debug, Default)]

@@ -9,15 +9,15 @@
 
 use crate::columns::{Columns, Shown, Source, Vectors, fit, vectors};
 use crate::moving_wall::Moving;
-use halfstep_shared::columns::bounds;
-use halfstep_shared::extrapolation::ExtrapolationSum;
-use halfstep_shared::geometry::WallPoint;
-use halfstep_shared::kernel::Kernel;
-use halfstep_shared::lane::{Arch, LANES, Lane};
-use halfstep_shared::neighbours::Rows;
-use halfstep_shared::pair::PairLaw;
-use halfstep_shared::scene::Motion;
-use halfstep_shared::state_equation::StateEquation;
+use halfstep_scene::Motion;
+use halfstep_scene::geometry::WallPoint;
+use halfstep_sph::columns::bounds;
+use halfstep_sph::extrapolation::ExtrapolationSum;
+use halfstep_sph::kernel::Kernel;
+use halfstep_sph::lane::{Arch, LANES, Lane};
+use halfstep_sph::neighbours::Rows;
+use halfstep_sph::pair::PairLaw;
+use halfstep_sph::state_equation::StateEquation;
 
 /// A c0 of the artificial viscosity toward the fluid, m/s.
 #[derive(Clone, Copy, Debug)]

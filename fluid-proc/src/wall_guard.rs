@@ -7,8 +7,8 @@
 //! it. No-slip walls and corners reverse the whole velocity and keep the scene's A: a guard would be friction.
 
 use crate::rates::{FluidPair, PairEffect, PairRates};
-use halfstep_shared::lane::Arch;
-use halfstep_shared::scene::{Decision, Derived, EffectName, Phase, Scene};
+use halfstep_scene::{Decision, Derived, EffectName, Phase, Scene};
+use halfstep_sph::lane::Arch;
 
 /// A of the guard.
 pub const GUARD: f64 = 1.0;

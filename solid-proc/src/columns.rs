@@ -1,6 +1,6 @@
 //! Columns of vectors and tensors.
 
-pub(crate) use halfstep_shared::columns::{Vectors, vectors};
+pub(crate) use halfstep_sph::columns::{Vectors, vectors};
 
 /// Symmetric tensors; a <= b filled.
 pub(crate) type Tensors<const D: usize> = [[Vec<f64>; D]; D];

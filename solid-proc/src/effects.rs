@@ -1,7 +1,7 @@
 //! The solid's effects: what takes part in a scene with solid, and why.
 
 use crate::sleep::TOLERANCE;
-use halfstep_shared::scene::{Decision, Derived, EffectName, Phase, Scene, SolidModelName};
+use halfstep_scene::{Decision, Derived, EffectName, Phase, Scene, SolidModelName};
 
 /// What a scene with solid decides about each of its effects.
 pub fn decide(scene: &Scene) -> Vec<Decision> {

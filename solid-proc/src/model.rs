@@ -1,9 +1,9 @@
 //! The seam: what a solid model is to the rest of the program.
 
-use halfstep_shared::failure::Quantity;
-use halfstep_shared::output::{Frame, FramePoint};
-use halfstep_shared::protocol::StateRecord;
-use halfstep_shared::role::Costs;
+use halfstep_output::{Frame, FramePoint};
+use halfstep_role::role::Costs;
+use halfstep_sph::quantity::Quantity;
+use halfstep_wire::protocol::StateRecord;
 
 /// What the fluid does to the solid during one stage. One entry for each of the model's particles, by particle number;
 /// particles outside the interface set have zeros.

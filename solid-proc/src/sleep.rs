@@ -9,7 +9,7 @@
 //! sqrt(8 tolerance / |g|), whatever its period. Only solids that are clamped and begin at rest may sleep.
 
 use crate::model::{Load, SolidModel};
-use halfstep_shared::scene::{Scene, Solid};
+use halfstep_scene::{Scene, Solid};
 
 /// Largest displacement of a solid at rest, over the spacing.
 pub(crate) const TOLERANCE: f64 = 0.01;
@@ -106,7 +106,7 @@ fn is_still<const D: usize>(model: &dyn SolidModel<D>, tolerance: f64) -> bool {
 mod tests {
     use super::*;
     use crate::hypoelastic::Hypoelastic;
-    use halfstep_shared::lane::Isa;
+    use halfstep_sph::lane::Isa;
     use std::path::Path;
 
     /// A plate 10 mm x 80 mm that stands clamped, without gravity.
@@ -114,7 +114,7 @@ mod tests {
         let text = "resolution = 0.002\nend_time = 1.0\ngravity = [0.0, 0.0]\n[solid]\ndensity = 2500.0\n\
                     youngs_modulus = 12e6\npoissons_ratio = 0.4\n[[shape]]\nname = \"plate\"\nphase = \"solid\"\n\
                     box = { min = [0.0, 0.0], max = [0.01, 0.08] }\nclamp = { min = [0.0, 0.0], max = [0.01, 0.006] }\n";
-        halfstep_shared::scene::parse(text, Path::new("plate.toml"), &[]).unwrap()
+        halfstep_scene::parse(text, Path::new("plate.toml"), &[]).unwrap()
     }
 
     #[test]

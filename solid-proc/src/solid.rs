@@ -6,14 +6,14 @@ use crate::model::{Load, SolidModel};
 use crate::sleep::{Rest, Sleep};
 use crate::sub_steps::SubStepping;
 use crate::total_lagrangian::TotalLagrangian;
-use halfstep_shared::failure::{Diverged, RoleName};
-use halfstep_shared::geometry::{holds, nearest};
-use halfstep_shared::interface::{Interface, Parameters};
-use halfstep_shared::lane::Isa;
-use halfstep_shared::output::Frame;
-use halfstep_shared::protocol::{ForceRecord, MAX_PROBE_VALUES, StateRecord};
-use halfstep_shared::role::{Costs, CoverageError, Role, audit};
-use halfstep_shared::scene::{EffectName, Phase, ProbeKind, Scene, SolidModelName, Treatment};
+use halfstep_interface::{Interface, Parameters};
+use halfstep_output::Frame;
+use halfstep_role::role::{Costs, CoverageError, Role, audit};
+use halfstep_scene::geometry::{holds, nearest};
+use halfstep_scene::{EffectName, Phase, ProbeKind, Scene, SolidModelName, Treatment};
+use halfstep_sph::lane::Isa;
+use halfstep_wire::failure::{Diverged, RoleName};
+use halfstep_wire::protocol::{ForceRecord, MAX_PROBE_VALUES, StateRecord};
 use xxhash_rust::xxh3::Xxh3;
 
 /// A solid model with what the lock-step asks of it.

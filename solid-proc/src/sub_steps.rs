@@ -1,6 +1,6 @@
 //! How many sub-steps the solid takes in a step.
 
-use halfstep_shared::scene::{Scene, SubSteps, Treatment};
+use halfstep_scene::{Scene, SubSteps, Treatment};
 
 /// The choice of the number of sub-steps.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! Which particles are near the surface in the reference configuration.
 
-use halfstep_shared::geometry::SolidPoint;
-use halfstep_shared::neighbours::{PADDING, Rows};
+use halfstep_scene::geometry::SolidPoint;
+use halfstep_sph::neighbours::{PADDING, Rows};
 
 /// Numbers of the particles within `reach` of a surface particle, ascending. A surface particle lacks one of its nearest
 /// lattice neighbours (the 3^D - 1 within sqrt(D) dx). Every particle for plates thinner than twice the reach.

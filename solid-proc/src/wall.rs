@@ -7,14 +7,14 @@
 //! different bodies do: F = k (dx - r) x / r with k = (K + 4 G / 3) / 2 dx^(D-2).
 
 use crate::columns::{Vectors, vectors};
-use halfstep_shared::artificial_viscosity::damping;
-use halfstep_shared::columns::{bounds, fit};
-use halfstep_shared::extrapolation::{Extrapolation, ExtrapolationSum};
-use halfstep_shared::geometry::WallPoint;
-use halfstep_shared::kernel::Kernel;
-use halfstep_shared::lane::{Arch, Isa, LANES, Lane};
-use halfstep_shared::neighbours::{ClusterList, Rows};
-use halfstep_shared::pair::{self, PairLaw, distance, dot};
+use halfstep_scene::geometry::WallPoint;
+use halfstep_sph::artificial_viscosity::damping;
+use halfstep_sph::columns::{bounds, fit};
+use halfstep_sph::extrapolation::{Extrapolation, ExtrapolationSum};
+use halfstep_sph::kernel::Kernel;
+use halfstep_sph::lane::{Arch, Isa, LANES, Lane};
+use halfstep_sph::neighbours::{ClusterList, Rows};
+use halfstep_sph::pair::{self, PairLaw, distance, dot};
 
 /// Wall particles that the solid may touch.
 pub(crate) struct Walls<const D: usize> {

@@ -3,8 +3,8 @@
 mod support;
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
-use halfstep_shared::lane::Isa;
-use halfstep_shared::neighbours::{ClusterList, Rows};
+use halfstep_sph::lane::Isa;
+use halfstep_sph::neighbours::{ClusterList, Rows};
 use support::{Patch, Running, tank};
 
 fn passes(c: &mut Criterion) {

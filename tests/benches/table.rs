@@ -6,8 +6,8 @@
 
 mod support;
 
-use halfstep_shared::lane::Isa;
-use halfstep_shared::lockstep::on_threads;
+use halfstep_role::lockstep::on_threads;
+use halfstep_sph::lane::Isa;
 use serde_json::{Value, json};
 use support::{Clock, LEAN, Patch, Running, collapse, medians, naive, tank};
 
@@ -224,7 +224,7 @@ fn solids(report: &mut Value) {
     let path = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/oscillating-plate.toml"));
     let scene = |model: &str| {
         let overrides = ["resolution=0.001".to_owned(), format!("solid.model={model}")];
-        halfstep_shared::scene::load(path, &overrides).unwrap_or_else(|e| panic!("{e:?}"))
+        halfstep_scene::load(path, &overrides).unwrap_or_else(|e| panic!("{e:?}"))
     };
     let models = ["hypoelastic", "total-lagrangian"];
     let mut running: Vec<Running> = models.iter().map(|m| Running::solid(&scene(m))).collect();

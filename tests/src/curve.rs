@@ -1,7 +1,7 @@
 //! A measured or published curve, and the figures that benchmarks state about one.
 
 use crate::run::repository;
-use halfstep_shared::output::Table;
+use halfstep_output::Table;
 
 /// Values over time.
 #[derive(Clone, Debug, PartialEq)]

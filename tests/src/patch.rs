@@ -3,10 +3,10 @@
 use halfstep_fluid::columns::Shown;
 use halfstep_fluid::effects::Pass;
 use halfstep_fluid::rates::{PairEffect, RateLaw, RateSum};
-use halfstep_shared::kernel::{CubicSpline, Kernel};
-use halfstep_shared::lane::Isa;
-use halfstep_shared::neighbours::{ClusterList, Rows};
-use halfstep_shared::pair;
+use halfstep_sph::kernel::{CubicSpline, Kernel};
+use halfstep_sph::lane::Isa;
+use halfstep_sph::neighbours::{ClusterList, Rows};
+use halfstep_sph::pair;
 
 /// Smoothing length of [`RatePass`], m, for particles about 1 m apart.
 pub const SMOOTHING_LENGTH: f64 = 1.33;

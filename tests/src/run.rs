@@ -4,8 +4,8 @@
 //! on their cores slows all of them down; runs of a single phase share it.
 
 use crate::curve::Curve;
-use halfstep_shared::output::run_json::RunStatus;
-use halfstep_shared::output::{Frame, RunReport, Table, read_probes, series::Series, vtkhdf};
+use halfstep_output::run_json::RunStatus;
+use halfstep_output::{Frame, RunReport, Table, read_probes, series::Series, vtkhdf};
 use std::ffi::OsString;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};

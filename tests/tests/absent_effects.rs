@@ -1,9 +1,9 @@
 //! An effect that a scene does not call for costs nothing: no instruction in the pass, no memory.
 
 use halfstep_fluid::Fluid;
-use halfstep_shared::lane::Isa;
-use halfstep_shared::role::Role;
-use halfstep_shared::scene;
+use halfstep_role::role::Role;
+use halfstep_scene as scene;
+use halfstep_sph::lane::Isa;
 use std::path::Path;
 use std::process::Command;
 

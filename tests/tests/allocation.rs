@@ -1,14 +1,14 @@
 //! A warmed-up step allocates nothing: roles driven directly, on one thread, and every allocation of it counted.
 
-use halfstep::roles;
-use halfstep_shared::failure::RoleName;
-use halfstep_shared::interface::{Interface, Parameters};
-use halfstep_shared::lane::Isa;
-use halfstep_shared::lockstep::on_threads;
-use halfstep_shared::protocol::{ForceRecord, StateRecord};
-use halfstep_shared::role::Role;
-use halfstep_shared::scene::{self, Scene};
+use halfstep_coupling::roles;
+use halfstep_interface::{Interface, Parameters};
+use halfstep_role::lockstep::on_threads;
+use halfstep_role::role::Role;
+use halfstep_scene::{self as scene, Scene};
+use halfstep_sph::lane::Isa;
 use halfstep_tests::run::repository;
+use halfstep_wire::failure::RoleName;
+use halfstep_wire::protocol::{ForceRecord, StateRecord};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::backtrace::Backtrace;
 use std::cell::Cell;

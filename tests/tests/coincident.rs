@@ -1,17 +1,17 @@
 //! Particles at one place: scenes cannot make them, and where a flow brings two together every force stays finite.
 
-use halfstep::cross_viscosity::CrossViscosity;
 use halfstep_fluid::artificial_viscosity::ArtificialViscosity;
 use halfstep_fluid::density_diffusion::{Diffusion, Simple, Strength};
 use halfstep_fluid::effects::Effects;
 use halfstep_fluid::rates::RateSum;
-use halfstep_shared::geometry;
-use halfstep_shared::interface::{Interface, Parameters};
-use halfstep_shared::lane::{Isa, LANES};
-use halfstep_shared::neighbours::PADDING;
-use halfstep_shared::protocol::StateRecord;
-use halfstep_shared::scene::{self, ArtificialViscosity as Coefficients, Scene};
+use halfstep_interface::cross_viscosity::CrossViscosity;
+use halfstep_interface::{Interface, Parameters};
+use halfstep_scene::geometry;
+use halfstep_scene::{self as scene, ArtificialViscosity as Coefficients, Scene};
+use halfstep_sph::lane::{Isa, LANES};
+use halfstep_sph::neighbours::PADDING;
 use halfstep_tests::patch::{Particle, Patch, RatePass, SMOOTHING_LENGTH as H};
+use halfstep_wire::protocol::StateRecord;
 use std::path::Path;
 
 /// Acceleration and density rate of each particle, with artificial viscosity and density diffusion.

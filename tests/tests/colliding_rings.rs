@@ -1,8 +1,8 @@
 //! Colliding rubber rings (Gray, Monaghan and Swift 2001): with artificial stress they bounce and stay whole, without
 //! they crack where they are stretched, and the energy goes into the pieces.
 
-use halfstep_shared::output::frame::SOLID;
 use halfstep_tests::{Finished, cluster, scene};
+use halfstep_wire::frame::SOLID;
 
 struct End {
     /// Pieces in the last frame, largest first, for neighbours at most 1.5 and 2 spacings apart.

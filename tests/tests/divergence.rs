@@ -1,7 +1,7 @@
 //! A run that becomes unstable says whose particle left which bound, and which key to change; its files can be read.
 
-use halfstep_shared::output::Frame;
-use halfstep_shared::output::run_json::RunStatus;
+use halfstep_output::Frame;
+use halfstep_output::run_json::RunStatus;
 use halfstep_tests::{Outcome, RunBuilder, scene};
 
 /// The report's error of a run that must have diverged.

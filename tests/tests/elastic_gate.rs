@@ -5,8 +5,8 @@
 //! linear as the datasheet's E peak early and low; the total-Lagrangian solid is one of them. The hypoelastic solid is
 //! softer than its E says and comes nearer to the experiment by that.
 
-use halfstep_shared::output::frame::FLUID;
 use halfstep_tests::{Curve, Finished, scene};
+use halfstep_wire::frame::FLUID;
 use nalgebra::{DMatrix, DVector};
 
 /// 2 particles across, the least that bends at all: too stiff with the total-Lagrangian solid.

@@ -1,7 +1,7 @@
 //! Whatever ends a run, it ends soon, says why, and what it has left behind can be used.
 
-use halfstep_shared::output::probes::TIME_COLUMN;
-use halfstep_shared::output::run_json::RunStatus;
+use halfstep_output::probes::TIME_COLUMN;
+use halfstep_output::run_json::RunStatus;
 use halfstep_tests::conformance::link::eventually;
 use halfstep_tests::process::{is_alive, kill, leftovers, role_of};
 use halfstep_tests::run::whole_machine;

@@ -1,6 +1,6 @@
 //! A solid in another language, end to end: fluid process, coupler and a Python script that knows only the protocol.
 
-use halfstep_shared::output::series::Series;
+use halfstep_output::series::Series;
 use halfstep_tests::conformance::link::eventually;
 use halfstep_tests::curve::Curve;
 use halfstep_tests::process::{kill, leftovers};

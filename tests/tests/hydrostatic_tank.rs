@@ -4,8 +4,8 @@
 //! the lattice gives way after about a second and settles into a denser packing. That sets free some 1e-5 of the
 //! water's potential energy as motion, which then decays. With A = 1 the lattice holds and motion only decays.
 
-use halfstep_shared::output::frame::FLUID;
 use halfstep_tests::{Finished, scene};
+use halfstep_wire::frame::FLUID;
 
 const GRAVITY: f64 = 9.81;
 const DEPTH: f64 = 0.3;

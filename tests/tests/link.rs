@@ -76,5 +76,5 @@ macro_rules! conformance {
     };
 }
 
-conformance!(processes, halfstep_shared::link::Processes);
-conformance!(threads, halfstep_shared::link::Threads);
+conformance!(processes, halfstep_link::Processes);
+conformance!(threads, halfstep_link::Threads);

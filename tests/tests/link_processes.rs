@@ -1,12 +1,10 @@
 //! Roles as processes: what others notice when one is killed, and what is left when all are gone.
 
-use halfstep::supervise::{Children, stop_flag};
-use halfstep_shared::failure::RoleName::{self, Coupler, Fluid, Solid};
-use halfstep_shared::link::{
-    Claim, Expect, LinkConfig, LinkError, PhaseLink, Processes, Threads, cleanup_stale,
-};
+use halfstep_coupling::supervise::{Children, stop_flag};
+use halfstep_link::{Claim, Expect, LinkConfig, LinkError, PhaseLink, Processes, Threads, cleanup_stale};
 use halfstep_tests::conformance::link::suite::with_links;
 use halfstep_tests::conformance::link::{Run, eventually};
+use halfstep_wire::failure::RoleName::{self, Coupler, Fluid, Solid};
 use std::os::unix::fs::MetadataExt;
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
@@ -170,9 +168,9 @@ fn launch(dir: &Path) -> (std::process::Child, Run, Vec<u32>) {
     eventually(20.0, "the launcher's start", || path.exists());
     let state: serde_json::Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
     let run = Run(serde_json::from_value(state["config"].clone()).unwrap());
-    let pids: Vec<(RoleName, u32)> = serde_json::from_value(state["pids"].clone()).unwrap();
+    let pids: Vec<u32> = serde_json::from_value(state["pids"].clone()).unwrap();
     settle(&run);
-    (launcher, run, pids.into_iter().map(|(_, pid)| pid).collect())
+    (launcher, run, pids)
 }
 
 #[test]

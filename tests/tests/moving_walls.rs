@@ -1,10 +1,10 @@
 //! Walls that move by prescription.
 
 use halfstep_fluid::Fluid;
-use halfstep_shared::lane::Isa;
-use halfstep_shared::output::Frame;
-use halfstep_shared::role::{Role, audit};
-use halfstep_shared::scene;
+use halfstep_output::Frame;
+use halfstep_role::role::{Role, audit};
+use halfstep_scene as scene;
+use halfstep_sph::lane::Isa;
 use std::path::Path;
 
 const TANK: &str = "resolution = 0.01\nend_time = 2.0\ngravity = [0.0, -9.81]\n[fluid]\ndensity = 1000.0\n\

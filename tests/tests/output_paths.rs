@@ -91,7 +91,7 @@ fn words_are_told_from_paths() {
         "/dev/shm",
         "halfstep run SCENE",
         "run.json",
-        "halfstep_shared::link",
+        "halfstep_link",
         "<DIR>/run.json",
     ] {
         assert!(!is_repository_path(word), "{word}");

@@ -4,8 +4,8 @@
 //! Each run measures the force on eight parts of the plate and the tip. A cantilever of Euler and Bernoulli under these very
 //! forces says how far a plate of that E goes: so the solid is judged apart from the fluid's load. `docs/plate-study.md`.
 
-use halfstep_shared::output::draw_plot;
-use halfstep_shared::scene::{Reference, Scene};
+use halfstep_output::draw_plot;
+use halfstep_scene::{Reference, Scene};
 use halfstep_tests::beam::{Cantilever, PointLoad};
 use halfstep_tests::run::{repository, scene_at};
 use halfstep_tests::{Curve, Finished};

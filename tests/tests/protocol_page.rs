@@ -1,11 +1,11 @@
 //! The tables of docs/protocol.md say what the program does.
 
-use halfstep_shared::failure::{Quantity, RoleName};
-use halfstep_shared::link::{LinkConfig, PhaseLink, Processes};
-use halfstep_shared::protocol::{ForceHeader, ForceRecord, LAYOUT, MAX_PROBE_VALUES};
-use halfstep_shared::protocol::{StateHeader, StateRecord, order, status};
+use halfstep_link::{LinkConfig, PhaseLink, Processes};
 use halfstep_tests::conformance::link::raw::RawRole;
 use halfstep_tests::conformance::link::{Run, eventually};
+use halfstep_wire::failure::{Quantity, RoleName};
+use halfstep_wire::protocol::{ForceHeader, ForceRecord, LAYOUT, MAX_PROBE_VALUES};
+use halfstep_wire::protocol::{StateHeader, StateRecord, order, status};
 use iceoryx2::prelude::PortFactory;
 use std::collections::BTreeMap;
 use std::mem::offset_of;

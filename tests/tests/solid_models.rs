@@ -1,10 +1,10 @@
 //! The conformance suite of solid models over every model.
 
-use halfstep_shared::lane::Isa;
-use halfstep_shared::scene::Scene;
+use halfstep_scene::Scene;
 use halfstep_solid::SolidModel;
 use halfstep_solid::hypoelastic::Hypoelastic;
 use halfstep_solid::total_lagrangian::TotalLagrangian;
+use halfstep_sph::lane::Isa;
 use halfstep_tests::conformance::solid::{self, Make};
 
 /// One test for each case of the suite.

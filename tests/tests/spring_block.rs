@@ -1,11 +1,11 @@
 //! A solid that shares no code with halfstep: a block on a spring, written in Python against docs/protocol.md.
 
-use halfstep::supervise::Children;
-use halfstep_shared::failure::RoleName::{Fluid, Solid};
-use halfstep_shared::link::{Claim, CouplerLink, Expect, LinkConfig, PhaseLink, Processes};
-use halfstep_shared::protocol::{ForceHeader, ForceRecord, StateHeader, StateRecord, order, status};
-use halfstep_shared::scene::{Block, Geometry, Phase};
+use halfstep_coupling::supervise::Children;
+use halfstep_link::{Claim, CouplerLink, Expect, LinkConfig, PhaseLink, Processes};
+use halfstep_scene::{Block, Geometry};
 use halfstep_tests::conformance::link::Run;
+use halfstep_wire::failure::RoleName::{Fluid, Solid};
+use halfstep_wire::protocol::{ForceHeader, ForceRecord, StateHeader, StateRecord, order, status};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
@@ -33,8 +33,8 @@ fn scene() -> serde_json::Value {
         "resolution": RESOLUTION,
         "solid": { "density": SOLID_DENSITY },
         "shapes": [
-            { "phase": Phase::Fluid, "geometry": Geometry::Box(Block { min: [0.0; 3], max: [0.2, HEIGHT, 0.0] }) },
-            { "phase": Phase::Solid, "geometry": Geometry::Box(block) },
+            { "phase": "fluid", "geometry": Geometry::Box(Block { min: [0.0; 3], max: [0.2, HEIGHT, 0.0] }) },
+            { "phase": "solid", "geometry": Geometry::Box(block) },
         ],
     })
 }

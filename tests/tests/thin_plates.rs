@@ -3,10 +3,10 @@
 //! Water beside a plate that is held cannot know how thick the plate is: each of its particles must do what it does
 //! beside a plate of six rows, through which no solid particle sees both faces. What remains is round-off.
 
-use halfstep_shared::output::Frame;
-use halfstep_shared::output::frame::FLUID;
+use halfstep_output::Frame;
 use halfstep_tests::run::program;
 use halfstep_tests::{Finished, RunBuilder, run::scene_at};
+use halfstep_wire::frame::FLUID;
 use std::path::{Path, PathBuf};
 
 const GRAVITY: f64 = 9.81;

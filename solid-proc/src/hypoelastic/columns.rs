@@ -1,9 +1,9 @@
 //! Columns of the solid particles.
 
 use crate::columns::{Tensors, Vectors, tensors, vectors};
-use halfstep_shared::columns::fit;
-use halfstep_shared::geometry::SolidPoint;
-use halfstep_shared::neighbours::Rows;
+use halfstep_scene::geometry::SolidPoint;
+use halfstep_sph::columns::fit;
+use halfstep_sph::neighbours::Rows;
 
 /// What time integration advances.
 #[derive(Clone, Debug)]

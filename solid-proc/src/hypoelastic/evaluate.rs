@@ -8,12 +8,12 @@ use super::rates::{ArtificialStress, Moment, Plain, Renormalised, SolidLaw, Tens
 use super::stress_rate::jaumann;
 use crate::model::Load;
 use crate::wall::{Touching, repulsion};
-use halfstep_shared::kernel::Kernel;
-use halfstep_shared::lane::LANES;
-use halfstep_shared::neighbours::PADDING;
-use halfstep_shared::role::{Costs, fastest};
-use halfstep_shared::scene::EffectName;
-use halfstep_shared::{pair, with_kernel};
+use halfstep_role::role::{Costs, fastest};
+use halfstep_scene::EffectName;
+use halfstep_sph::kernel::Kernel;
+use halfstep_sph::lane::LANES;
+use halfstep_sph::neighbours::PADDING;
+use halfstep_sph::{pair, with_kernel};
 use std::marker::PhantomData;
 
 impl<const D: usize> Hypoelastic<D> {

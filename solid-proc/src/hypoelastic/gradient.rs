@@ -6,7 +6,7 @@ use nalgebra::SMatrix;
 /// `gradient` M^-1; unchanged where M is singular (lone particles).
 pub(super) fn renormalise<const D: usize>(gradient: [[f64; D]; D], moment: [[f64; D]; D]) -> [[f64; D]; D] {
     let m = SMatrix::<f64, D, D>::from_fn(|a, b| moment[a.min(b)][a.max(b)]);
-    let Some(inverse) = halfstep_shared::tensor::moment_inverse(&m) else { return gradient };
+    let Some(inverse) = halfstep_sph::tensor::moment_inverse(&m) else { return gradient };
     let corrected = SMatrix::<f64, D, D>::from_fn(|a, b| gradient[a][b]) * inverse;
     std::array::from_fn(|a| std::array::from_fn(|b| corrected[(a, b)]))
 }

@@ -7,17 +7,17 @@ use crate::effects::takes_part;
 use crate::model::{Load, OutOfBounds, SolidModel};
 use crate::surface::surface_set;
 use crate::wall::Walls;
-use halfstep_shared::bounds::{Bounds, Excess};
-use halfstep_shared::columns::{copy, fit, moved_farther};
-use halfstep_shared::failure::Quantity;
-use halfstep_shared::geometry::{self, SolidPoint};
-use halfstep_shared::interface::wire_component;
-use halfstep_shared::lane::Isa;
-use halfstep_shared::neighbours::{ClusterList, PADDING, Rows};
-use halfstep_shared::protocol::StateRecord;
-use halfstep_shared::role::Costs;
-use halfstep_shared::scene::{EffectName, KernelName, Scene, Solid};
-use halfstep_shared::wide;
+use halfstep_role::role::Costs;
+use halfstep_scene::bounds::{Bounds, Excess};
+use halfstep_scene::geometry::{self, SolidPoint};
+use halfstep_scene::{EffectName, KernelName, Scene, Solid};
+use halfstep_sph::columns::{copy, fit, moved_farther};
+use halfstep_sph::lane::Isa;
+use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
+use halfstep_sph::quantity::Quantity;
+use halfstep_wire::protocol::StateRecord;
+use halfstep_wire::wide;
+use halfstep_wire::wire_component;
 
 const SKIN: f64 = 0.3;
 

@@ -4,10 +4,10 @@
 //!   D v_i / Dt = sum_j m_j [sigma_i/rho_i² + sigma_j/rho_j² - Pi_ij I + (R_i + R_j) f^n] . grad W    (eqs. 22 to 26)
 
 use super::columns::{Source, State};
-use halfstep_shared::artificial_viscosity::damping;
-use halfstep_shared::kernel::Kernel;
-use halfstep_shared::lane::{Arch, LANES, Lane};
-use halfstep_shared::pair::{PairLaw, distance, dot};
+use halfstep_sph::artificial_viscosity::damping;
+use halfstep_sph::kernel::Kernel;
+use halfstep_sph::lane::{Arch, LANES, Lane};
+use halfstep_sph::pair::{PairLaw, distance, dot};
 use std::marker::PhantomData;
 
 /// Correction of the momentum bracket against the tensile instability; `()` is none.

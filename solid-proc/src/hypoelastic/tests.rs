@@ -2,8 +2,8 @@
 
 use crate::hypoelastic::Hypoelastic;
 use crate::model::{Load, SolidModel};
-use halfstep_shared::lane::Isa;
-use halfstep_shared::scene::{self, Scene};
+use halfstep_scene::{self as scene, Scene};
+use halfstep_sph::lane::Isa;
 use proptest::prelude::*;
 use std::path::Path;
 

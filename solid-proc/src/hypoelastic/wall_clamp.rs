@@ -6,10 +6,10 @@
 
 use super::model::Hypoelastic;
 use crate::columns::{Vectors, vectors};
-use halfstep_shared::extrapolation::{Extrapolation, ExtrapolationSum};
-use halfstep_shared::lane::LANES;
-use halfstep_shared::neighbours::PADDING;
-use halfstep_shared::{pair, with_kernel};
+use halfstep_sph::extrapolation::{Extrapolation, ExtrapolationSum};
+use halfstep_sph::lane::LANES;
+use halfstep_sph::neighbours::PADDING;
+use halfstep_sph::{pair, with_kernel};
 
 /// Out of every kernel's reach, m.
 const FAR: f64 = 1e30;

@@ -7,10 +7,10 @@
 //! at most 2: the face is taken to be no nearer to i than half way. Beyond the face the body is rigid: clamped particles
 //! carry no stress and no energy.
 
-use halfstep_shared::geometry::SolidPoint;
-use halfstep_shared::lane::LANES;
-use halfstep_shared::neighbours::ClusterList;
-use halfstep_shared::scene::{Block, Scene};
+use halfstep_scene::geometry::SolidPoint;
+use halfstep_scene::{Block, Scene};
+use halfstep_sph::lane::LANES;
+use halfstep_sph::neighbours::ClusterList;
 
 /// Most that the displacement of a free particle counts toward a clamped one.
 const LARGEST_GAIN: f64 = 2.0;

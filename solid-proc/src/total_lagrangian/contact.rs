@@ -10,13 +10,13 @@ use crate::columns::{Vectors, vectors};
 use crate::effects::takes_part;
 use crate::surface::surface_set;
 use crate::wall::{Touching, Walls, repulsion};
-use halfstep_shared::columns::{copy, fit, moved_farther};
-use halfstep_shared::geometry::{self, Layout, SolidPoint};
-use halfstep_shared::kernel::Kernel;
-use halfstep_shared::lane::{Arch, Isa, LANES, Lane};
-use halfstep_shared::neighbours::{ClusterList, PADDING, Rows};
-use halfstep_shared::pair::{self, PairLaw, distance};
-use halfstep_shared::scene::{EffectName, Scene, Solid};
+use halfstep_scene::geometry::{self, Layout, SolidPoint};
+use halfstep_scene::{EffectName, Scene, Solid};
+use halfstep_sph::columns::{copy, fit, moved_farther};
+use halfstep_sph::kernel::Kernel;
+use halfstep_sph::lane::{Arch, Isa, LANES, Lane};
+use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
+use halfstep_sph::pair::{self, PairLaw, distance};
 
 /// Distance, in smoothing lengths of the interface, that lists hold beyond reach.
 const SKIN: f64 = 0.3;

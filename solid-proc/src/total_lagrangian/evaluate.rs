@@ -4,14 +4,14 @@ use super::contact::{Contact, Present};
 use super::material::Matrix;
 use super::model::TotalLagrangian;
 use super::pass::{Damping, Deformation, DeformationSum, Moment, MomentSum, Momentum, Viscous};
-use halfstep_shared::bounds::Excess;
-use halfstep_shared::lane::LANES;
-use halfstep_shared::neighbours::PADDING;
-use halfstep_shared::role::{Costs, fastest};
-use halfstep_shared::scene::{ArtificialViscosity, EffectName};
-use halfstep_shared::{pair, tensor, with_kernel};
+use halfstep_role::role::{Costs, fastest};
+use halfstep_scene::bounds::Excess;
+use halfstep_scene::{ArtificialViscosity, EffectName};
+use halfstep_sph::lane::LANES;
+use halfstep_sph::neighbours::PADDING;
+use halfstep_sph::{pair, tensor, with_kernel};
 
-fn at<const D: usize>(entries: &[[halfstep_shared::lane::Lane; D]; D], k: usize) -> Matrix<D> {
+fn at<const D: usize>(entries: &[[halfstep_sph::lane::Lane; D]; D], k: usize) -> Matrix<D> {
     Matrix::from_fn(|a, b| entries[a][b].0[k])
 }
 

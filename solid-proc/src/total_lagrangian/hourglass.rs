@@ -13,8 +13,8 @@
 //!   1/2 c² alpha G sum_j w [X² Y² + (X² + nu' Y²)² / 4].
 //! The default alpha makes them equal: particles then resist bending as the material in their cells does.
 
-use halfstep_shared::kernel::Kernel;
-use halfstep_shared::lane::{Lane, Unfused};
+use halfstep_sph::kernel::Kernel;
+use halfstep_sph::lane::{Lane, Unfused};
 
 /// alpha that gives a lattice of spacing `dx` the whole bending stiffness.
 pub(super) fn from_bending<K: Kernel<D>, const D: usize>(kernel: K, dx: f64, poissons_ratio: f64) -> f64 {
@@ -41,7 +41,7 @@ pub(super) fn from_bending<K: Kernel<D>, const D: usize>(kernel: K, dx: f64, poi
 #[cfg(test)]
 mod tests {
     use super::*;
-    use halfstep_shared::kernel::CubicSpline;
+    use halfstep_sph::kernel::CubicSpline;
 
     #[test]
     fn four_neighbours_by_hand() {

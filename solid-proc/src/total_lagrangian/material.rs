@@ -7,8 +7,8 @@
 //!   neo-Hooke:             P = mu (F - F^-T) + lambda ln J F^-T,
 //!                          psi = mu/2 (tr(F^T F) - 3 - 2 ln J) + lambda/2 (ln J)²        (Bonet and Wood 2008, eq. 6.27)
 
-use halfstep_shared::scene::{Material, Solid};
-use halfstep_shared::tensor;
+use halfstep_scene::{Material, Solid};
+use halfstep_sph::tensor;
 use nalgebra::SMatrix;
 
 /// A matrix of the scene's dimension.

@@ -12,16 +12,17 @@ use crate::columns::{Vectors, vectors};
 use crate::effects::takes_part;
 use crate::model::{Load, OutOfBounds, SolidModel};
 use crate::surface::surface_set;
-use halfstep_shared::bounds::{Bounds, Excess};
-use halfstep_shared::geometry::{self, SolidPoint};
-use halfstep_shared::interface::wire_component;
-use halfstep_shared::lane::{Isa, LANES};
-use halfstep_shared::neighbours::{ClusterList, PADDING, Rows};
-use halfstep_shared::pair::FixedPairs;
-use halfstep_shared::protocol::StateRecord;
-use halfstep_shared::role::Costs;
-use halfstep_shared::scene::{EffectName, KernelName, Scene, Solid};
-use halfstep_shared::{wide, with_kernel};
+use halfstep_role::role::Costs;
+use halfstep_scene::bounds::{Bounds, Excess};
+use halfstep_scene::geometry::{self, SolidPoint};
+use halfstep_scene::{EffectName, KernelName, Scene, Solid};
+use halfstep_sph::lane::{Isa, LANES};
+use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
+use halfstep_sph::pair::FixedPairs;
+use halfstep_sph::with_kernel;
+use halfstep_wire::protocol::StateRecord;
+use halfstep_wire::wide;
+use halfstep_wire::wire_component;
 
 /// What time integration advances, and the inner acceleration that belongs to it.
 #[derive(Clone, Debug)]

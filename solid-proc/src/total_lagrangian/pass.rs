@@ -9,9 +9,9 @@
 //! hourglass energy. Momentum and angular momentum are therefore conserved.
 
 use crate::columns::Vectors;
-use halfstep_shared::artificial_viscosity::damping;
-use halfstep_shared::lane::{Arch, Lane};
-use halfstep_shared::pair::{FixedLaw, dot};
+use halfstep_sph::artificial_viscosity::damping;
+use halfstep_sph::lane::{Arch, Lane};
+use halfstep_sph::pair::{FixedLaw, dot};
 
 /// Full tensors, entry by entry.
 pub(super) type Matrices<const D: usize> = [[Vec<f64>; D]; D];

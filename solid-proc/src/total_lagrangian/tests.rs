@@ -3,8 +3,8 @@
 use super::material::Matrix;
 use crate::model::{Load, SolidModel};
 use crate::total_lagrangian::TotalLagrangian;
-use halfstep_shared::lane::Isa;
-use halfstep_shared::scene::{self, Scene};
+use halfstep_scene::{self as scene, Scene};
+use halfstep_sph::lane::Isa;
 use nalgebra::Rotation2;
 use proptest::prelude::*;
 use std::path::Path;
@@ -146,8 +146,8 @@ fn hourglass_resistance_acts_on_hourglass_modes_only() {
         // By hand: sum over the four axial neighbours, which move by 2 e against it, of 2 alpha G V0 F 2 e / rho; the
         // diagonal ones move with it. F_axial V0 = -w.
         let w = {
-            use halfstep_shared::kernel::{CubicSpline, Kernel};
-            use halfstep_shared::lane::{Lane, Unfused};
+            use halfstep_sph::kernel::{CubicSpline, Kernel};
+            use halfstep_sph::lane::{Lane, Unfused};
             let kernel = CubicSpline::<2>::new(0.0075);
             -1e-4 * kernel.gradient_over_r::<Unfused>(Lane::splat(0.01)).0[0]
         };

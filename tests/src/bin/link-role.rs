@@ -1,10 +1,10 @@
 //! A role of the known run as a process of its own, for tests that kill it: `link-role ROLE STEPS` with the run in the
 //! environment; `link-role launcher DIR` starts a run of all three as its children.
 
-use halfstep::supervise::{Children, abort_flag};
-use halfstep_shared::failure::RoleName;
-use halfstep_shared::link::{Claim, LinkConfig, Processes};
+use halfstep_coupling::supervise::{Children, abort_flag};
+use halfstep_link::{Claim, LinkConfig, Processes};
 use halfstep_tests::conformance::link::play;
+use halfstep_wire::failure::RoleName;
 use std::io::Write;
 use std::path::Path;
 use std::process::{Command, ExitCode};
@@ -43,7 +43,8 @@ fn launcher(dir: &Path) -> ExitCode {
             .expect("a role");
         children.spawn(role, command).expect("a child");
     }
-    let state = serde_json::json!({ "config": config, "pids": children.pids() });
+    let pids: Vec<u32> = children.pids().into_iter().map(|(_, pid)| pid).collect();
+    let state = serde_json::json!({ "config": config, "pids": pids });
     let path = dir.join("run.json");
     std::fs::write(path.with_extension("tmp"), state.to_string()).expect("a file");
     std::fs::rename(path.with_extension("tmp"), path).expect("a file");

@@ -6,7 +6,7 @@ use halfstep_fluid::artificial_viscosity::ArtificialViscosity;
 use halfstep_fluid::density_diffusion::{DeltaSph, Diffusion, Simple, Strength};
 use halfstep_fluid::effects::{Effects, Pass};
 use halfstep_fluid::rates::RateSum;
-use halfstep_shared::scene::ArtificialViscosity as Coefficients;
+use halfstep_scene::ArtificialViscosity as Coefficients;
 use halfstep_tests::patch::{Particle, Patch, RatePass, SMOOTHING_LENGTH as H};
 use std::process::ExitCode;
 

@@ -1,11 +1,11 @@
 //! What every [`SolidModel`] must do: the lock-step, prescribed particles, contact, conservation, bounds.
 
-use halfstep_shared::failure::Quantity;
-use halfstep_shared::geometry;
-use halfstep_shared::lane::Isa;
-use halfstep_shared::lockstep::on_threads;
-use halfstep_shared::scene::{self, Scene};
+use halfstep_role::lockstep::on_threads;
+use halfstep_scene::geometry;
+use halfstep_scene::{self as scene, Scene};
 use halfstep_solid::{Load, SolidModel};
+use halfstep_sph::lane::Isa;
+use halfstep_sph::quantity::Quantity;
 use std::path::Path;
 
 /// A model under test.

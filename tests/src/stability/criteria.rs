@@ -2,9 +2,9 @@
 
 use crate::cluster;
 use crate::run::Outcome;
-use halfstep_shared::output::Frame;
-use halfstep_shared::output::frame::{FLUID, SOLID};
-use halfstep_shared::output::run_json::{RunReport, RunStatus};
+use halfstep_output::Frame;
+use halfstep_output::run_json::{RunReport, RunStatus};
+use halfstep_wire::frame::{FLUID, SOLID};
 use serde::Deserialize;
 
 /// What is measured and within which bounds it must lie.

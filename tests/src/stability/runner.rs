@@ -3,7 +3,7 @@
 use super::case::{Case, Without};
 use super::criteria::{Measured, evaluate, short};
 use crate::run::Outcome;
-use halfstep_shared::output::run_json::RunStatus;
+use halfstep_output::run_json::RunStatus;
 
 /// One criterion of a case, as the table shows it.
 #[derive(Clone, Debug)]

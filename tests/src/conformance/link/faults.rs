@@ -3,9 +3,9 @@
 use super::Run;
 use super::play;
 use super::raw::{RawCoupler, RawPhase, identified, identified_force};
-use halfstep_shared::failure::RoleName::{self, Coupler, Fluid, Solid};
-use halfstep_shared::link::{CouplerLink, Expect, LinkError, PhaseLink, Transport};
-use halfstep_shared::protocol::{ForceHeader, ForceRecord, StateHeader, StateRecord, order};
+use halfstep_link::{CouplerLink, Expect, LinkError, PhaseLink, Transport};
+use halfstep_wire::failure::RoleName::{self, Coupler, Fluid, Solid};
+use halfstep_wire::protocol::{ForceHeader, ForceRecord, StateHeader, StateRecord, order};
 use std::thread::scope;
 
 type StateFault = (&'static str, fn(&mut StateHeader, &mut Vec<StateRecord>));
@@ -164,7 +164,7 @@ pub fn wrong_forces<S: Transport>() {
             });
             let zero = StateRecord::default();
             let mut forces: Vec<_> =
-                state.take().unwrap().payload().iter().map(|record| play::force(record, &zero)).collect();
+                state.take().unwrap().payload().iter().map(|slot| play::force(&slot.0, &zero)).collect();
             let mut header = identified_force(run, play::force_header(Fluid, STEP, 1), forces.len());
             spoil(&mut header, &mut forces);
             coupler.role.send(&coupler.forces[0], header, &forces);

@@ -6,7 +6,7 @@ pub mod play;
 pub mod raw;
 pub mod suite;
 
-use halfstep_shared::link::LinkConfig;
+use halfstep_link::LinkConfig;
 use std::ops::Deref;
 use std::path::Path;
 use std::time::{Duration, Instant};

@@ -1,8 +1,8 @@
 //! A run whose every value is known beforehand, so that each role can check all it receives.
 
-use halfstep_shared::failure::RoleName;
-use halfstep_shared::link::{CouplerLink, Expect, LinkConfig, LinkError, LinkTimes, PhaseLink, Transport};
-use halfstep_shared::protocol::{ForceHeader, ForceRecord, StateHeader, StateRecord, order, status};
+use halfstep_link::{CouplerLink, Expect, LinkConfig, LinkError, LinkTimes, PhaseLink, Transport};
+use halfstep_wire::failure::RoleName;
+use halfstep_wire::protocol::{ForceHeader, ForceRecord, StateHeader, StateRecord, order, status};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 

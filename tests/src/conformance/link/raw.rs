@@ -1,7 +1,7 @@
 //! A role written against the wire as documented, without the link's code: it can send anything.
 
-use halfstep_shared::link::{LinkConfig, Transport};
-use halfstep_shared::protocol::{ForceHeader, ForceRecord, PROTOCOL, SCHEMA, StateHeader, StateRecord};
+use halfstep_link::{LinkConfig, Slot, Transport};
+use halfstep_wire::protocol::{ForceHeader, ForceRecord, PROTOCOL, Plain, SCHEMA, StateHeader, StateRecord};
 use iceoryx2::port::listener::Listener;
 use iceoryx2::port::notifier::Notifier;
 use iceoryx2::port::publisher::Publisher;
@@ -12,14 +12,10 @@ use iceoryx2::service::port_factory::{event, publish_subscribe};
 use std::fmt::Debug;
 use std::time::{Duration, Instant};
 
-/// What a channel carries.
-pub trait Wire: Copy + Default + Debug + ZeroCopySend + 'static {}
-impl<T: Copy + Default + Debug + ZeroCopySend + 'static> Wire for T {}
-
 /// The writing end of a channel.
-pub type Writer<S, R, H> = Publisher<S, [R], H>;
+pub type Writer<S, R, H> = Publisher<S, [Slot<R>], Slot<H>>;
 /// The reading end of a channel.
-pub type Reader<S, R, H> = Subscriber<S, [R], H>;
+pub type Reader<S, R, H> = Subscriber<S, [Slot<R>], Slot<H>>;
 
 /// Node, listener and notifiers of a role.
 #[derive(Debug)]
@@ -88,16 +84,16 @@ impl<S: Transport> RawRole<S> {
     }
 
     /// Opens a channel, e.g. `fluid/state`, with this number of readers.
-    pub fn channel<R: Wire, H: Wire>(
+    pub fn channel<R: Plain, H: Plain>(
         &self,
         channel: &str,
         readers: usize,
-    ) -> publish_subscribe::PortFactory<S, [R], H> {
+    ) -> publish_subscribe::PortFactory<S, [Slot<R>], Slot<H>> {
         persistently(|| {
             self.node
                 .service_builder(&format!("halfstep/{channel}").as_str().try_into().unwrap())
-                .publish_subscribe::<[R]>()
-                .user_header::<H>()
+                .publish_subscribe::<[Slot<R>]>()
+                .user_header::<Slot<H>>()
                 .enable_safe_overflow(false)
                 .history_size(0)
                 .subscriber_max_buffer_size(2)
@@ -118,10 +114,10 @@ impl<S: Transport> RawRole<S> {
     }
 
     /// Writes a message and wakes everybody.
-    pub fn send<R: Wire, H: Wire>(&self, writer: &Writer<S, R, H>, header: H, records: &[R]) {
+    pub fn send<R: Plain, H: Plain>(&self, writer: &Writer<S, R, H>, header: H, records: &[R]) {
         let mut sample = writer.loan_slice_uninit(records.len()).unwrap();
-        *sample.user_header_mut() = header;
-        sample.write_from_slice(records).send().unwrap();
+        *sample.user_header_mut() = Slot(header);
+        sample.write_from_fn(|k| Slot(records[k])).send().unwrap();
         self.wake();
     }
 

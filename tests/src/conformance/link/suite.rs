@@ -3,9 +3,9 @@
 use super::play;
 use super::raw::{RawPhase, RawRole, identified};
 use super::{Run, eventually};
-use halfstep_shared::failure::RoleName::{self, Coupler, Fluid, Solid};
-use halfstep_shared::link::{Claim, CouplerLink, Expect, LinkConfig, LinkError, PhaseLink, Transport};
-use halfstep_shared::protocol::{StateHeader, StateRecord, status};
+use halfstep_link::{Claim, CouplerLink, Expect, LinkConfig, LinkError, PhaseLink, Transport};
+use halfstep_wire::failure::RoleName::{self, Coupler, Fluid, Solid};
+use halfstep_wire::protocol::{StateHeader, StateRecord, status};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{scope, sleep};
@@ -247,7 +247,11 @@ pub fn capacity<S: Transport>() {
             let fluid = RawPhase::<S>::enter(&run, "fluid", 11);
             fluid.send(identified(&run, play::state_header(Fluid, 0, 0), 11), &records);
             eventually(20.0, "the solid's end", || {
-                fluid.peer.receive().unwrap().is_some_and(|last| last.user_header().status == status::FAILED)
+                fluid
+                    .peer
+                    .receive()
+                    .unwrap()
+                    .is_some_and(|last| last.user_header().0.status == status::FAILED)
             });
         });
         threads.spawn(|| {
@@ -285,6 +289,6 @@ pub fn strangers<S: Transport>() {
         is_refused("halfstep/fluid/wake", "IncompatibleAttributes");
     }
     let stranger = RawRole::<S>::enter(&run, "fluid");
-    let _service = stranger.channel::<u64, StateHeader>("fluid/state", 2);
+    let _service = stranger.channel::<f64, StateHeader>("fluid/state", 2);
     is_refused("halfstep/fluid/state", "IncompatibleTypes");
 }

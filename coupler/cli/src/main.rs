@@ -1,0 +1,237 @@
+//! The `halfstep` command.
+
+use clap::{Parser, Subcommand};
+use halfstep::options::{RunOptions, SolidSource};
+use halfstep::run;
+use halfstep_coupling::roles;
+use halfstep_coupling::supervise::abort_flag;
+use halfstep_output::FrameWriter;
+use halfstep_output::run_json::RunStatus;
+use halfstep_role::lockstep::{self, RoleError};
+use halfstep_scene as scene;
+use halfstep_study::command::{StudyArguments, study};
+use halfstep_wire::failure::RoleName;
+use std::os::unix::process::parent_id;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Fluid-structure co-simulation by smoothed particle hydrodynamics: a fluid process, a solid process and a coupler in
+/// lock-step over shared memory.
+#[derive(Parser)]
+#[command(version)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Simulates a scene
+    Run(RunArguments),
+    /// Validates a scene; prints counts, time steps, memory and expected time
+    Check(SceneArguments),
+    /// Shows which effects take part in a scene, why, and what each costs
+    Explain {
+        #[command(flatten)]
+        scene: SceneArguments,
+        /// Prints JSON
+        #[arg(long)]
+        json: bool,
+    },
+    Study(StudyArguments),
+    /// A role's process; started by `run`
+    #[command(hide = true)]
+    Role {
+        /// fluid or solid
+        name: String,
+    },
+}
+
+#[derive(clap::Args)]
+struct SceneArguments {
+    /// Scene file (TOML)
+    scene: PathBuf,
+    /// Overrides a key of the scene: dotted, `shape.NAME.KEY` for a shape
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Simulated time, s (end_time of the scene)
+    #[arg(long, value_name = "SECONDS")]
+    until: Option<String>,
+}
+
+#[derive(clap::Args)]
+struct RunArguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// Folder of the run (default: out/SCENE)
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Worker threads of the fluid process
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..=1024))]
+    threads: Option<u64>,
+    /// Runs the roles as threads of one process
+    #[arg(long, conflicts_with = "solid")]
+    in_process: bool,
+    /// Shows no progress
+    #[arg(long)]
+    quiet: bool,
+    /// Removes an earlier run in the folder
+    #[arg(long)]
+    force: bool,
+    /// A solid of your own: a command that speaks the protocol; without a command, one is awaited
+    #[arg(long, value_name = "COMMAND", num_args = 0..=1, default_missing_value = "")]
+    solid: Option<String>,
+    /// How long to wait for a solid started by hand, s
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = seconds, allow_negative_numbers = true)]
+    solid_wait: f64,
+}
+
+/// A time to wait.
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value <= 1e6 => Ok(value),
+        Ok(_) => Err("must be greater than 0 and at most 1e6 s".into()),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            let _ = error.print();
+            // Help and version are no errors.
+            return ExitCode::from(u8::from(error.use_stderr()));
+        }
+    };
+    match arguments.command {
+        Command::Run(arguments) => run_scene(arguments),
+        Command::Check(arguments) => match load(&arguments) {
+            Ok(scene) => {
+                print!("{}", halfstep::check::describe(&scene));
+                ExitCode::SUCCESS
+            }
+            Err(code) => code,
+        },
+        Command::Explain { scene, json } => explain_scene(&scene, json),
+        Command::Study(arguments) => study(arguments),
+        Command::Role { name } => serve_role(&name),
+    }
+}
+
+fn load(arguments: &SceneArguments) -> Result<scene::Scene, ExitCode> {
+    let mut overrides = arguments.set.clone();
+    overrides.extend(arguments.until.iter().map(|t| format!("end_time={t}")));
+    scene::load(&arguments.scene, &overrides).map_err(|errors| {
+        eprintln!("{:?}", miette::Report::new(errors));
+        ExitCode::from(1)
+    })
+}
+
+fn explain_scene(arguments: &SceneArguments, json: bool) -> ExitCode {
+    let scene = match load(arguments) {
+        Ok(scene) => scene,
+        Err(code) => return code,
+    };
+    match halfstep::explain::explain(&scene) {
+        Ok(explanation) if json => match serde_json::to_string_pretty(&explanation) {
+            Ok(text) => {
+                println!("{text}");
+                ExitCode::SUCCESS
+            }
+            Err(error) => {
+                eprintln!("error: {error}");
+                ExitCode::from(2)
+            }
+        },
+        Ok(explanation) => {
+            print!("{explanation}");
+            ExitCode::SUCCESS
+        }
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run_scene(arguments: RunArguments) -> ExitCode {
+    let scene = match load(&arguments.scene) {
+        Ok(scene) => scene,
+        Err(code) => return code,
+    };
+    let out = arguments.out.unwrap_or_else(|| PathBuf::from("out").join(&scene.name));
+    let options = RunOptions {
+        out: out.clone(),
+        threads: arguments.threads.map(|n| n as usize),
+        in_process: arguments.in_process,
+        quiet: arguments.quiet,
+        force: arguments.force,
+        solid: match arguments.solid {
+            None => SolidSource::BuiltIn,
+            Some(line) if line.is_empty() => SolidSource::ByHand,
+            Some(line) => SolidSource::Command(line),
+        },
+        solid_wait: arguments.solid_wait,
+    };
+    match run::run(&scene, &options) {
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(1)
+        }
+        Ok((report, error)) => {
+            if let Some(error) = error {
+                eprintln!("error: {error}");
+            }
+            println!(
+                "{}: {} steps to t = {} s in {:.1} s; see {}",
+                scene.name,
+                report.steps,
+                report.time,
+                report.wall_seconds,
+                out.join("plot.png").display()
+            );
+            match report.status {
+                Some(RunStatus::Finished) => ExitCode::SUCCESS,
+                Some(RunStatus::Stopped) => ExitCode::from(130),
+                _ => ExitCode::from(2),
+            }
+        }
+    }
+}
+
+fn serve_role(name: &str) -> ExitCode {
+    tracing_subscriber::fmt().with_writer(std::io::stderr).with_ansi(false).init();
+    let role = match name {
+        "fluid" => RoleName::Fluid,
+        "solid" => RoleName::Solid,
+        _ => {
+            eprintln!("error: a role is fluid or solid, not `{name}`");
+            return ExitCode::from(1);
+        }
+    };
+    let launcher = parent_id();
+    let result = abort_flag()
+        .map_err(|e| RoleError::Start(format!("cannot watch for signals: {e}")))
+        .and_then(|abort| {
+            lockstep::serve_process(
+                roles::stem(role),
+                abort,
+                |scene| roles::build(role, scene),
+                |folder| Ok(Box::new(FrameWriter::start(folder, roles::stem(role))?)),
+            )
+        });
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            // Without its launcher a role hears of the end from the system, or from the other role that was faster.
+            let of_others = matches!(error, RoleError::Link(_) | RoleError::PeerEnded { .. });
+            if of_others && parent_id() != launcher {
+                tracing::error!("{role}: the coupler is gone, and its roles go with it ({error})");
+            } else {
+                tracing::error!("{role}: {error}");
+            }
+            ExitCode::from(2)
+        }
+    }
+}

@@ -1,0 +1,261 @@
+//! The one time line of a run: steps, times, and when something is written.
+
+use halfstep_scene::{Scene, TimeStep};
+use halfstep_wire::failure::{Diverged, Quantity, RoleName};
+
+/// Growth of the time step from one step to the next.
+const GROWTH: f64 = 1.1;
+
+/// Steps and times.
+#[derive(Clone, Debug)]
+pub struct Clock {
+    end: f64,
+    fixed: Option<f64>,
+    time: f64,
+    step: u64,
+    last_dt: Option<f64>,
+    /// Of each phase, as last told.
+    limits: [Option<Limit>; 2],
+    /// The fixed step was found above the limit of this phase.
+    warned: [bool; 2],
+    frames: Periodic,
+    rows: Periodic,
+}
+
+/// Largest time step that a phase is stable with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limit {
+    /// The phase.
+    pub role: RoleName,
+    /// Time step, s.
+    pub dt: f64,
+}
+
+#[derive(Clone, Debug)]
+struct Periodic {
+    interval: f64,
+    count: u64,
+}
+
+impl Periodic {
+    fn due(&mut self, time: f64) -> Option<u64> {
+        if time < self.count as f64 * self.interval * (1.0 - 1e-9) {
+            return None;
+        }
+        let number = self.count;
+        // An interval shorter than a step does not make up for instants that passed.
+        self.count = self.count.max((time / self.interval * (1.0 + 1e-9)).floor() as u64) + 1;
+        Some(number)
+    }
+}
+
+/// What happens with the state at n.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tick {
+    /// Step n.
+    pub step: u64,
+    /// Its time, s.
+    pub time: f64,
+    /// Step to n + 1, s; `None`: the end is reached.
+    pub dt: Option<f64>,
+    /// Time of n + 1, s.
+    pub next_time: f64,
+    /// It is written as a frame.
+    pub frame: bool,
+    /// It is a row of the probe log.
+    pub row: bool,
+    /// The step is the scene's and, for the first time, above this limit.
+    pub exceeded: Option<Limit>,
+}
+
+impl Clock {
+    /// A clock at time zero.
+    pub fn new(scene: &Scene) -> Self {
+        Self {
+            end: scene.end_time,
+            fixed: match scene.time_step {
+                TimeStep::Auto => None,
+                TimeStep::Fixed(dt) => Some(dt),
+            },
+            time: 0.0,
+            step: 0,
+            last_dt: None,
+            limits: [None; 2],
+            warned: [false; 2],
+            frames: Periodic { interval: scene.output.frame_interval, count: 0 },
+            rows: Periodic { interval: scene.output.probe_interval, count: 0 },
+        }
+    }
+
+    /// Time of the state at n, s.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Number of the state at n.
+    pub fn step(&self) -> u64 {
+        self.step
+    }
+
+    /// Looks at the state at n: what to do with it and how far to go next, given the limits of the phases.
+    ///
+    /// # Errors
+    /// The limit is no positive number, or would never reach the end.
+    pub fn tick(&mut self, limits: &[Limit], stop: bool) -> Result<Tick, Diverged> {
+        let remaining = self.end - self.time;
+        let last = stop || remaining <= self.end * 1e-12;
+        let (step, time) = (self.step, self.time);
+        if last {
+            return Ok(Tick {
+                step,
+                time,
+                dt: None,
+                next_time: time,
+                frame: true,
+                row: true,
+                exceeded: None,
+            });
+        }
+        for (known, told) in self.limits.iter_mut().zip(limits) {
+            *known = Some(*told);
+        }
+        // A minimum that keeps what is no number.
+        let limit =
+            limits.iter().map(|l| l.dt).fold(f64::INFINITY, |a, b| if b.is_nan() || b < a { b } else { a });
+        let frame = self.frames.due(self.time).is_some();
+        let row = self.rows.due(self.time).is_some();
+        let mut dt = match self.fixed {
+            Some(dt) => dt,
+            None => self.last_dt.map_or(limit, |last| limit.min(GROWTH * last)),
+        };
+        if !(dt.is_finite() && dt > 1e-9 * self.end.min(1.0) * 1e-3) {
+            return Err(Diverged {
+                role: RoleName::Coupler,
+                particle: 0,
+                quantity: Quantity::TimeStep,
+                value: dt,
+                step: self.step,
+                stage: 0,
+                position: [0.0; 3],
+            });
+        }
+        self.last_dt = Some(dt);
+        let mut next_time = self.time + dt;
+        if remaining <= dt * (1.0 + 1e-9) {
+            (dt, next_time) = (remaining, self.end);
+        } else if self.fixed.is_none() && remaining < 2.0 * dt {
+            // Two even steps rather than one of the usual length and a sliver.
+            dt = 0.5 * remaining;
+            next_time = self.time + dt;
+        }
+        let exceeded = self.exceeded().find(|(k, _)| !self.warned[*k]);
+        if let Some((k, _)) = exceeded {
+            self.warned[k] = true;
+        }
+        Ok(Tick { step, time, dt: Some(dt), next_time, frame, row, exceeded: exceeded.map(|(_, l)| l) })
+    }
+
+    /// Limits that the scene's own time step exceeds, by place.
+    pub fn exceeded(&self) -> impl Iterator<Item = (usize, Limit)> + '_ {
+        let above = |l: &Limit| self.fixed.is_some_and(|dt| dt > l.dt * (1.0 + 1e-9));
+        self.limits
+            .iter()
+            .enumerate()
+            .filter_map(|(k, limit)| Some((k, *limit.as_ref()?)))
+            .filter(move |(_, limit)| above(limit))
+    }
+
+    /// The step was done.
+    pub fn advance(&mut self, tick: &Tick) {
+        self.time = tick.next_time;
+        self.step += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn clock(end: f64, fixed: Option<f64>) -> Clock {
+        Clock {
+            end,
+            fixed,
+            time: 0.0,
+            step: 0,
+            last_dt: None,
+            limits: [None; 2],
+            warned: [false; 2],
+            frames: Periodic { interval: 0.25, count: 0 },
+            rows: Periodic { interval: 0.1, count: 0 },
+        }
+    }
+
+    fn of_fluid(dt: f64) -> Limit {
+        Limit { role: RoleName::Fluid, dt }
+    }
+
+    fn run(mut clock: Clock, limit: impl Fn(u64) -> f64) -> (Vec<f64>, Vec<f64>, f64) {
+        let (mut steps, mut frames) = (Vec::new(), Vec::new());
+        loop {
+            let tick = clock.tick(&[of_fluid(limit(clock.step))], false).unwrap();
+            if tick.frame {
+                frames.push(tick.time);
+            }
+            let Some(dt) = tick.dt else { return (steps, frames, tick.time) };
+            steps.push(dt);
+            clock.advance(&tick);
+        }
+    }
+
+    #[test]
+    fn the_last_step_is_clipped_to_the_end() {
+        let (steps, frames, end) = run(clock(1.0, Some(0.3)), |_| f64::NAN);
+        assert_eq!(steps.len(), 4);
+        assert!((steps[3] - 0.1).abs() < 1e-12);
+        assert_eq!(end, 1.0);
+        assert_eq!(frames.len(), 5, "{frames:?}");
+    }
+
+    #[test]
+    fn the_step_grows_by_a_tenth_at_most_and_shrinks_at_once() {
+        let (steps, _, end) = run(clock(1.0, None), |n| {
+            if n == 3 {
+                0.01
+            } else if n == 0 {
+                0.02
+            } else {
+                1.0
+            }
+        });
+        assert!((steps[1] / steps[0] - 1.1).abs() < 1e-12);
+        assert_eq!(steps[3], 0.01);
+        assert!((steps[4] - 0.011).abs() < 1e-15);
+        assert!((steps.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+        assert_eq!(end, 1.0);
+    }
+
+    #[test]
+    fn a_limit_that_is_no_number_is_an_error() {
+        let failure = clock(1.0, None).tick(&[of_fluid(f64::NAN)], false).unwrap_err();
+        assert_eq!(failure.quantity, Quantity::TimeStep);
+        assert!(clock(1.0, None).tick(&[of_fluid(0.0)], false).is_err());
+        let both = [of_fluid(0.1), Limit { role: RoleName::Solid, dt: f64::NAN }];
+        assert!(clock(1.0, None).tick(&both, false).is_err());
+    }
+
+    #[test]
+    fn a_fixed_step_above_a_limit_is_told_once_for_each_phase() {
+        let mut clock = clock(1.0, Some(0.1));
+        let mut told = Vec::new();
+        for (fluid, solid) in [(0.2, 0.05), (0.2, 0.04), (0.09, 0.05), (0.08, 0.05)] {
+            let solid = Limit { role: RoleName::Solid, dt: solid };
+            let tick = clock.tick(&[of_fluid(fluid), solid], false).unwrap();
+            assert_eq!(tick.dt, Some(0.1), "it is taken all the same");
+            told.push(tick.exceeded);
+            clock.advance(&tick);
+        }
+        let solid = Limit { role: RoleName::Solid, dt: 0.05 };
+        assert_eq!(told, [Some(solid), None, Some(of_fluid(0.09)), None]);
+        assert_eq!(clock.exceeded().count(), 2);
+    }
+}

@@ -1,0 +1,108 @@
+//! What the coupler does for a solid process that only exchanges states: its frames and probes, from its records.
+
+use halfstep_output::{Frame, FramePoint, FrameWriter, OutputError};
+use halfstep_scene::geometry::{holds, nearest};
+use halfstep_scene::{Phase, ProbeKind, Scene};
+use halfstep_wire::protocol::{ForceRecord, StateRecord};
+use std::path::Path;
+
+/// Stand-in for a foreign solid's writer and probes.
+pub struct ForeignSolid {
+    writer: FrameWriter,
+    kinds: Vec<ProbeKind>,
+    dimension: usize,
+    first: Vec<[f64; 3]>,
+    /// The records that each probe is about, where it is not about all of them.
+    chosen: Vec<Vec<usize>>,
+    values: Vec<f64>,
+}
+
+impl ForeignSolid {
+    /// Frames go to the run's folder.
+    ///
+    /// # Errors
+    /// The writer cannot start.
+    pub fn new(scene: &Scene, folder: &Path) -> Result<Self, OutputError> {
+        Ok(Self {
+            writer: FrameWriter::start(folder, "solid")?,
+            kinds: scene.probes.iter().map(|p| p.kind).filter(|k| k.phase() == Phase::Solid).collect(),
+            dimension: scene.dimension,
+            first: Vec::new(),
+            chosen: Vec::new(),
+            values: Vec::new(),
+        })
+    }
+
+    /// Probe values from the state at n.
+    ///
+    /// `forces` answer the same state, record by record.
+    pub fn measure(&mut self, records: &[StateRecord], forces: &[ForceRecord]) -> &[f64] {
+        if self.first.is_empty() {
+            self.first = records.iter().map(|r| r.position).collect();
+            self.chosen = self.kinds.iter().map(|kind| self.choose(kind)).collect();
+        }
+        self.values.clear();
+        for (kind, chosen) in self.kinds.iter().zip(&self.chosen) {
+            match kind {
+                ProbeKind::Displacement { .. } => {
+                    for d in 0..self.dimension {
+                        let sum: f64 =
+                            chosen.iter().map(|&i| records[i].position[d] - self.first[i][d]).sum();
+                        self.values.push(sum / chosen.len() as f64);
+                    }
+                }
+                ProbeKind::KineticEnergy { .. } => {
+                    let energy =
+                        |r: &StateRecord| 0.5 * r.mass * r.velocity.iter().map(|v| v * v).sum::<f64>();
+                    self.values.push(records.iter().map(energy).sum());
+                }
+                ProbeKind::Force { .. } => {
+                    for d in 0..self.dimension {
+                        let force = |&i: &usize| forces[i].force(records[i].mass)[d];
+                        self.values.push(chosen.iter().map(force).sum());
+                    }
+                }
+                _ => {
+                    let mass: f64 = records.iter().map(|r| r.mass).sum();
+                    for d in 0..self.dimension {
+                        self.values.push(records.iter().map(|r| r.mass * r.position[d]).sum::<f64>() / mass);
+                    }
+                }
+            }
+        }
+        &self.values
+    }
+
+    fn choose(&self, kind: &ProbeKind) -> Vec<usize> {
+        match *kind {
+            ProbeKind::Displacement { at } => nearest(self.first.iter().copied(), at),
+            ProbeKind::Force { within } => {
+                let inside = |i: &usize| within.is_none_or(|b| holds(&b, &self.first[*i], 0.0));
+                (0..self.first.len()).filter(inside).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// Writes the records as a frame.
+    ///
+    /// # Errors
+    /// An earlier frame could not be written.
+    pub fn write(&mut self, number: u64, time: f64, records: &[StateRecord]) -> Result<(), OutputError> {
+        self.writer.submit(number as u32, |frame: &mut Frame| {
+            frame.clear();
+            frame.time = time;
+            for r in records {
+                frame.push(FramePoint::solid(r));
+            }
+        })
+    }
+
+    /// Waits until all frames are on disk.
+    ///
+    /// # Errors
+    /// A frame could not be written.
+    pub fn finish(self) -> Result<(), OutputError> {
+        self.writer.finish().map(|_| ())
+    }
+}

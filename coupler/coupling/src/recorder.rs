@@ -1,0 +1,243 @@
+//! What a run writes down as it goes: probe log, statistics, progress.
+
+use crate::clock::Tick;
+use crate::energy::{self, EnergyBalance};
+use halfstep_output::{OutputError, ProbeLog, RunReport, run_json};
+use halfstep_role::role::audit;
+use halfstep_scene::{Phase, Scene};
+use halfstep_wire::failure::Diverged;
+use halfstep_wire::protocol::StateHeader;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// What a phase measured on the state at n.
+#[derive(Clone, Copy, Debug)]
+pub struct Measured<'a> {
+    /// Probe values in the scene's order for this phase.
+    pub probes: &'a [f64],
+    /// See [`audit`].
+    pub audit: &'a [f64; 8],
+    /// Sub-steps of the last step.
+    pub sub_steps: u32,
+    /// Own particles.
+    pub particles: u64,
+}
+
+impl<'a> Measured<'a> {
+    /// What a state message carries.
+    pub fn of(header: &'a StateHeader) -> Self {
+        Self {
+            probes: &header.probes[..header.probe_count as usize],
+            audit: &header.audit,
+            sub_steps: header.sub_steps,
+            particles: header.particles,
+        }
+    }
+}
+
+/// Probe log, statistics and progress of a run.
+pub struct Recorder {
+    log: ProbeLog,
+    /// For each probe its phase and number of values.
+    order: Vec<(Phase, usize)>,
+    values: Vec<f64>,
+    bar: ProgressBar,
+    started: Instant,
+    shown: Instant,
+    end: f64,
+    steps: u64,
+    time: f64,
+    dt: (f64, f64, f64),
+    particle_steps: f64,
+    sub_steps: u32,
+    first_momentum: Option<[f64; 3]>,
+    momentum_scale: f64,
+    momentum_drift: f64,
+    first_energy: Option<f64>,
+    energy: f64,
+    density_error: f64,
+    gap: f64,
+    removed: u64,
+    first_fluid: Option<u64>,
+    isolated: bool,
+    balance: EnergyBalance,
+}
+
+impl Recorder {
+    /// Opens the probe log; `quiet` hides the progress.
+    ///
+    /// # Errors
+    /// The log cannot be created.
+    pub fn new(scene: &Scene, probes: &Path, quiet: bool) -> Result<Self, OutputError> {
+        let columns: Vec<String> = scene.probes.iter().flat_map(|p| p.columns(scene.dimension)).collect();
+        let bar = ProgressBar::new(1000);
+        let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}  ETA {eta}");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        if quiet {
+            bar.set_draw_target(ProgressDrawTarget::hidden());
+        }
+        let now = Instant::now();
+        // Momentum is kept only where nothing outside acts: no gravity, no walls, no clamps.
+        let isolated = scene.gravity == [0.0; 3]
+            && scene.shapes.iter().all(|s| s.phase != Phase::Wall && s.clamp.is_empty());
+        Ok(Self {
+            log: ProbeLog::create(probes, &columns)?,
+            order: scene
+                .probes
+                .iter()
+                .map(|p| (p.kind.phase(), p.kind.components(scene.dimension).0.len()))
+                .collect(),
+            values: vec![0.0; columns.len()],
+            bar,
+            started: now,
+            shown: now,
+            end: scene.end_time,
+            steps: 0,
+            time: 0.0,
+            dt: (f64::INFINITY, 0.0, 0.0),
+            particle_steps: 0.0,
+            sub_steps: 0,
+            first_momentum: None,
+            momentum_scale: 0.0,
+            momentum_drift: 0.0,
+            first_energy: None,
+            energy: 0.0,
+            density_error: 0.0,
+            gap: f64::INFINITY,
+            removed: 0,
+            first_fluid: None,
+            isolated,
+            balance: EnergyBalance::new(scene),
+        })
+    }
+
+    /// Judges the energies of the state at n, by the work done on the solid since the state before, J. `None` stands for
+    /// a phase that is not there or whose energy is not known.
+    pub fn judge(
+        &mut self,
+        step: u64,
+        time: f64,
+        fluid: Option<&[f64; 8]>,
+        solid: Option<&[f64; 8]>,
+        work_on_solid: f64,
+    ) -> Option<Diverged> {
+        self.balance.note(time, fluid, solid, work_on_solid).map(|excess| energy::diverged(excess, step))
+    }
+
+    /// Notes the state at n.
+    ///
+    /// # Errors
+    /// A row of the probe log cannot be written.
+    pub fn note(
+        &mut self,
+        tick: &Tick,
+        fluid: Option<Measured<'_>>,
+        solid: Option<Measured<'_>>,
+    ) -> Result<(), OutputError> {
+        self.time = tick.time;
+        if let (Some(limit), Some(dt)) = (tick.exceeded, tick.dt) {
+            let warning = format!(
+                "time_step = {dt:.4e} s is above the {}'s stability limit of {:.4e} s, {:.2} times (time_step = \
+                 \"auto\" keeps to it)",
+                limit.role,
+                limit.dt,
+                dt / limit.dt
+            );
+            tracing::warn!("{warning}");
+            self.bar.suspend(|| eprintln!("warning: {warning}"));
+        }
+        if tick.row {
+            let (mut f, mut s, mut at) = (0, 0, 0);
+            for &(phase, n) in &self.order {
+                let (source, from) = match phase {
+                    Phase::Solid => (&solid, &mut s),
+                    _ => (&fluid, &mut f),
+                };
+                for value in &mut self.values[at..at + n] {
+                    *value = source.as_ref().and_then(|m| m.probes.get(*from).copied()).unwrap_or(f64::NAN);
+                    *from += 1;
+                }
+                at += n;
+            }
+            self.log.row(tick.time, &self.values)?;
+        }
+        self.audit(fluid.as_ref(), solid.as_ref());
+        let particles: u64 = [&fluid, &solid].into_iter().flatten().map(|m| m.particles).sum();
+        if let Some(dt) = tick.dt {
+            self.steps += 1;
+            self.particle_steps += particles as f64;
+            self.dt = (self.dt.0.min(dt), self.dt.1 + dt, self.dt.2.max(dt));
+        }
+        if let Some(solid) = &solid {
+            self.sub_steps = self.sub_steps.max(solid.sub_steps);
+        }
+        if self.shown.elapsed() > Duration::from_millis(200) {
+            self.shown = Instant::now();
+            let rate = self.particle_steps / self.started.elapsed().as_secs_f64();
+            self.bar.set_position((1000.0 * self.time / self.end) as u64);
+            self.bar.set_message(format!(
+                "t = {:.4} s  dt = {:.2e} s  {:.2} M particle-steps/s",
+                self.time,
+                tick.dt.unwrap_or(0.0),
+                rate * 1e-6
+            ));
+        }
+        Ok(())
+    }
+
+    fn audit(&mut self, fluid: Option<&Measured<'_>>, solid: Option<&Measured<'_>>) {
+        let (mut momentum, mut kinetic, mut stored, mut mass) = ([0.0; 3], 0.0, 0.0, 0.0);
+        for m in [fluid, solid].into_iter().flatten() {
+            for d in 0..3 {
+                momentum[d] += m.audit[audit::MOMENTUM + d];
+            }
+            kinetic += m.audit[audit::KINETIC_ENERGY];
+            stored += m.audit[audit::STORED_ENERGY];
+            mass += m.audit[audit::MASS];
+        }
+        if let Some(f) = fluid {
+            self.density_error = self.density_error.max(f.audit[audit::DENSITY_ERROR]);
+            self.gap = self.gap.min(f.audit[audit::GAP]);
+            let first = *self.first_fluid.get_or_insert(f.particles);
+            self.removed = first.saturating_sub(f.particles);
+        }
+        self.energy = kinetic + stored;
+        self.first_energy.get_or_insert(self.energy);
+        let first = *self.first_momentum.get_or_insert(momentum);
+        // Scale: all mass at the speed of the largest kinetic energy seen.
+        self.momentum_scale = self.momentum_scale.max((2.0 * kinetic * mass).sqrt());
+        if self.isolated && self.momentum_scale > 0.0 {
+            let drift = (0..3).map(|d| (momentum[d] - first[d]).abs()).fold(0.0, f64::max);
+            self.momentum_drift = self.momentum_drift.max(drift / self.momentum_scale);
+        }
+    }
+
+    /// Puts the statistics into the report.
+    pub fn finish(self, report: &mut RunReport) {
+        self.bar.finish_and_clear();
+        report.steps = self.steps;
+        report.time = self.time;
+        report.wall_seconds = self.started.elapsed().as_secs_f64();
+        if report.wall_seconds > 0.0 {
+            report.particle_steps_per_second = Some(self.particle_steps / report.wall_seconds);
+        }
+        if self.steps > 0 {
+            report.dt = run_json::TimeSteps {
+                min: Some(self.dt.0),
+                mean: Some(self.dt.1 / self.steps as f64),
+                max: Some(self.dt.2),
+            };
+        }
+        report.sub_steps = (self.sub_steps > 0).then_some(self.sub_steps);
+        report.audit.momentum_drift = self.isolated.then_some(self.momentum_drift);
+        report.audit.energy_drift = self
+            .first_energy
+            .filter(|&e| self.isolated && self.first_fluid.is_none() && e > 0.0)
+            .map(|e| self.energy / e - 1.0);
+        report.particles.removed = self.removed;
+        report.audit.energy_growth = self.balance.growth();
+        report.audit.density_error = self.first_fluid.map(|_| self.density_error);
+        report.audit.min_gap = self.gap.is_finite().then_some(self.gap);
+    }
+}

@@ -1,0 +1,27 @@
+//! The roles by scene: the one place where the dimension becomes a type.
+
+use halfstep_fluid::Fluid;
+use halfstep_role::role::Role;
+use halfstep_scene::Scene;
+use halfstep_solid::Solid;
+use halfstep_sph::lane::Isa;
+use halfstep_wire::failure::RoleName;
+
+/// The role of a phase, where the scene has it.
+pub fn build(role: RoleName, scene: &Scene) -> Option<Box<dyn Role>> {
+    let isa = Isa::detect();
+    match role {
+        RoleName::Fluid => Fluid::<2>::new(scene, isa).map(|f| Box::new(f) as Box<dyn Role>),
+        RoleName::Solid => Solid::<2>::new(scene, isa).map(|s| Box::new(s) as Box<dyn Role>),
+        RoleName::Coupler => None,
+    }
+}
+
+/// File stem of a phase's frames.
+pub fn stem(role: RoleName) -> &'static str {
+    match role {
+        RoleName::Fluid => "fluid",
+        RoleName::Solid => "solid",
+        RoleName::Coupler => "coupler",
+    }
+}

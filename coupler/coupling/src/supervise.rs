@@ -1,0 +1,256 @@
+//! Starts the roles as processes, watches them and ends them.
+//!
+//! Start all children before the coupler opens its link, and from a thread that lives as long as they shall: the system
+//! ends them when that thread ends.
+
+use halfstep_link::LinkConfig;
+use halfstep_wire::failure::RoleName;
+use signal_hook::consts::{SIGINT, SIGTERM};
+use std::ffi::OsStr;
+use std::fs::{File, OpenOptions};
+use std::io;
+use std::os::unix::process::{CommandExt, ExitStatusExt};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+/// Pause between two looks at the children.
+const TICK: Duration = Duration::from_millis(5);
+
+/// Why a role could not be started.
+#[derive(Debug, thiserror::Error)]
+pub enum SuperviseError {
+    /// The log could not be opened.
+    #[error("{path}: {source}", path = path.display())]
+    Log {
+        /// Its path.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The program could not be started.
+    #[error("the {role} could not be started (`{command}`): {source}")]
+    Start {
+        /// Which role.
+        role: RoleName,
+        /// The command.
+        command: String,
+        /// What the system said.
+        source: io::Error,
+    },
+}
+
+/// The roles that run as children of this process. What they print is appended to a log. Dropping it kills those that
+/// still live.
+#[derive(Debug)]
+pub struct Children {
+    log: PathBuf,
+    children: Vec<Supervised>,
+}
+
+#[derive(Debug)]
+struct Supervised {
+    role: RoleName,
+    child: Child,
+    /// The child leads a process group that may outlive it.
+    group: bool,
+    status: Option<ExitStatus>,
+}
+
+impl Supervised {
+    /// Whether the child, or what it started itself, still runs.
+    fn is_alive(&self) -> bool {
+        self.status.is_none() || self.group
+    }
+
+    fn poll(&mut self) {
+        if self.status.is_none() {
+            self.status = self.child.try_wait().ok().flatten();
+        }
+        // An empty group is forgotten at once: its number may be given to others.
+        if self.status.is_some() && self.group && !self.signal(0) {
+            self.group = false;
+        }
+    }
+
+    fn signal(&self, signal: i32) -> bool {
+        let pid = self.child.id() as libc::pid_t;
+        // SAFETY: the target is a child that has not been waited for, or a group that had members when last polled.
+        self.is_alive() && unsafe { libc::kill(if self.group { -pid } else { pid }, signal) } == 0
+    }
+}
+
+impl Children {
+    /// No children yet; theirs is the log at this path.
+    pub fn new(log: &Path) -> Self {
+        Self { log: log.to_owned(), children: Vec::new() }
+    }
+
+    /// Starts a role. It ends with this process, it does not hear Ctrl-C, and its output goes to the log.
+    pub fn spawn(&mut self, role: RoleName, command: Command) -> Result<(), SuperviseError> {
+        self.start(role, command, false)
+    }
+
+    /// Starts a role that somebody else wrote, from a line for the shell. It learns of the run from the variables of
+    /// [`LinkConfig::to_env`] and from `HALFSTEP_SCENE`, the path of the resolved scene as JSON.
+    pub fn spawn_shell(
+        &mut self,
+        role: RoleName,
+        line: &str,
+        link: &LinkConfig,
+        scene: &Path,
+    ) -> Result<(), SuperviseError> {
+        let mut command = Command::new("sh");
+        command.arg("-c").arg(line).envs(link.to_env()).env("HALFSTEP_SCENE", scene);
+        self.start(role, command, true)
+    }
+
+    fn start(&mut self, role: RoleName, mut command: Command, group: bool) -> Result<(), SuperviseError> {
+        let log = self.open_log()?;
+        let errors =
+            log.try_clone().map_err(|source| SuperviseError::Log { path: self.log.clone(), source })?;
+        command.stdin(Stdio::null()).stdout(log).stderr(errors);
+        if group {
+            // A shell may have children of its own.
+            command.process_group(0);
+        }
+        let parent = std::process::id();
+        // SAFETY: between fork and exec; only calls that are safe after a fork of a process with threads.
+        unsafe {
+            command.pre_exec(move || bind_to_parent(parent));
+        }
+        let child = command.spawn().map_err(|source| SuperviseError::Start {
+            role,
+            command: std::iter::once(command.get_program())
+                .chain(command.get_args())
+                .map(OsStr::to_string_lossy)
+                .collect::<Vec<_>>()
+                .join(" "),
+            source,
+        })?;
+        self.children.push(Supervised { role, child, group, status: None });
+        Ok(())
+    }
+
+    fn open_log(&self) -> Result<File, SuperviseError> {
+        OpenOptions::new()
+            .create(true)
+            .append(true)
+            .open(&self.log)
+            .map_err(|source| SuperviseError::Log { path: self.log.clone(), source })
+    }
+
+    /// Process numbers of the roles, in the order of their start.
+    pub fn pids(&self) -> Vec<(RoleName, u32)> {
+        self.children.iter().map(|c| (c.role, c.child.id())).collect()
+    }
+
+    /// Whether a child still runs.
+    pub fn any_alive(&mut self) -> bool {
+        self.poll();
+        self.children.iter().any(Supervised::is_alive)
+    }
+
+    /// The first child that was found to have ended, and how. Children that end in the same moment are ordered by
+    /// their failure: one that did not succeed comes before one that did.
+    pub fn first_exit(&mut self) -> Option<(RoleName, ExitStatus)> {
+        self.poll();
+        let ended = || self.children.iter().filter_map(|c| Some((c.role, c.status?)));
+        ended().find(|(_, status)| !status.success()).or_else(|| ended().next())
+    }
+
+    /// The child whose end ended the others: one that a signal ended, else the one that was missed, else any that
+    /// failed. Which of them was noticed first says nothing.
+    pub fn culprit(&mut self, missed: Option<RoleName>) -> Option<(RoleName, ExitStatus)> {
+        let exits = self.exits();
+        let failed = || exits.iter().copied().filter(|(_, status)| !status.success());
+        failed()
+            .find(|(_, status)| status.signal().is_some())
+            .or_else(|| failed().find(|(role, _)| Some(*role) == missed))
+            .or_else(|| failed().next())
+    }
+
+    /// How each child ended that has.
+    pub fn exits(&mut self) -> Vec<(RoleName, ExitStatus)> {
+        self.poll();
+        self.children.iter().filter_map(|c| Some((c.role, c.status?))).collect()
+    }
+
+    /// Waits until all have ended by themselves; returns whether they have within this time.
+    pub fn wait(&mut self, time: Duration) -> bool {
+        let deadline = Instant::now() + time;
+        while self.any_alive() {
+            if Instant::now() >= deadline {
+                return false;
+            }
+            std::thread::sleep(TICK);
+        }
+        true
+    }
+
+    /// Asks all to end, waits so long, then kills those that have not. Returns how each ended.
+    pub fn stop(&mut self, grace: Duration) -> Vec<(RoleName, ExitStatus)> {
+        self.signal(libc::SIGTERM);
+        if !self.wait(grace) {
+            self.signal(libc::SIGKILL);
+            for child in self.children.iter_mut().filter(|c| c.status.is_none()) {
+                child.status = child.child.wait().ok();
+            }
+        }
+        self.exits()
+    }
+
+    fn poll(&mut self) {
+        self.children.iter_mut().for_each(Supervised::poll);
+    }
+
+    fn signal(&mut self, signal: i32) {
+        self.poll();
+        for child in &self.children {
+            child.signal(signal);
+        }
+    }
+}
+
+impl Drop for Children {
+    fn drop(&mut self) {
+        self.stop(Duration::ZERO);
+    }
+}
+
+/// Lets the calling process end when its parent does and not hear Ctrl-C: the coupler decides what that means.
+fn bind_to_parent(parent: u32) -> io::Result<()> {
+    // SAFETY: no memory is passed; all three calls are safe after a fork.
+    unsafe {
+        if libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGTERM) != 0 {
+            return Err(io::Error::last_os_error());
+        }
+        // The parent may have ended before that call.
+        if libc::getppid() as u32 != parent {
+            libc::_exit(1);
+        }
+        libc::signal(libc::SIGINT, libc::SIG_IGN);
+    }
+    Ok(())
+}
+
+/// A flag that Ctrl-C and SIGTERM set, for the process that people see.
+pub fn stop_flag() -> io::Result<Arc<AtomicBool>> {
+    flag_for(&[SIGINT, SIGTERM])
+}
+
+/// A flag that SIGTERM sets, for a child: passed to the link as its abort flag, it ends every wait, so that the role
+/// can clean up.
+pub fn abort_flag() -> io::Result<Arc<AtomicBool>> {
+    flag_for(&[SIGTERM])
+}
+
+fn flag_for(signals: &[i32]) -> io::Result<Arc<AtomicBool>> {
+    let flag = Arc::new(AtomicBool::new(false));
+    for signal in signals {
+        signal_hook::flag::register(*signal, Arc::clone(&flag))?;
+    }
+    Ok(flag)
+}

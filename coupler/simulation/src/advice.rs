@@ -1,0 +1,108 @@
+//! What to change in a scene whose run diverged.
+
+use halfstep_coupling::clock::Clock;
+use halfstep_scene::{Scene, TimeStep};
+use halfstep_wire::failure::{Diverged, Quantity, RoleName};
+
+/// The keys to change, with their present values. `foreign`: the solid is a process of somebody else's.
+pub(crate) fn advice(diverged: &Diverged, scene: &Scene, clock: &Clock, foreign: bool) -> String {
+    let role = diverged.role;
+    // The diverged phase's own limit says more than the other's.
+    let exceeded = clock.exceeded().map(|(_, limit)| limit);
+    if let (TimeStep::Fixed(dt), Some(limit)) =
+        (scene.time_step, exceeded.max_by_key(|limit| limit.role == role))
+    {
+        return format!(
+            "time_step = {dt:.4e} s is above the {}'s stability limit of {:.4e} s: choose a smaller one or \
+             time_step = \"auto\"",
+            limit.role, limit.dt
+        );
+    }
+    if foreign && role == RoleName::Solid {
+        return "the solid is not this program's: look at what its process does".into();
+    }
+    let change = match (scene.time_step, role) {
+        (TimeStep::Fixed(dt), _) => {
+            format!("choose a smaller time_step than {dt:.4e} s, although it is within the stability limits")
+        }
+        (TimeStep::Auto, RoleName::Solid) => {
+            format!("lower numerics.solid_cfl (now {})", scene.numerics.solid_cfl)
+        }
+        (TimeStep::Auto, _) => format!("lower numerics.cfl (now {})", scene.numerics.cfl),
+    };
+    match (diverged.quantity, role) {
+        (Quantity::TimeStep, _) => {
+            "the time steps that the phases allow became too small to reach end_time: \
+            look at the last frames for what goes wrong before"
+                .into()
+        }
+        (Quantity::Energy, RoleName::Solid) => {
+            format!("{change}; or raise solid.artificial_viscosity: the last frames show where it moves")
+        }
+        (Quantity::Energy, _) => {
+            format!(
+                "{change}; or raise fluid.artificial_viscosity.linear: the last frames show where it moves"
+            )
+        }
+        (Quantity::Density, RoleName::Solid) => {
+            format!("{change}; or the load is too much for solid.youngs_modulus")
+        }
+        _ => change,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use halfstep_coupling::clock::Limit;
+    use halfstep_scene as scene;
+    use std::path::Path;
+
+    const DIVERGED: Diverged = Diverged {
+        role: RoleName::Solid,
+        particle: 3,
+        quantity: Quantity::Speed,
+        value: 300.0,
+        step: 7,
+        stage: 0,
+        position: [0.0; 3],
+    };
+
+    fn scene(time_step: &str) -> Scene {
+        let text = include_str!("../../../scenes/elastic-gate.toml");
+        let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/elastic-gate.toml"));
+        scene::parse(text, path, &[format!("time_step={time_step}")]).unwrap()
+    }
+
+    /// With these limits told before.
+    fn advised(scene: &Scene, fluid: f64, solid: f64, diverged: &Diverged) -> String {
+        let mut clock = Clock::new(scene);
+        let limits =
+            [(RoleName::Fluid, fluid), (RoleName::Solid, solid)].map(|(role, dt)| Limit { role, dt });
+        clock.tick(&limits, false).unwrap();
+        advice(diverged, scene, &clock, false)
+    }
+
+    #[test]
+    fn a_fixed_step_is_held_to_the_limit_that_it_exceeds() {
+        let scene = scene("1e-5");
+        for (fluid, solid, named) in [(2e-5, 4e-6, "solid"), (9e-6, 4e-6, "solid"), (9e-6, 1e-3, "fluid")] {
+            let text = advised(&scene, fluid, solid, &DIVERGED);
+            assert!(text.contains("time_step = 1.0000e-5 s is above") && text.contains(named), "{text}");
+        }
+        let text = advised(&scene, 2e-5, 2e-5, &DIVERGED);
+        assert!(text.contains("smaller time_step") && text.contains("within"), "{text}");
+    }
+
+    #[test]
+    fn without_a_fixed_step_the_courant_numbers_are_the_keys() {
+        let scene = scene("auto");
+        assert!(advised(&scene, 1e-5, 1e-5, &DIVERGED).contains("numerics.solid_cfl (now 0.6)"));
+        let fluid = Diverged { role: RoleName::Fluid, ..DIVERGED };
+        assert!(advised(&scene, 1e-5, 1e-5, &fluid).contains("numerics.cfl (now 0.4)"));
+        let hot = Diverged { quantity: Quantity::Energy, ..fluid };
+        assert!(advised(&scene, 1e-5, 1e-5, &hot).contains("fluid.artificial_viscosity.linear"));
+        let dense = Diverged { quantity: Quantity::Density, ..DIVERGED };
+        assert!(advised(&scene, 1e-5, 1e-5, &dense).contains("solid.youngs_modulus"));
+    }
+}

@@ -1,0 +1,98 @@
+//! What a scene asks for, before anything is run.
+
+use crate::effects;
+use halfstep_coupling::roles;
+use halfstep_link::LinkConfig;
+use halfstep_role::role::Role;
+use halfstep_scene::geometry;
+use halfstep_scene::{self as scene, Scene, TimeStep};
+use halfstep_solid::SubStepping;
+use halfstep_sph::lane::Isa;
+use halfstep_wire::failure::RoleName;
+use std::fmt::Write;
+use std::time::Instant;
+
+/// A text of counts, time steps, memory and an estimate of the run time.
+///
+/// The estimate times the sums of a few half-steps of each phase on one thread; a run whose particles spread out takes
+/// longer.
+pub fn describe(scene: &Scene) -> String {
+    let layout = geometry::layout::<2>(scene);
+    let counts = geometry::Counts {
+        fluid: layout.fluid.len() as u64,
+        solid: layout.solid.len() as u64,
+        wall: layout.wall.len() as u64,
+    };
+    let mut text = String::new();
+    let mut line = |name: &str, value: String| {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{name:<16}{value}");
+    };
+    line("scene", format!("{} ({})", scene.name, scene.path.display()));
+    line("particles", format!("{} fluid, {} solid, {} wall", counts.fluid, counts.solid, counts.wall));
+    let mut limit = f64::INFINITY;
+    let mut solid_limit = None;
+    let mut built = Vec::new();
+    for name in [RoleName::Fluid, RoleName::Solid] {
+        let Some(role) = roles::build(name, scene) else { continue };
+        let own = role.dt_limit();
+        line(&format!("{name} dt limit"), format!("{own:.3e} s"));
+        limit = limit.min(own);
+        if name == RoleName::Solid {
+            solid_limit = Some(own);
+        }
+        built.push(role);
+    }
+    let dt = match scene.time_step {
+        TimeStep::Auto => limit,
+        TimeStep::Fixed(dt) => dt,
+    };
+    line(
+        "time step",
+        format!("{dt:.3e} s: {:.0} steps to t = {} s", (scene.end_time / dt).ceil(), scene.end_time),
+    );
+    if let (Some(limit), true) = (solid_limit, scene.fluid.is_some()) {
+        let stepping = SubStepping::of(scene);
+        let own = limit / f64::from(stepping.most());
+        line("solid sub-steps", format!("{} (one is stable to {own:.3e} s)", stepping.choose(dt, own)));
+    }
+    line("memory", format!("about {:.1} MB", scene::memory_needed(&counts) as f64 / 1e6));
+    if scene.fluid.is_some() && scene.solid.is_some() {
+        let (fluid, solid) = crate::run::capacities(scene, counts.fluid, counts.solid, false);
+        let bytes = LinkConfig::new(fluid, solid).shared_memory_bytes();
+        line("shared memory", format!("{:.1} MB", bytes as f64 / 1e6));
+    }
+    let costs: Option<Vec<f64>> = built.iter_mut().map(|role| step_cost(role.as_mut(), dt)).collect();
+    let seconds = costs.map(|costs| costs.into_iter().fold(0.0, f64::max) * scene.end_time / dt);
+    line(
+        "expected time",
+        match seconds {
+            Some(seconds) => {
+                format!("about {seconds:.0} s, one thread a role ({})", Isa::detect().bits_name())
+            }
+            None => "unknown: the first steps leave their bounds".into(),
+        },
+    );
+    text.push('\n');
+    for effect in effects::ledger(scene, &counts) {
+        let _ =
+            writeln!(text, "{:<28}{:<5}{}", effect.name, if effect.on { "on" } else { "off" }, effect.why);
+    }
+    text
+}
+
+/// Seconds of a role's own step, the fastest of a few; `None` where they fail.
+fn step_cost(role: &mut dyn Role, dt: f64) -> Option<f64> {
+    let mut record = Vec::new();
+    let mut best = f64::INFINITY;
+    for step in 0..4 {
+        let start = Instant::now();
+        for stage in 0..2 {
+            role.publish(&[], &mut record);
+            role.own_sums();
+            role.advance(step, stage, dt, &[]).ok()?;
+        }
+        best = best.min(start.elapsed().as_secs_f64());
+    }
+    Some(best)
+}

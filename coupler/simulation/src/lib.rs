@@ -1,0 +1,9 @@
+//! The front door: runs scenes, couples fluid and solid in lock-step, writes what a run leaves.
+
+mod advice;
+pub mod check;
+mod effects;
+pub mod explain;
+pub mod options;
+pub mod run;
+mod session;

@@ -1,0 +1,263 @@
+//! The numbers that metrics take from curves.
+
+use halfstep_output::Table;
+use halfstep_scene::{Metric, MetricKind, MetricReference, Scene};
+
+/// Why a number cannot be taken from a curve.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Unmeasured {
+    /// The probe has no such column.
+    #[error("probes.csv has no column {0}")]
+    NoColumn(String),
+    /// The curve ends too early.
+    #[error("needs t = {needed} s, and the curve ends at {end} s")]
+    EndsEarly {
+        /// s.
+        needed: f64,
+        /// s.
+        end: f64,
+    },
+    /// There is nothing in the window.
+    #[error("has fewer than two values in its window")]
+    Empty,
+    /// A value is no number.
+    #[error("meets a value that is no number")]
+    NotFinite,
+    /// The curve does not pass the level often enough.
+    #[error("passes its level {0} times, a period needs two")]
+    NoOscillation(usize),
+    /// No logarithm exists.
+    #[error("meets a value at its level, from which nothing decays")]
+    AtLevel,
+}
+
+/// Points (time s, value), ascending in time.
+pub type Curve = Vec<[f64; 2]>;
+
+/// What a metric should be, with where that comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Target {
+    /// The number.
+    pub value: f64,
+    /// Its source.
+    pub source: String,
+    /// What errors are relative to.
+    pub scale: f64,
+}
+
+/// The metric's number in a run's probes.
+///
+/// # Errors
+/// The curve does not hold it.
+pub fn measure(scene: &Scene, metric: &Metric, probes: &Table) -> Result<f64, Unmeasured> {
+    let values = probes.column(&metric.probe).ok_or_else(|| Unmeasured::NoColumn(metric.probe.clone()))?;
+    let curve: Curve = probes.times().into_iter().zip(values).map(|(t, v)| [t, v]).collect();
+    match (&metric.kind, literature(scene, metric)) {
+        (MetricKind::Rms, Some(reference)) => rms(metric, &curve, reference),
+        _ => number(metric, &curve),
+    }
+}
+
+/// The metric's reference as a number, where it has one.
+pub fn target(scene: &Scene, metric: &Metric) -> Option<Target> {
+    let (value, source) = match metric.reference.as_ref()? {
+        MetricReference::Number { value, source } => (*value, source.clone()),
+        MetricReference::Curve { label } if metric.kind == MetricKind::Rms => (0.0, label.clone()),
+        MetricReference::Curve { label } => (number(metric, literature(scene, metric)?).ok()?, label.clone()),
+    };
+    let scale = match metric.kind {
+        // The measured number is relative already.
+        MetricKind::Rms => 1.0,
+        _ => metric.scale.unwrap_or(value.abs()),
+    };
+    Some(Target { value, source, scale })
+}
+
+fn literature<'s>(scene: &'s Scene, metric: &Metric) -> Option<&'s Curve> {
+    let Some(MetricReference::Curve { label }) = &metric.reference else { return None };
+    scene.references.iter().find(|r| r.probe == metric.probe && r.label == *label).map(|r| &r.points)
+}
+
+fn number(metric: &Metric, curve: &Curve) -> Result<f64, Unmeasured> {
+    if let MetricKind::Value { at } = metric.kind {
+        return value_at(curve, at);
+    }
+    let part = window(metric, curve)?;
+    let peak =
+        || part.iter().copied().reduce(|a, b| if b[1] > a[1] { b } else { a }).ok_or(Unmeasured::Empty);
+    match metric.kind {
+        MetricKind::Peak => peak().map(|p| p[1]),
+        MetricKind::PeakTime => peak().map(|p| p[0]),
+        MetricKind::Mean => Ok(mean(&part)),
+        MetricKind::Period { level } => period(&part, level),
+        MetricKind::Decay { level } => decay(&part, level),
+        // Both need more than a window; see the callers.
+        MetricKind::Value { .. } | MetricKind::Rms => Err(Unmeasured::Empty),
+    }
+}
+
+/// The points from `from` to `to`. A run's last row may lie a step before the time that is asked for.
+fn window(metric: &Metric, curve: &Curve) -> Result<Curve, Unmeasured> {
+    let last = curve.last().ok_or(Unmeasured::Empty)?[0];
+    let to = metric.to.unwrap_or(last);
+    if to > last * (1.0 + 1e-9) {
+        return Err(Unmeasured::EndsEarly { needed: to, end: last });
+    }
+    let inside = |p: &&[f64; 2]| metric.from <= p[0] && p[0] <= to * (1.0 + 1e-9);
+    let part: Curve = curve.iter().filter(inside).copied().collect();
+    match part.len() {
+        0 | 1 => Err(Unmeasured::Empty),
+        _ if part.iter().any(|p| !p[1].is_finite()) => Err(Unmeasured::NotFinite),
+        _ => Ok(part),
+    }
+}
+
+/// Value at a time, linear between points.
+fn value_at(curve: &Curve, at: f64) -> Result<f64, Unmeasured> {
+    let last = curve.last().ok_or(Unmeasured::Empty)?[0];
+    if at > last * (1.0 + 1e-9) {
+        return Err(Unmeasured::EndsEarly { needed: at, end: last });
+    }
+    if curve.len() < 2 {
+        return Err(Unmeasured::Empty);
+    }
+    let next = curve.partition_point(|p| p[0] < at).clamp(1, curve.len() - 1);
+    let ([t0, v0], [t1, v1]) = (curve[next - 1], curve[next]);
+    let value = v0 + (v1 - v0) * (at - t0) / (t1 - t0);
+    if value.is_finite() { Ok(value) } else { Err(Unmeasured::NotFinite) }
+}
+
+/// Mean over time, by trapezoids.
+fn mean(part: &Curve) -> f64 {
+    let area: f64 = part.windows(2).map(|w| 0.5 * (w[0][1] + w[1][1]) * (w[1][0] - w[0][0])).sum();
+    area / (part[part.len() - 1][0] - part[0][0])
+}
+
+/// Root mean square of curve minus reference at the reference's times, over the scale or else over the reference's.
+fn rms(metric: &Metric, curve: &Curve, reference: &Curve) -> Result<f64, Unmeasured> {
+    let last = curve.last().ok_or(Unmeasured::Empty)?[0];
+    let to = metric.to.unwrap_or(last);
+    let (mut difference, mut size, mut count) = (0.0, 0.0, 0.0);
+    for [time, value] in reference.iter().filter(|p| metric.from <= p[0] && p[0] <= to) {
+        difference += (value_at(curve, *time)? - value).powi(2);
+        size += value * value;
+        count += 1.0;
+    }
+    let scale = metric.scale.unwrap_or_else(|| f64::sqrt(size / count));
+    if count == 0.0 || scale == 0.0 {
+        Err(Unmeasured::Empty)
+    } else {
+        Ok((difference / count).sqrt() / scale)
+    }
+}
+
+/// Times at which the curve passes a level.
+fn crossings(part: &[[f64; 2]], level: f64) -> Vec<f64> {
+    let passes = part.windows(2).filter(|w| (w[0][1] < level) != (w[1][1] < level));
+    passes.map(|w| w[0][0] + (w[1][0] - w[0][0]) * (level - w[0][1]) / (w[1][1] - w[0][1])).collect()
+}
+
+/// Twice the mean distance between crossings.
+fn period(part: &Curve, level: f64) -> Result<f64, Unmeasured> {
+    // A curve that starts at its level passes it then, whichever way it goes.
+    let at_start = part[0][1] == level;
+    let mut times = crossings(&part[usize::from(at_start)..], level);
+    if at_start {
+        times.insert(0, part[0][0]);
+    }
+    match (times.first(), times.last()) {
+        (Some(first), Some(last)) if times.len() > 1 => Ok(2.0 * (last - first) / (times.len() - 1) as f64),
+        _ => Err(Unmeasured::NoOscillation(times.len())),
+    }
+}
+
+/// Slope of a line through ln |value - level| by least squares: through the extremes between crossings where the
+/// curve oscillates about the level, through all points where it does not.
+fn decay(part: &Curve, level: f64) -> Result<f64, Unmeasured> {
+    let times = crossings(part, level);
+    let points: Curve = if times.len() > 2 {
+        let extreme = |w: &[f64]| {
+            let between = part.iter().filter(|p| w[0] < p[0] && p[0] < w[1]);
+            between.copied().reduce(|a, b| if (b[1] - level).abs() > (a[1] - level).abs() { b } else { a })
+        };
+        times.windows(2).filter_map(extreme).collect()
+    } else {
+        part.clone()
+    };
+    if points.iter().any(|p| p[1] == level) {
+        return Err(Unmeasured::AtLevel);
+    }
+    let n = points.len() as f64;
+    let logs: Curve = points.iter().map(|p| [p[0], (p[1] - level).abs().ln()]).collect();
+    let [t, y] = [0, 1].map(|k| logs.iter().map(|p| p[k]).sum::<f64>() / n);
+    let spread: f64 = logs.iter().map(|p| (p[0] - t).powi(2)).sum();
+    let slope: f64 = logs.iter().map(|p| (p[0] - t) * (p[1] - y)).sum::<f64>() / spread;
+    if slope.is_finite() { Ok(-slope) } else { Err(Unmeasured::Empty) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn metric(kind: MetricKind) -> Metric {
+        let name = String::from("m");
+        Metric { name, probe: "p.x".into(), kind, from: 0.0, to: None, reference: None, scale: None }
+    }
+
+    fn sampled(f: impl Fn(f64) -> f64) -> Curve {
+        (0..=2000).map(|k| 1e-3 * f64::from(k)).map(|t| [t, f(t)]).collect()
+    }
+
+    #[test]
+    fn a_damped_wave_has_its_period_decay_and_peak() {
+        let wave = sampled(|t| 0.5 + (-0.7 * t).exp() * (std::f64::consts::TAU * t / 0.3).sin());
+        let of = |kind| number(&metric(kind), &wave).unwrap();
+        assert!((of(MetricKind::Period { level: 0.5 }) - 0.3).abs() < 1e-4);
+        assert!((of(MetricKind::Decay { level: 0.5 }) - 0.7).abs() < 1e-3);
+        assert!((of(MetricKind::PeakTime) - 0.075).abs() < 3e-3);
+        assert!((of(MetricKind::Peak) - 0.5 - (-0.7_f64 * 0.075).exp()).abs() < 1e-3);
+    }
+
+    #[test]
+    fn a_start_at_the_level_counts_once_both_ways() {
+        for sign in [1.0, -1.0] {
+            let wave = sampled(|t| sign * (std::f64::consts::TAU * t / 1.6).sin());
+            let period = number(&metric(MetricKind::Period { level: 0.0 }), &wave[..1001].to_vec());
+            assert!((period.unwrap() - 1.6).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn what_only_falls_has_a_decay_and_no_period() {
+        let fall = sampled(|t| 3.0 * (-1.5 * t).exp());
+        assert!((number(&metric(MetricKind::Decay { level: 0.0 }), &fall).unwrap() - 1.5).abs() < 1e-9);
+        let period = number(&metric(MetricKind::Period { level: 0.0 }), &fall);
+        assert_eq!(period, Err(Unmeasured::NoOscillation(0)));
+        let ended = number(&metric(MetricKind::Decay { level: 0.0 }), &sampled(|t| (1.0 - t).max(0.0)));
+        assert_eq!(ended, Err(Unmeasured::AtLevel));
+    }
+
+    #[test]
+    fn values_and_means_are_those_of_the_line_between_points() {
+        let line = vec![[0.0, 1.0], [1.0, 3.0], [3.0, 3.0]];
+        assert_eq!(number(&metric(MetricKind::Value { at: 0.25 }), &line), Ok(1.5));
+        let late = number(&metric(MetricKind::Value { at: 3.5 }), &line);
+        assert_eq!(late, Err(Unmeasured::EndsEarly { needed: 3.5, end: 3.0 }));
+        // (2 * 1 + 3 * 2) / 3
+        assert!((number(&metric(MetricKind::Mean), &line).unwrap() - 8.0 / 3.0).abs() < 1e-12);
+        let late = Metric { from: 1.0, to: Some(3.0), ..metric(MetricKind::Mean) };
+        assert_eq!(number(&late, &line), Ok(3.0));
+        assert_eq!(number(&Metric { from: 2.0, to: None, ..late }, &line), Err(Unmeasured::Empty));
+    }
+
+    #[test]
+    fn the_rms_is_relative_to_the_reference_or_to_the_scale() {
+        let line = sampled(|t| 2.0 * t);
+        let reference = vec![[0.5, 1.3], [0.7, 1.0], [9.0, 7.0]];
+        // Differences -0.3 and 0.4; the reference's own root mean square is sqrt(1.345).
+        let want = 0.125_f64.sqrt() / 1.345_f64.sqrt();
+        assert!((rms(&metric(MetricKind::Rms), &line, &reference).unwrap() - want).abs() < 1e-9);
+        let scaled = Metric { scale: Some(2.0), ..metric(MetricKind::Rms) };
+        assert!((rms(&scaled, &line, &reference).unwrap() - 0.125_f64.sqrt() / 2.0).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,266 @@
+//! The runs of a study: each in its own folder, started as `halfstep run`, and kept for the next time.
+//!
+//! A run counts as done when its `run.json` says so and its `done.json` was written by this very program. The latter is
+//! removed before a run starts and written after it ended, so whatever stops a study, no other run's result is taken
+//! for this one's.
+
+use super::error::StudyError;
+use super::ladder::{Setting, content, strip};
+use halfstep_output::run_json::RunStatus;
+use halfstep_output::{RunReport, atomic};
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
+use serde::{Deserialize, Serialize};
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+use std::os::unix::process::CommandExt;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+use xxhash_rust::xxh3::xxh3_64;
+
+const DONE: &str = "done.json";
+/// Pause between two looks at the runs.
+const TICK: Duration = Duration::from_millis(50);
+
+/// Which program made a run.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Program {
+    /// Its version.
+    pub version: String,
+    /// Hash of its file: versions under development have the same number.
+    pub build: String,
+}
+
+impl Program {
+    /// The one that is running.
+    ///
+    /// # Errors
+    /// Its file cannot be read.
+    pub fn own() -> Result<Self, StudyError> {
+        let bytes = own_path().and_then(std::fs::read).map_err(StudyError::system("the own program"))?;
+        Ok(Self { version: env!("CARGO_PKG_VERSION").into(), build: format!("{:016x}", xxh3_64(&bytes)) })
+    }
+}
+
+fn own_path() -> std::io::Result<PathBuf> {
+    std::env::current_exe()
+}
+
+/// One run to make.
+#[derive(Clone, Debug)]
+pub struct Job {
+    /// What it shows of itself.
+    pub label: String,
+    /// Its folder.
+    pub dir: PathBuf,
+    /// The scene's file.
+    pub scene: PathBuf,
+    /// What is set.
+    pub overrides: Vec<String>,
+    /// Its end, s.
+    pub end_time: f64,
+    /// Expected cost, in any unit.
+    pub cost: f64,
+}
+
+impl Job {
+    /// The run of a setting, repeated for the time of that number.
+    pub fn new(folder: &Path, setting: &Setting, repeat: u32) -> Self {
+        let scene = &setting.scene;
+        let particles = halfstep_scene::geometry::estimate(scene).total() as f64;
+        Self {
+            label: setting.label(),
+            dir: folder.join("runs").join(format!("{}-{repeat}", setting.slug())),
+            scene: scene.path.clone(),
+            overrides: setting.overrides.clone(),
+            end_time: scene.end_time,
+            // Steps go with end over spacing.
+            cost: particles * scene.end_time / (scene.resolution * scene.numerics.cfl),
+        }
+    }
+
+    fn command(&self) -> std::io::Result<Command> {
+        let mut command = Command::new(own_path()?);
+        command.arg("run").arg(&self.scene).arg("--quiet").arg("--force").arg("--out").arg(&self.dir);
+        command.args(self.overrides.iter().flat_map(|o| ["--set", o]));
+        let said = File::create(self.dir.join("messages.txt"))?;
+        command.stdin(Stdio::null()).stdout(said.try_clone()?).stderr(said);
+        // Ctrl-C is for the study, which then asks its runs to stop; without the study they stop, too.
+        command.process_group(0);
+        let study = std::process::id();
+        // SAFETY: between fork and exec; calls without pointers, safe after a fork.
+        unsafe {
+            command.pre_exec(move || {
+                if libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGTERM) != 0 {
+                    return Err(std::io::Error::last_os_error());
+                }
+                // The study may have ended before that call.
+                if libc::getppid() as u32 != study {
+                    libc::_exit(1);
+                }
+                Ok(())
+            });
+        }
+        Ok(command)
+    }
+
+    fn start(&self) -> Result<Child, StudyError> {
+        let what = self.dir.display().to_string();
+        std::fs::create_dir_all(&self.dir).map_err(StudyError::system(&what))?;
+        match std::fs::remove_file(self.dir.join(DONE)) {
+            Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(StudyError::system(&what)(e)),
+            _ => (),
+        }
+        self.command().and_then(|mut command| command.spawn()).map_err(StudyError::system(&what))
+    }
+
+    /// Part of the way that the run has gone: from the last time in its `probes.csv`.
+    fn progress(&self) -> f64 {
+        let last = || -> Option<f64> {
+            let mut file = File::open(self.dir.join("probes.csv")).ok()?;
+            let length = file.metadata().ok()?.len();
+            file.seek(SeekFrom::Start(length.saturating_sub(4096))).ok()?;
+            let mut tail = String::new();
+            file.read_to_string(&mut tail).ok()?;
+            let (whole, _) = tail.rsplit_once('\n')?;
+            whole.rsplit('\n').next()?.split(',').next()?.parse().ok()
+        };
+        last().map_or(0.0, |time| (time / self.end_time).clamp(0.0, 1.0))
+    }
+}
+
+/// The report of an earlier run of this setting by this program, where it is one that need not be repeated.
+pub fn reusable(dir: &Path, setting: &Setting, program: &Program) -> Option<RunReport> {
+    let done: Program = serde_json::from_slice(&std::fs::read(dir.join(DONE)).ok()?).ok()?;
+    let report = RunReport::read(&dir.join("run.json")).ok()?;
+    matches(&done, &report, setting, program).then_some(report)
+}
+
+fn matches(done: &Program, report: &RunReport, setting: &Setting, program: &Program) -> bool {
+    let mut scene = report.scene.clone();
+    strip(&mut scene);
+    let over = matches!(report.status, Some(RunStatus::Finished | RunStatus::Diverged));
+    over && done == program && content(&setting.scene).is_some_and(|own| own == scene)
+}
+
+/// Makes runs, so many at a time; returns whether all were made, or somebody stopped it.
+///
+/// # Errors
+/// A run could not be started.
+pub fn execute(
+    jobs: &[Job],
+    at_a_time: usize,
+    quiet: bool,
+    program: &Program,
+    stop: &AtomicBool,
+) -> Result<bool, StudyError> {
+    let bar = ProgressBar::new(1000);
+    let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    if quiet {
+        bar.set_draw_target(ProgressDrawTarget::hidden());
+    }
+    let started = Instant::now();
+    let mut running: Vec<(usize, Child)> = Vec::new();
+    let (mut next, mut done) = (0, 0.0);
+    let total: f64 = jobs.iter().map(|job| job.cost).sum();
+    while next < jobs.len() || !running.is_empty() {
+        while next < jobs.len() && running.len() < at_a_time && !stop.load(Ordering::Relaxed) {
+            running.push((next, jobs[next].start()?));
+            next += 1;
+        }
+        if stop.load(Ordering::Relaxed) {
+            end(&mut running);
+            bar.finish_and_clear();
+            return Ok(false);
+        }
+        let mut index = 0;
+        while index < running.len() {
+            let (job, child) = &mut running[index];
+            if child.try_wait().map_err(StudyError::system("a run"))?.is_some() {
+                let job = &jobs[*job];
+                let text = serde_json::to_vec(program).map_err(|e| StudyError::System(e.to_string()))?;
+                atomic::replace_bytes(&job.dir.join(DONE), &text)?;
+                done += job.cost;
+                running.remove(index);
+            } else {
+                index += 1;
+            }
+        }
+        let under_way: f64 = running.iter().map(|(k, _)| jobs[*k].cost * jobs[*k].progress()).sum();
+        let part = (done + under_way) / total;
+        let names: Vec<&str> = running.iter().map(|(k, _)| jobs[*k].label.as_str()).collect();
+        bar.set_position((1000.0 * part) as u64);
+        let left = remaining(started.elapsed(), part);
+        bar.set_message(format!("run {next} of {}: {}  ETA {}", jobs.len(), names.join(", "), left));
+        std::thread::sleep(TICK);
+    }
+    bar.finish_and_clear();
+    Ok(true)
+}
+
+fn remaining(elapsed: Duration, part: f64) -> String {
+    if part < 1e-3 {
+        return "unknown".into();
+    }
+    HumanDuration(elapsed.mul_f64((1.0 / part - 1.0).max(0.0))).to_string()
+}
+
+/// Asks the runs to stop after their step under way, and waits for that.
+fn end(running: &mut [(usize, Child)]) {
+    for (_, child) in running.iter() {
+        // SAFETY: no memory is passed; the child has not been waited for, so its number is its own.
+        unsafe { libc::kill(child.id() as libc::pid_t, libc::SIGTERM) };
+    }
+    for (_, child) in running.iter_mut() {
+        // One that cannot be waited for is gone.
+        let _ = child.wait();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_the_same_run_by_the_same_program_is_reused() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("pool.toml");
+        let text = "resolution = 0.1\nend_time = 1.0\n[fluid]\ndensity = 1000.0\n[[shape]]\nname = \"water\"\n\
+            phase = \"fluid\"\nbox = { min = [0.0, 0.0], max = [2.0, 1.0] }\n[[probe]]\nname = \"front\"\nkind = \"front\"\n";
+        std::fs::write(&path, text).unwrap();
+        let load = |set: &[&str]| {
+            let set: Vec<String> = set.iter().map(|s| s.to_string()).collect();
+            Setting::load(&path, &[], &set).unwrap()
+        };
+        let own = load(&[]);
+        let program = Program { version: "1".into(), build: "a".into() };
+        let mut report = RunReport {
+            status: Some(RunStatus::Finished),
+            scene: serde_json::to_value(&own.scene).unwrap(),
+            ..RunReport::default()
+        };
+        assert!(matches(&program, &report, &own, &program));
+        assert!(!matches(&Program { build: "b".into(), ..program.clone() }, &report, &own, &program));
+        assert!(!matches(&Program { version: "2".into(), ..program.clone() }, &report, &own, &program));
+        assert!(!matches(&program, &report, &load(&["fluid.density=900"]), &program));
+        // A metric changes what is made of a run, not the run.
+        let metric = "[[metric]]\nname = \"reach\"\nprobe = \"front.x\"\nkind = \"peak\"\n";
+        std::fs::write(&path, format!("{text}{metric}")).unwrap();
+        assert!(matches(&program, &report, &load(&[]), &program));
+        for status in [None, Some(RunStatus::Stopped), Some(RunStatus::Failed)] {
+            report.status = status;
+            assert!(!matches(&program, &report, &own, &program), "{status:?}");
+        }
+        report.status = Some(RunStatus::Diverged);
+        assert!(matches(&program, &report, &own, &program));
+    }
+
+    #[test]
+    fn the_time_left_follows_the_part_done() {
+        assert_eq!(remaining(Duration::from_secs(30), 0.25), "2 minutes");
+        assert_eq!(remaining(Duration::from_secs(30), 0.0), "unknown");
+        assert_eq!(remaining(Duration::from_secs(30), 1.0), "0 seconds");
+    }
+}

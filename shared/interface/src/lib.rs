@@ -1,0 +1,254 @@
+//! The interface between fluid and solid, seen from the records that both sides published.
+//!
+//! Fluid process and coupler hold the same two records and run the same code on them in the same order, so what both
+//! need (the pressure that solid particles show to the fluid, the cross-phase pair force) has the same bits on each side
+//! without a further message.
+
+pub mod cross_viscosity;
+mod moving_wall;
+mod phase_blind;
+mod screen;
+#[cfg(test)]
+mod screen_tests;
+mod side;
+mod thin_plate;
+
+pub use phase_blind::SolidRates;
+pub use side::Side;
+pub use thin_plate::thin_plate_screen;
+
+use halfstep_scene::geometry::Plate;
+use halfstep_scene::{Decision, Derived, EffectName, KernelName, Phase, Scene, Treatment};
+use halfstep_sph::extrapolation::ExtrapolationSum;
+use halfstep_sph::lane::{Isa, LANES, Lane};
+use halfstep_sph::neighbours::{ClusterList, PADDING};
+use halfstep_sph::state_equation::StateEquation;
+use halfstep_wire::protocol::StateRecord;
+use screen::Screen;
+
+/// What the interface needs to know of the scene.
+#[derive(Clone, Debug)]
+pub struct Parameters<const D: usize> {
+    /// Which treatment.
+    pub treatment: Treatment,
+    /// Kernel.
+    pub kernel: KernelName,
+    /// Smoothing length h of the fluid, m.
+    pub smoothing_length: f64,
+    /// The fluid's equation of state.
+    pub fluid: StateEquation,
+    /// The solid's reference density, kg/m³.
+    pub solid_density: f64,
+    /// The solid's bulk sound speed, m/s.
+    pub solid_sound_speed: f64,
+    /// Gravity, m/s².
+    pub gravity: [f64; D],
+    /// The solid never pulls at the fluid.
+    pub non_negative_pressure: bool,
+    /// Particle spacing, m.
+    pub resolution: f64,
+    /// The plates whose faces are kept apart.
+    pub thin_plates: Vec<Plate<D>>,
+    /// Kayaki's C.
+    pub cross_viscosity: f64,
+    /// Instruction set of the pair loop.
+    pub isa: Isa,
+}
+
+/// Whether walls, and the solid as the fluid's moving wall, only push: with negative pressures they would hold on to
+/// water that leaves them.
+pub fn non_negative_pressure(scene: &Scene) -> Decision {
+    let derived = match &scene.fluid {
+        None => Derived::Impossible("the scene has no fluid".into()),
+        Some(_) if scene.solid.is_none() && scene.shapes.iter().all(|s| s.phase != Phase::Wall) => {
+            Derived::Impossible("neither walls nor solid".into())
+        }
+        Some(_) => Derived::On("walls and solids push and do not pull".into()),
+    };
+    Decision::new(scene, EffectName::NonNegativeWallPressure, derived)
+}
+
+impl<const D: usize> Parameters<D> {
+    /// From a scene with fluid and solid.
+    pub fn new(scene: &Scene, isa: Isa) -> Option<Self> {
+        let (fluid, solid) = (scene.fluid.as_ref()?, scene.solid.as_ref()?);
+        Some(Self {
+            treatment: scene.interface.treatment,
+            kernel: scene.numerics.kernel,
+            smoothing_length: scene.smoothing_ratio * scene.resolution,
+            fluid: StateEquation::new(fluid.density, fluid.sound_speed, fluid.background_pressure),
+            solid_density: solid.density,
+            solid_sound_speed: solid.sound_speed(),
+            gravity: std::array::from_fn(|d| scene.gravity[d]),
+            non_negative_pressure: non_negative_pressure(scene).on,
+            resolution: scene.resolution,
+            thin_plates: thin_plate::screened(scene),
+            cross_viscosity: scene.interface.cross_viscosity,
+            isa,
+        })
+    }
+}
+
+/// What the solid does to a cluster of four fluid particles.
+#[derive(Clone, Copy, Debug)]
+pub struct FluidSum<const D: usize> {
+    /// Acceleration, m/s².
+    pub acceleration: [Lane; D],
+    /// Rate of density, kg/(m³ s).
+    pub density_rate: Lane,
+}
+
+impl<const D: usize> Default for FluidSum<D> {
+    fn default() -> Self {
+        Self { acceleration: [Lane::ZERO; D], density_rate: Lane::ZERO }
+    }
+}
+
+/// Force of the fluid on a cluster of four solid particles, N (2D: N/m).
+pub type SolidForce<const D: usize> = crate::phase_blind::Vector<D>;
+
+/// Both records, sorted, with the lists between them.
+pub struct Interface<const D: usize> {
+    /// Parameters.
+    pub parameters: Parameters<D>,
+    /// The fluid's interface particles.
+    pub fluid: Side<D>,
+    /// The solid's interface particles.
+    pub solid: Side<D>,
+    /// For each cluster of fluid particles its solid neighbours.
+    pub fluid_list: ClusterList,
+    /// For each cluster of solid particles its fluid neighbours.
+    pub solid_list: ClusterList,
+    epoch: Option<u64>,
+    fluid_sums: Vec<FluidSum<D>>,
+    solid_forces: Vec<SolidForce<D>>,
+    wall_sums: Vec<ExtrapolationSum>,
+    screen: Option<Screen<D>>,
+    solid_rates: Vec<SolidRates<D>>,
+}
+
+impl<const D: usize> Interface<D> {
+    /// An interface without particles.
+    pub fn new(parameters: Parameters<D>) -> Self {
+        Self {
+            parameters,
+            fluid: Side::default(),
+            solid: Side::default(),
+            fluid_list: ClusterList::default(),
+            solid_list: ClusterList::default(),
+            epoch: None,
+            fluid_sums: Vec::new(),
+            solid_forces: Vec::new(),
+            wall_sums: Vec::new(),
+            screen: None,
+            solid_rates: Vec::new(),
+        }
+    }
+
+    /// Pairs listed between the phases, four targets each.
+    pub fn pairs(&self) -> usize {
+        LANES * (self.fluid_list.entries() + self.solid_list.entries())
+    }
+
+    fn skin(&self) -> f64 {
+        0.3 * self.parameters.smoothing_length
+    }
+
+    /// Takes over both records; lists are renewed when the fluid's set changed (`epoch`) or particles moved too far.
+    pub fn update(&mut self, fluid: &[StateRecord], solid: &[StateRecord], epoch: u64) {
+        let same = self.epoch == Some(epoch)
+            && self.fluid.records() == fluid.len()
+            && self.solid.records() == solid.len();
+        if same {
+            self.fluid.load(fluid);
+            self.solid.load(solid);
+        }
+        if !same || self.fluid.displacement() + self.solid.displacement() > self.skin() {
+            let height = 2.0 * self.parameters.smoothing_length + self.skin();
+            self.fluid.sort(fluid, height);
+            self.solid.sort(solid, height);
+            self.fluid_list.build(&self.fluid.position, &self.solid.position, self.solid.rows(), height);
+            self.solid_list.build(&self.solid.position, &self.fluid.position, self.fluid.rows(), height);
+            self.epoch = Some(epoch);
+        }
+        match self.parameters.treatment {
+            Treatment::MovingWall if self.parameters.thin_plates.is_empty() => {
+                moving_wall::show_pressure(self)
+            }
+            Treatment::MovingWall => screen::show_pressures(self, solid),
+            Treatment::PhaseBlind => phase_blind::show_stress(self),
+        }
+    }
+
+    /// What the solid does to the fluid. `visit(record, acceleration, density_rate)` for each fluid record that has
+    /// solid neighbours in its cluster.
+    pub fn act_on_fluid(&mut self, mut visit: impl FnMut(usize, [f64; D], f64)) {
+        self.fluid_sums.resize(self.fluid_list.clusters(), FluidSum::default());
+        let mut sums = std::mem::take(&mut self.fluid_sums);
+        match self.parameters.treatment {
+            Treatment::MovingWall => match &self.screen {
+                None => moving_wall::act_on_fluid(self, &mut sums),
+                Some(screen) => moving_wall::push_fluid(self, screen.shown(self), &mut sums),
+            },
+            Treatment::PhaseBlind => phase_blind::act_on_fluid(self, &mut sums),
+        }
+        for (slot, record) in self.fluid.slots() {
+            let (sum, k) = (&sums[slot / LANES], slot % LANES);
+            visit(record, std::array::from_fn(|d| sum.acceleration[d].0[k]), sum.density_rate.0[k]);
+        }
+        self.fluid_sums = sums;
+    }
+
+    /// Force of the fluid on the solid: `visit(record, force)`.
+    pub fn act_on_solid(&mut self, mut visit: impl FnMut(usize, [f64; D])) {
+        self.solid_forces.resize(self.solid_list.clusters(), SolidForce::default());
+        let mut sums = std::mem::take(&mut self.solid_forces);
+        match self.parameters.treatment {
+            Treatment::MovingWall => match &self.screen {
+                None => moving_wall::act_on_solid(self, &mut sums),
+                Some(screen) => moving_wall::push_solid(self, screen.shown(self), &mut sums),
+            },
+            Treatment::PhaseBlind => phase_blind::act_on_solid(self, &mut sums),
+        }
+        for (slot, record) in self.solid.slots() {
+            visit(record, std::array::from_fn(|d| sums[slot / LANES].0[d].0[slot % LANES]));
+        }
+        self.solid_forces = sums;
+    }
+
+    /// Contribution of the fluid to the solid's density rate and velocity gradient: `visit(record, density_rate,
+    /// gradient)`, nothing with the moving wall.
+    pub fn rates_of_solid(&mut self, mut visit: impl FnMut(usize, f64, [[f64; D]; D])) {
+        if self.parameters.treatment == Treatment::MovingWall {
+            return;
+        }
+        self.solid_rates.resize(self.solid_list.clusters(), SolidRates::default());
+        let mut sums = std::mem::take(&mut self.solid_rates);
+        phase_blind::rates_of_solid(self, &mut sums);
+        for (slot, record) in self.solid.slots() {
+            let (sum, k) = (&sums[slot / LANES], slot % LANES);
+            let gradient = std::array::from_fn(|a| std::array::from_fn(|b| sum.gradient[a][b].0[k]));
+            visit(record, sum.density_rate.0[k], gradient);
+        }
+        self.solid_rates = sums;
+    }
+
+    /// Smallest distance between a fluid and a solid particle, m; infinite where none is near.
+    pub fn smallest_distance(&self) -> f64 {
+        let mut least = f64::INFINITY;
+        for cluster in 0..self.fluid_list.clusters() {
+            for &j in self.fluid_list.of(cluster) {
+                for k in 0..LANES {
+                    let i = cluster * LANES + k;
+                    if self.fluid.record_of(i) != PADDING {
+                        let r2: f64 = (0..D)
+                            .map(|d| (self.fluid.position[d][i] - self.solid.position[d][j as usize]).powi(2))
+                            .sum();
+                        least = least.min(r2);
+                    }
+                }
+            }
+        }
+        least.sqrt()
+    }
+}

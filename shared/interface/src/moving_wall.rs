@@ -1,0 +1,212 @@
+//! The solid as the fluid's moving wall (after Adami, Hu and Adams 2012, eqs. 23, 27 and 28).
+//!
+//! A solid particle s shows the fluid the pressure extrapolated from the fluid around it,
+//!   p_s = sum_f [ p_f + rho_f g . (x_s - x_f) ] W_sf / sum_f W_sf,
+//! the density of the fluid's equation of state at that pressure, the mass of the fluid that it displaces,
+//! m_s = rho_f0 V_s0, and its own velocity. With grad W = F x_ij,
+//!   D rho_f / Dt += rho_f sum_s m_s / rho_s v_fs . grad W,   m_f a_f += -sum_s m_f m_s (p_f/rho_f² + p_s/rho_s²) grad W,
+//! and the solid receives the opposite of each pair force. Its density and strain do not see the fluid.
+
+use super::{FluidSum, Interface, Parameters, Side, SolidForce};
+use halfstep_sph::extrapolation::{Extrapolation, ExtrapolationSum};
+use halfstep_sph::kernel::Kernel;
+use halfstep_sph::lane::{Arch, LANES, Lane};
+use halfstep_sph::pair::{self, PairLaw, distance, dot};
+use halfstep_sph::with_kernel;
+
+pub(super) fn show_pressure<const D: usize>(interface: &mut Interface<D>) {
+    let mut sums = std::mem::take(&mut interface.wall_sums);
+    sums.resize(interface.solid_list.clusters(), ExtrapolationSum::default());
+    let p = &interface.parameters;
+    with_kernel!(p.kernel, p.smoothing_length, D, |kernel| {
+        let law = extrapolation(interface, kernel);
+        pair::pass(p.isa, &law, &interface.solid_list, &mut sums);
+    });
+    let displaced = p.fluid.density / p.solid_density;
+    let side = &mut interface.solid;
+    for slot in 0..side.density.len() {
+        let pressure = extrapolated(p, &sums[slot / LANES], slot % LANES);
+        side.pressure[slot] = pressure;
+        side.density[slot] = p.fluid.density_at(pressure);
+        side.mass[slot] = side.own_mass[slot] * displaced;
+    }
+    interface.wall_sums = sums;
+}
+
+/// The fluid's pressure, extrapolated to the solid.
+pub(super) fn extrapolation<K: Kernel<D>, const D: usize>(
+    interface: &Interface<D>,
+    kernel: K,
+) -> Extrapolation<'_, K, D> {
+    Extrapolation {
+        kernel,
+        gravity: interface.parameters.gravity,
+        targets: &interface.solid.position,
+        sources: &interface.fluid.position,
+        density: &interface.fluid.density,
+        pressure: &interface.fluid.pressure,
+    }
+}
+
+/// The pressure that the k-th of four solid particles shows; 0 without fluid around, and not below 0 unless the scene lets it.
+pub(super) fn extrapolated<const D: usize>(p: &Parameters<D>, sum: &ExtrapolationSum, k: usize) -> f64 {
+    let pressure = sum.pressure(k).unwrap_or(0.0);
+    if p.non_negative_pressure { pressure.max(0.0) } else { pressure }
+}
+
+/// What a solid particle shows the fluid, which may depend on where the fluid is.
+pub(super) trait Shown<const D: usize>: Copy + Send + Sync {
+    /// What is loaded of four solid particles.
+    type Own: Copy;
+    /// Loads the solid particles at `slot..slot + 4`.
+    fn own(&self, slot: usize) -> Self::Own;
+    /// p / rho² of four solid particles, toward fluid at `to_fluid` = x_f - x_s.
+    fn of<A: Arch>(&self, own: &Self::Own, to_fluid: [Lane; D]) -> Lane;
+    /// p / rho² and m / rho of the solid particle `j`, toward four fluid particles.
+    fn to<A: Arch>(&self, j: usize, to_fluid: [Lane; D]) -> (Lane, Lane);
+}
+
+/// The same on all sides: the columns of the solid.
+#[derive(Clone, Copy)]
+struct AllSides<'a, const D: usize>(&'a Side<D>);
+
+impl<const D: usize> Shown<D> for AllSides<'_, D> {
+    type Own = Lane;
+
+    #[inline(always)]
+    fn own(&self, slot: usize) -> Lane {
+        let density = Lane::load(&self.0.density, slot);
+        Lane::load(&self.0.pressure, slot) / (density * density)
+    }
+    #[inline(always)]
+    fn of<A: Arch>(&self, own: &Lane, _: [Lane; D]) -> Lane {
+        *own
+    }
+    #[inline(always)]
+    fn to<A: Arch>(&self, j: usize, _: [Lane; D]) -> (Lane, Lane) {
+        let (side, rho) = (self.0, self.0.density[j]);
+        (Lane::splat(side.pressure[j] / (rho * rho)), Lane::splat(side.mass[j] / rho))
+    }
+}
+
+/// Four fluid particles.
+#[derive(Clone, Copy)]
+struct OfFluid<const D: usize> {
+    velocity: [Lane; D],
+    density: Lane,
+    /// p / rho².
+    pressure_term: Lane,
+}
+
+struct OnFluid<'a, K, S, const D: usize> {
+    kernel: K,
+    targets: &'a Side<D>,
+    sources: &'a Side<D>,
+    shown: S,
+}
+
+impl<K: Kernel<D>, S: Shown<D>, const D: usize> PairLaw<D> for OnFluid<'_, K, S, D> {
+    type Target = OfFluid<D>;
+    type Sum = FluidSum<D>;
+
+    #[inline(always)]
+    fn target_positions(&self) -> &[Vec<f64>; D] {
+        &self.targets.position
+    }
+    #[inline(always)]
+    fn target(&self, slot: usize) -> OfFluid<D> {
+        let side = self.targets;
+        let density = Lane::load(&side.density, slot);
+        OfFluid {
+            velocity: std::array::from_fn(|d| Lane::load(&side.velocity[d], slot)),
+            density,
+            pressure_term: Lane::load(&side.pressure, slot) / (density * density),
+        }
+    }
+    #[inline(always)]
+    fn source_position(&self, j: usize) -> [f64; D] {
+        std::array::from_fn(|d| self.sources.position[d][j])
+    }
+    #[inline(always)]
+    fn add<A: Arch>(&self, i: &OfFluid<D>, j: usize, dx: [Lane; D], r2: Lane, sum: &mut FluidSum<D>) {
+        let f = self.kernel.gradient_over_r::<A>(distance(r2, self.kernel.smoothing_length()));
+        let (term, volume) = self.shown.to::<A>(j, dx);
+        let s = self.sources;
+        let coefficient = Lane::splat(s.mass[j]) * (i.pressure_term + term) * f;
+        let dv = std::array::from_fn(|d| i.velocity[d] - Lane::splat(s.velocity[d][j]));
+        for d in 0..D {
+            sum.acceleration[d] = A::mul_add(-coefficient, dx[d], sum.acceleration[d]);
+        }
+        sum.density_rate = A::mul_add(i.density * volume * f, dot::<D, A>(dv, dx), sum.density_rate);
+    }
+}
+
+struct OnSolid<'a, K, S, const D: usize> {
+    kernel: K,
+    targets: &'a Side<D>,
+    sources: &'a Side<D>,
+    shown: S,
+}
+
+impl<K: Kernel<D>, S: Shown<D>, const D: usize> PairLaw<D> for OnSolid<'_, K, S, D> {
+    /// Mass, and what it shows.
+    type Target = (Lane, S::Own);
+    type Sum = SolidForce<D>;
+
+    #[inline(always)]
+    fn target_positions(&self) -> &[Vec<f64>; D] {
+        &self.targets.position
+    }
+    #[inline(always)]
+    fn target(&self, slot: usize) -> Self::Target {
+        (Lane::load(&self.targets.mass, slot), self.shown.own(slot))
+    }
+    #[inline(always)]
+    fn source_position(&self, j: usize) -> [f64; D] {
+        std::array::from_fn(|d| self.sources.position[d][j])
+    }
+    #[inline(always)]
+    fn add<A: Arch>(&self, i: &Self::Target, j: usize, dx: [Lane; D], r2: Lane, sum: &mut SolidForce<D>) {
+        let f = self.kernel.gradient_over_r::<A>(distance(r2, self.kernel.smoothing_length()));
+        let (mass, own) = i;
+        let (s, rho) = (self.sources, self.sources.density[j]);
+        let term = Lane::splat(s.pressure[j] / (rho * rho));
+        let shown = self.shown.of::<A>(own, dx.map(|x| -x));
+        let coefficient = *mass * (Lane::splat(s.mass[j]) * (shown + term) * f);
+        for d in 0..D {
+            sum.0[d] = A::mul_add(-coefficient, dx[d], sum.0[d]);
+        }
+    }
+}
+
+pub(super) fn act_on_fluid<const D: usize>(interface: &Interface<D>, sums: &mut [FluidSum<D>]) {
+    push_fluid(interface, AllSides(&interface.solid), sums);
+}
+
+pub(super) fn act_on_solid<const D: usize>(interface: &Interface<D>, sums: &mut [SolidForce<D>]) {
+    push_solid(interface, AllSides(&interface.solid), sums);
+}
+
+pub(super) fn push_fluid<const D: usize>(
+    interface: &Interface<D>,
+    shown: impl Shown<D>,
+    sums: &mut [FluidSum<D>],
+) {
+    let p = &interface.parameters;
+    with_kernel!(p.kernel, p.smoothing_length, D, |kernel| {
+        let law = OnFluid { kernel, targets: &interface.fluid, sources: &interface.solid, shown };
+        pair::pass(p.isa, &law, &interface.fluid_list, sums);
+    });
+}
+
+pub(super) fn push_solid<const D: usize>(
+    interface: &Interface<D>,
+    shown: impl Shown<D>,
+    sums: &mut [SolidForce<D>],
+) {
+    let p = &interface.parameters;
+    with_kernel!(p.kernel, p.smoothing_length, D, |kernel| {
+        let law = OnSolid { kernel, targets: &interface.solid, sources: &interface.fluid, shown };
+        pair::pass(p.isa, &law, &interface.solid_list, sums);
+    });
+}

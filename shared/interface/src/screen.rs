@@ -1,0 +1,279 @@
+//! Thin plates with fluid on both faces: each face shows a state of its own.
+//!
+//! A particle s of a plate belongs to the plate's middle, o_s behind it along the unit normal n_s. Fluid at x_f stands
+//! on the side of the normal with the share
+//!   chi = 1/2 + [ o_s + n_s . (x_f - x_s) ] / dx, at least 0 and at most 1,
+//! which is 0 or 1 along the faces and goes over from one to the other beyond the plate's end. s extrapolates one
+//! pressure from each side, with the weights chi W and (1 - chi) W, and shows fluid the state
+//! chi (...)_+ + (1 - chi) (...)_-.
+//!
+//! The normal is carried along with the plate's material (Nanson): from the positions X at the first half-step and x now of
+//! the plate's particles j within 2h,
+//!   n_s = F^-T N_s / |F^-T N_s|,  F = A M^-1,  A = sum_j (x_j - x_s) (X_j - X_s)^T,  M = sum_j (X_j - X_s) (X_j - X_s)^T.
+//! Fluid and coupler have the same records, so they have the same normals without a message. Solid particles of no thin
+//! plate have n = 0, o = 0: half of everything on either side, which is the one state that they show.
+
+use super::moving_wall::{Shown, extrapolated, extrapolation};
+use super::{Interface, Parameters, Side};
+use halfstep_sph::extrapolation::{Extrapolation, ExtrapolationSum};
+use halfstep_sph::kernel::Kernel;
+use halfstep_sph::lane::{Arch, LANES, Lane};
+use halfstep_sph::neighbours::PADDING;
+use halfstep_sph::pair::{self, PairLaw, dot};
+use halfstep_sph::tensor;
+use halfstep_sph::with_kernel;
+use halfstep_wire::protocol::StateRecord;
+use nalgebra::{SMatrix, SVector};
+
+/// One side of the plates: what their particles show there, by slot of the solid.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Face {
+    /// p / rho².
+    pub(super) pressure_term: Vec<f64>,
+    /// m / rho, m³ (2D: m²).
+    pub(super) volume: Vec<f64>,
+}
+
+/// The faces of the thin plates.
+#[derive(Clone, Debug)]
+pub(super) struct Screen<const D: usize> {
+    material: Vec<Material<D>>,
+    neighbours: Vec<u32>,
+    /// n_s by slot.
+    pub(super) normal: [Vec<f64>; D],
+    /// o_s by slot, m.
+    before: Vec<f64>,
+    /// Against the normal, and along it.
+    pub(super) faces: [Face; 2],
+    sums: Vec<[ExtrapolationSum; 2]>,
+}
+
+/// A solid record at the first half-step.
+#[derive(Clone, Copy, Debug)]
+struct Material<const D: usize> {
+    position: SVector<f64, D>,
+    /// M N_s; zero where there is no thin plate.
+    normal: SVector<f64, D>,
+    before: f64,
+    /// End of its neighbours.
+    end: u32,
+}
+
+impl<const D: usize> Screen<D> {
+    fn new(parameters: &Parameters<D>, records: &[StateRecord]) -> Self {
+        let x: Vec<[f64; D]> = records.iter().map(|r| std::array::from_fn(|d| r.position[d])).collect();
+        let reach = 2.0 * parameters.smoothing_length;
+        let plate_of = |x: &[f64; D]| parameters.thin_plates.iter().position(|p| p.holds(x));
+        let plates: Vec<Option<usize>> = x.iter().map(plate_of).collect();
+        let mut order: Vec<usize> = (0..x.len()).collect();
+        let widest = widest_axis(&x);
+        order.sort_by(|&a, &b| x[a][widest].total_cmp(&x[b][widest]));
+        let mut place = vec![0; x.len()];
+        order.iter().enumerate().for_each(|(k, &i)| place[i] = k);
+        let (mut material, mut neighbours) = (Vec::with_capacity(x.len()), Vec::new());
+        for i in 0..x.len() {
+            let position = SVector::from(x[i]);
+            let (mut moment, mut normal, mut before) = (SMatrix::zeros(), [0.0; D], 0.0);
+            if let Some(plate) = plates[i] {
+                (normal, before) = parameters.thin_plates[plate].across(&x[i]);
+                let near = |&j: &usize| (x[j][widest] - x[i][widest]).abs() <= reach;
+                let below = order[..place[i]].iter().copied().rev().take_while(near);
+                let above = order[place[i] + 1..].iter().copied().take_while(near);
+                for j in below.chain(above).filter(|&j| plates[j] == plates[i]) {
+                    let apart = SVector::from(x[j]) - position;
+                    if apart.norm() <= reach {
+                        moment += apart * apart.transpose();
+                        neighbours.push(j as u32);
+                    }
+                }
+            }
+            let end = neighbours.len() as u32;
+            material.push(Material { position, normal: moment * SVector::from(normal), before, end });
+        }
+        let normal = std::array::from_fn(|_| Vec::new());
+        Self { material, neighbours, normal, before: Vec::new(), faces: Default::default(), sums: Vec::new() }
+    }
+
+    /// The unit normal of a record's plate; zero where it has none.
+    fn normal(&self, record: usize, records: &[StateRecord]) -> SVector<f64, D> {
+        let own = &self.material[record];
+        let start = if record == 0 { 0 } else { self.material[record - 1].end };
+        let at = |j: usize| SVector::from(std::array::from_fn::<_, D, _>(|d| records[j].position[d]));
+        let here = at(record);
+        let mut moment = SMatrix::<f64, D, D>::zeros();
+        for &j in &self.neighbours[start as usize..own.end as usize] {
+            let j = j as usize;
+            moment += (at(j) - here) * (self.material[j].position - own.position).transpose();
+        }
+        let inverse = tensor::inverse(&moment, tensor::determinant(&moment));
+        let normal = inverse.map_or_else(SVector::zeros, |inverse| inverse.transpose() * own.normal);
+        let length = normal.norm();
+        if length > 0.0 { normal / length } else { SVector::zeros() }
+    }
+
+    /// Where the faces are now.
+    fn carry(&mut self, solid: &Side<D>, records: &[StateRecord]) {
+        let slots = solid.density.len();
+        for column in self.normal.iter_mut().chain([&mut self.before]) {
+            column.resize(slots, 0.0);
+        }
+        let (mut normal, mut before) = (SVector::<f64, D>::zeros(), 0.0);
+        for slot in 0..slots {
+            // A padding slot repeats the particle before it.
+            if solid.record_of(slot) != PADDING {
+                let record = solid.record_of(slot) as usize;
+                normal = self.normal(record, records);
+                before = if normal.norm() > 0.0 { self.material[record].before } else { 0.0 };
+            }
+            for d in 0..D {
+                self.normal[d][slot] = normal[d];
+            }
+            self.before[slot] = before;
+        }
+    }
+
+    /// What the plates show.
+    pub(super) fn shown(&self, interface: &Interface<D>) -> BothSides<'_, D> {
+        let sharpness = 1.0 / interface.parameters.resolution;
+        BothSides { normal: &self.normal, before: &self.before, faces: &self.faces, sharpness }
+    }
+}
+
+/// The axis along which points spread most.
+fn widest_axis<const D: usize>(x: &[[f64; D]]) -> usize {
+    let spread = |d: usize| {
+        let (low, high) =
+            x.iter().fold((f64::MAX, f64::MIN), |(low, high), x| (x[d].min(low), x[d].max(high)));
+        high - low
+    };
+    (0..D).max_by(|&a, &b| spread(a).total_cmp(&spread(b))).unwrap_or(0)
+}
+
+/// chi: the share of the normal's side that fluid has.
+#[inline(always)]
+fn share<const D: usize, A: Arch>(
+    normal: [Lane; D],
+    before: Lane,
+    to_fluid: [Lane; D],
+    sharpness: f64,
+) -> Lane {
+    let height = before + dot::<D, A>(normal, to_fluid);
+    let share = A::mul_add(height, Lane::splat(sharpness), Lane::splat(0.5));
+    share.max(Lane::ZERO).min(Lane::splat(1.0))
+}
+
+/// A state on each side.
+#[derive(Clone, Copy)]
+pub(super) struct BothSides<'a, const D: usize> {
+    normal: &'a [Vec<f64>; D],
+    before: &'a [f64],
+    faces: &'a [Face; 2],
+    /// 1 / dx, 1/m.
+    sharpness: f64,
+}
+
+/// Of four solid particles.
+#[derive(Clone, Copy)]
+pub(super) struct Own<const D: usize> {
+    normal: [Lane; D],
+    before: Lane,
+    pressure_term: [Lane; 2],
+}
+
+fn between<A: Arch>([against, along]: [Lane; 2], share: Lane) -> Lane {
+    A::mul_add(share, along - against, against)
+}
+
+impl<const D: usize> Shown<D> for BothSides<'_, D> {
+    type Own = Own<D>;
+
+    #[inline(always)]
+    fn own(&self, slot: usize) -> Own<D> {
+        Own {
+            normal: std::array::from_fn(|d| Lane::load(&self.normal[d], slot)),
+            before: Lane::load(self.before, slot),
+            pressure_term: std::array::from_fn(|k| Lane::load(&self.faces[k].pressure_term, slot)),
+        }
+    }
+    #[inline(always)]
+    fn of<A: Arch>(&self, own: &Own<D>, to_fluid: [Lane; D]) -> Lane {
+        between::<A>(own.pressure_term, share::<D, A>(own.normal, own.before, to_fluid, self.sharpness))
+    }
+    #[inline(always)]
+    fn to<A: Arch>(&self, j: usize, to_fluid: [Lane; D]) -> (Lane, Lane) {
+        let normal = std::array::from_fn(|d| Lane::splat(self.normal[d][j]));
+        let share = share::<D, A>(normal, Lane::splat(self.before[j]), to_fluid, self.sharpness);
+        let [against, along] = self.faces;
+        let both = |a: &[f64], b: &[f64]| between::<A>([Lane::splat(a[j]), Lane::splat(b[j])], share);
+        (both(&against.pressure_term, &along.pressure_term), both(&against.volume, &along.volume))
+    }
+}
+
+/// The law of the pass over the solid: a pressure from each side.
+struct FromBothSides<'a, K, const D: usize> {
+    extrapolation: Extrapolation<'a, K, D>,
+    shown: BothSides<'a, D>,
+}
+
+impl<K: Kernel<D>, const D: usize> PairLaw<D> for FromBothSides<'_, K, D> {
+    type Target = ([Lane; D], Lane);
+    type Sum = [ExtrapolationSum; 2];
+
+    #[inline(always)]
+    fn target_positions(&self) -> &[Vec<f64>; D] {
+        self.extrapolation.targets
+    }
+    #[inline(always)]
+    fn source_position(&self, j: usize) -> [f64; D] {
+        std::array::from_fn(|d| self.extrapolation.sources[d][j])
+    }
+    #[inline(always)]
+    fn target(&self, slot: usize) -> Self::Target {
+        let normal = std::array::from_fn(|d| Lane::load(&self.shown.normal[d], slot));
+        (normal, Lane::load(self.shown.before, slot))
+    }
+    #[inline(always)]
+    fn add<A: Arch>(&self, i: &Self::Target, j: usize, dx: [Lane; D], r2: Lane, sum: &mut Self::Sum) {
+        let (w, p) = self.extrapolation.source::<A>(j, dx, r2);
+        let along = w * share::<D, A>(i.0, i.1, dx.map(|x| -x), self.shown.sharpness);
+        sum[0].add::<A>(w - along, p);
+        sum[1].add::<A>(along, p);
+    }
+}
+
+/// What each side of the plates shows, from the records of both phases.
+pub(super) fn show_pressures<const D: usize>(interface: &mut Interface<D>, records: &[StateRecord]) {
+    let mut screen = interface.screen.take().unwrap_or_else(|| Screen::new(&interface.parameters, records));
+    screen.carry(&interface.solid, records);
+    let mut sums = std::mem::take(&mut screen.sums);
+    sums.resize(interface.solid_list.clusters(), Default::default());
+    let p = &interface.parameters;
+    with_kernel!(p.kernel, p.smoothing_length, D, |kernel| {
+        let law =
+            FromBothSides { extrapolation: extrapolation(interface, kernel), shown: screen.shown(interface) };
+        pair::pass(p.isa, &law, &interface.solid_list, &mut sums);
+    });
+    let displaced = p.fluid.density / p.solid_density;
+    let solid = &mut interface.solid;
+    for face in &mut screen.faces {
+        face.pressure_term.resize(solid.density.len(), 0.0);
+        face.volume.resize(solid.density.len(), 0.0);
+    }
+    for slot in 0..solid.density.len() {
+        let mass = solid.own_mass[slot] * displaced;
+        let mut mean = 0.0;
+        for (face, sum) in screen.faces.iter_mut().zip(sums[slot / LANES]) {
+            let pressure = extrapolated(p, &sum, slot % LANES);
+            let density = p.fluid.density_at(pressure);
+            face.pressure_term[slot] = pressure / (density * density);
+            face.volume[slot] = mass / density;
+            mean += 0.5 * pressure;
+        }
+        // The cross-phase viscosity asks for one density; the faces' differ by less than the fluid is compressible.
+        solid.pressure[slot] = mean;
+        solid.density[slot] = p.fluid.density_at(mean);
+        solid.mass[slot] = mass;
+    }
+    screen.sums = sums;
+    interface.screen = Some(screen);
+}

@@ -1,0 +1,44 @@
+//! Where a solid is so thin that fluid on both of its faces is within reach of the same solid particles.
+//!
+//! Of a plate with N rows of particles across, the nearest fluid on either face stands (N + 1) dx apart. Below 4h there
+//! are solid particles that see both; below 2h the fluid particles see each other.
+
+use halfstep_scene::geometry::Plate;
+use halfstep_scene::{Decision, Derived, EffectName, Scene, Treatment};
+
+/// Relative tolerance of lengths.
+const TOLERANCE: f64 = 1e-9;
+
+/// The plates of a scene that some support, in units of h, reaches through.
+fn thinner<const D: usize>(scene: &Scene, support: f64) -> Vec<Plate<D>> {
+    let reach = support * scene.smoothing_ratio * (1.0 - TOLERANCE);
+    let plates = scene.shapes.iter().filter_map(|shape| Plate::of(scene, shape));
+    plates.filter(|plate| plate.rows + 1.0 < reach).collect()
+}
+
+/// Thin plates show the fluid on each face a pressure of its own where the solid is a moving wall.
+pub fn thin_plate_screen(scene: &Scene) -> Decision {
+    Decision::new(scene, EffectName::ThinPlateScreen, derive(scene))
+}
+
+fn derive(scene: &Scene) -> Derived {
+    if scene.fluid.is_none() || scene.solid.is_none() {
+        return Derived::Impossible("one phase only".into());
+    }
+    if scene.interface.treatment == Treatment::PhaseBlind {
+        return Derived::Impossible("phase-blind: solid particles show their own stress".into());
+    }
+    match thinner::<2>(scene, 4.0).first() {
+        Some(plate) => Derived::On(format!(
+            "{} is {} particles thick: they see the fluid on both faces",
+            plate.name,
+            plate.rows.round()
+        )),
+        None => Derived::Impossible("no plate is thinner than 4h - dx".into()),
+    }
+}
+
+/// The plates to be screened; none where the effect is off.
+pub(super) fn screened<const D: usize>(scene: &Scene) -> Vec<Plate<D>> {
+    if thin_plate_screen(scene).on { thinner(scene, 4.0) } else { Vec::new() }
+}

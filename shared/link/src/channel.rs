@@ -1,0 +1,223 @@
+//! The ends of a channel: one publisher, up to two readers, whole messages.
+
+use super::hub::{Hub, Presence, Watch, attributes, port_error, service_name};
+use super::memory::SAMPLES;
+use super::{LinkConfig, LinkError, Transport};
+use crate::slot::Slot;
+use halfstep_wire::failure::RoleName;
+use halfstep_wire::protocol::{ForceHeader, ForceRecord, Plain, StateHeader, StateRecord};
+use iceoryx2::identifiers::UniqueNodeId;
+use iceoryx2::port::SendError;
+use iceoryx2::port::publisher::Publisher;
+use iceoryx2::port::subscriber::Subscriber;
+use iceoryx2::port::update_connections::UpdateConnections;
+use iceoryx2::prelude::*;
+use iceoryx2::sample::Sample;
+use iceoryx2::service::port_factory::publish_subscribe;
+use std::fmt::Debug;
+use std::sync::Arc;
+
+/// A message where it was written.
+type Message<S, R, H> = Sample<S, [Slot<R>], Slot<H>>;
+
+/// A channel before its ports are made.
+#[derive(Debug)]
+pub(super) struct Channel<S: Transport, R: Plain, H: Plain> {
+    factory: publish_subscribe::PortFactory<S, [Slot<R>], Slot<H>>,
+    phase: RoleName,
+    capacity: usize,
+}
+
+pub(super) type StateChannel<S> = Channel<S, StateRecord, StateHeader>;
+pub(super) type ForceChannel<S> = Channel<S, ForceRecord, ForceHeader>;
+
+impl<S: Transport> StateChannel<S> {
+    /// The states of a phase: read by the other phase and the coupler.
+    pub(super) fn state(hub: &Hub<S>, config: &LinkConfig, phase: RoleName) -> Result<Self, LinkError> {
+        Self::open(hub, config, phase, "state", 2)
+    }
+}
+
+impl<S: Transport> ForceChannel<S> {
+    /// The coupler's answers to a phase.
+    pub(super) fn forces(hub: &Hub<S>, config: &LinkConfig, phase: RoleName) -> Result<Self, LinkError> {
+        Self::open(hub, config, phase, "force", 1)
+    }
+}
+
+impl<S: Transport, R: Plain, H: Plain> Channel<S, R, H> {
+    fn open(
+        hub: &Hub<S>,
+        config: &LinkConfig,
+        phase: RoleName,
+        kind: &str,
+        readers: usize,
+    ) -> Result<Self, LinkError> {
+        let service = format!("halfstep/{phase}/{kind}");
+        let (name, attributes) = (service_name(&service)?, attributes()?);
+        let factory = hub.open_service(&service, || {
+            hub.node
+                .service_builder(&name)
+                .publish_subscribe::<[Slot<R>]>()
+                .user_header::<Slot<H>>()
+                .enable_safe_overflow(false)
+                .history_size(0)
+                .subscriber_max_buffer_size(2)
+                .subscriber_max_borrowed_samples(2)
+                .max_publishers(1)
+                .max_subscribers(readers)
+                .max_nodes(readers + 1)
+                .open_or_create_with_attributes(&attributes)
+        })?;
+        Ok(Self { factory, phase, capacity: config.capacity(phase) as usize })
+    }
+
+    pub(super) fn reader(self, hub: &Hub<S>, sender: RoleName) -> Result<Incoming<S, R, H>, LinkError> {
+        let subscriber =
+            self.factory.subscriber_builder().create().map_err(|e| port_error(hub.role, "subscribing", e))?;
+        Ok(Incoming { subscriber, channel: self, sender })
+    }
+
+    pub(super) fn writer(self, hub: &Hub<S>) -> Result<Outgoing<S, R, H>, LinkError> {
+        let watch = Arc::clone(&hub.watch);
+        let publisher = self
+            .factory
+            .publisher_builder()
+            .allocation_strategy(AllocationStrategy::Static)
+            .initial_max_slice_len(self.capacity.max(1))
+            .max_loaned_samples(1)
+            .override_sample_preallocation(|_| SAMPLES)
+            .backpressure_strategy(BackpressureStrategy::RetryUntilDelivered)
+            .set_backpressure_handler(move |info| watch.on_full_queue(info))
+            .create()
+            .map_err(|e| port_error(hub.role, "publishing", e))?;
+        Ok(Outgoing { publisher, channel: self })
+    }
+
+    /// The node that writes to this channel.
+    fn writer_node(&self) -> Option<UniqueNodeId> {
+        let mut node = None;
+        self.factory.dynamic_config().list_publishers(|details| {
+            node = Some(details.node_id);
+            CallbackProgression::Stop
+        });
+        node
+    }
+}
+
+/// The reading end of a channel.
+#[derive(Debug)]
+pub(super) struct Incoming<S: Transport, R: Plain, H: Plain> {
+    subscriber: Subscriber<S, [Slot<R>], Slot<H>>,
+    channel: Channel<S, R, H>,
+    pub(super) sender: RoleName,
+}
+
+impl<S: Transport, R: Plain, H: Plain> Incoming<S, R, H> {
+    /// Looks whether the sender has come; if so, connects and remembers its node. From then on whatever it sends is
+    /// kept, even if it ends at once.
+    pub(super) fn meet_sender(&self, watch: &Watch<S>) -> Result<Presence, LinkError> {
+        match self.channel.writer_node() {
+            Some(_) if watch.has_met(self.sender) => Ok(Presence::Here),
+            Some(node) => {
+                self.subscriber.update_connections().map_err(|e| LinkError::transport("connecting", e))?;
+                watch.met(self.sender, node);
+                Ok(Presence::Here)
+            }
+            None if watch.has_met(self.sender) => Ok(Presence::Left),
+            None => Ok(Presence::NotYet),
+        }
+    }
+
+    pub(super) fn receive(&mut self, hub: &mut Hub<S>) -> Result<Message<S, R, H>, LinkError> {
+        let subscriber = &self.subscriber;
+        hub.wait(self.sender, || subscriber.receive().map_err(|e| LinkError::transport("receiving", e)))
+    }
+}
+
+/// The writing end of a channel.
+#[derive(Debug)]
+pub(super) struct Outgoing<S: Transport, R: Plain, H: Plain> {
+    publisher: Publisher<S, [Slot<R>], Slot<H>>,
+    channel: Channel<S, R, H>,
+}
+
+impl<S: Transport, R: Plain, H: Plain> Outgoing<S, R, H> {
+    pub(super) fn connect(&self) -> Result<(), LinkError> {
+        self.publisher.update_connections().map_err(|e| LinkError::transport("connecting", e))
+    }
+
+    /// Fails if a message of `count` records does not fit.
+    pub(super) fn check_capacity(&self, count: usize) -> Result<(), LinkError> {
+        let Channel { capacity, phase, .. } = self.channel;
+        if count > capacity {
+            let key = LinkError::CAPACITY_KEY;
+            return Err(LinkError::Capacity { peer: phase, needed: count, capacity, key });
+        }
+        Ok(())
+    }
+
+    /// Writes a message where its readers will find it, and hands it over. Does not wake them.
+    pub(super) fn send(
+        &mut self,
+        hub: &Hub<S>,
+        header: &H,
+        count: usize,
+        mut record: impl FnMut(usize) -> R,
+    ) -> Result<(), LinkError> {
+        self.check_capacity(count)?;
+        let mut sample = self
+            .publisher
+            .loan_slice_uninit(count)
+            .map_err(|e| LinkError::transport("room for a message", e))?;
+        *sample.user_header_mut() = Slot(*header);
+        match sample.write_from_fn(|slot| Slot(record(slot))).send() {
+            Ok(_) => Ok(()),
+            Err(SendError::UnableToDeliver) => Err(hub.watch.undelivered(|port| self.owner_of(port))),
+            Err(error) => Err(LinkError::transport("sending", error)),
+        }
+    }
+
+    fn owner_of(&self, port: u128) -> Option<UniqueNodeId> {
+        let mut node = None;
+        self.channel.factory.dynamic_config().list_subscribers(|details| {
+            if details.subscriber_id.value() == port {
+                node = Some(details.node_id);
+            }
+            CallbackProgression::Continue
+        });
+        node
+    }
+}
+
+/// A received state, read where its sender wrote it. At most two of a channel can be held.
+#[derive(Debug)]
+pub struct StateSample<S: Transport>(pub(super) Message<S, StateRecord, StateHeader>);
+
+impl<S: Transport> StateSample<S> {
+    /// What heads the message.
+    pub fn header(&self) -> &StateHeader {
+        &self.0.user_header().0
+    }
+
+    /// The interface particles, by ascending number.
+    pub fn records(&self) -> &[StateRecord] {
+        Slot::values(self.0.payload())
+    }
+}
+
+/// Received forces, read where the coupler wrote them. At most two of a channel can be held.
+#[derive(Debug)]
+pub struct ForceSample<S: Transport>(pub(super) Message<S, ForceRecord, ForceHeader>);
+
+impl<S: Transport> ForceSample<S> {
+    /// What heads the message.
+    pub fn header(&self) -> &ForceHeader {
+        &self.0.user_header().0
+    }
+
+    /// The forces, in the order of the state they answer.
+    pub fn records(&self) -> &[ForceRecord] {
+        Slot::values(self.0.payload())
+    }
+}

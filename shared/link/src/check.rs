@@ -1,0 +1,302 @@
+//! What every received message must satisfy before anybody uses it.
+
+use super::{LinkConfig, LinkError};
+use halfstep_wire::failure::RoleName;
+use halfstep_wire::protocol::{
+    ForceHeader, ForceRecord, MAX_PROBE_VALUES, PROTOCOL, SCHEMA, StateHeader, StateRecord, order, status,
+};
+use std::fmt::Display;
+
+/// The message that is due.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Expect {
+    /// Step n.
+    pub step: u64,
+    /// Stage of the step.
+    pub stage: u32,
+    /// Time of step n, s, bit for bit; `None` where the receiver does not know it.
+    pub time: Option<f64>,
+    /// Time step, s, bit for bit; `None` where the receiver does not know it.
+    pub dt: Option<f64>,
+}
+
+impl Expect {
+    /// The message of this step and stage, at any time.
+    pub fn new(step: u64, stage: u32) -> Self {
+        Self { step, stage, time: None, dt: None }
+    }
+
+    /// With this time of step n, s.
+    pub fn time(self, time: f64) -> Self {
+        Self { time: Some(time), ..self }
+    }
+
+    /// With this time step, s.
+    pub fn dt(self, dt: f64) -> Self {
+        Self { dt: Some(dt), ..self }
+    }
+}
+
+/// Who sent a message to whom waits for what.
+struct Check<'a> {
+    peer: RoleName,
+    expect: &'a Expect,
+}
+
+impl Check<'_> {
+    fn mismatch(&self, field: &'static str, expected: impl Display, found: impl Display) -> LinkError {
+        LinkError::Mismatch {
+            peer: self.peer,
+            field,
+            expected: expected.to_string(),
+            found: found.to_string(),
+            step: self.expect.step,
+            stage: self.expect.stage,
+        }
+    }
+
+    fn equal<T: PartialEq + Display>(
+        &self,
+        field: &'static str,
+        expected: T,
+        found: T,
+    ) -> Result<(), LinkError> {
+        if expected == found { Ok(()) } else { Err(self.mismatch(field, expected, found)) }
+    }
+
+    /// Bit for bit, and a number at all.
+    fn same_bits(&self, field: &'static str, expected: Option<f64>, found: f64) -> Result<(), LinkError> {
+        match expected {
+            Some(value) if value.to_bits() != found.to_bits() => {
+                Err(self.mismatch(field, format!("{value:?}"), format!("{found:?}")))
+            }
+            _ => self.finite(field, found),
+        }
+    }
+
+    fn finite(&self, field: &'static str, value: f64) -> Result<(), LinkError> {
+        if value.is_finite() { Ok(()) } else { Err(self.not_finite(field, None, value)) }
+    }
+
+    fn not_finite(&self, field: &'static str, particle: Option<u32>, value: f64) -> LinkError {
+        let Expect { step, stage, .. } = *self.expect;
+        LinkError::NotFinite { peer: self.peer, field, particle, value, step, stage }
+    }
+
+    fn identity(&self, own: u64, run: u64, protocol: u32, schema: u64) -> Result<(), LinkError> {
+        self.equal("run_id", own, run)?;
+        self.equal("protocol", PROTOCOL, protocol)?;
+        self.equal("schema", SCHEMA, schema)
+    }
+
+    fn position(&self, step: u64, stage: u32, time: f64, dt: f64) -> Result<(), LinkError> {
+        self.equal("step", self.expect.step, step)?;
+        self.equal("stage", self.expect.stage, stage)?;
+        self.same_bits("time", self.expect.time, time)?;
+        self.same_bits("dt", self.expect.dt, dt)
+    }
+}
+
+/// Particle numbers of the messages of one epoch.
+#[derive(Debug)]
+pub(super) struct Identities {
+    ids: Vec<u32>,
+    epoch: Option<u64>,
+}
+
+impl Identities {
+    pub(super) fn new(capacity: u32) -> Self {
+        Self { ids: Vec::with_capacity(capacity as usize), epoch: None }
+    }
+
+    /// Follows own messages, which others check.
+    pub(super) fn begin(&mut self, epoch: u64) {
+        self.epoch = Some(epoch);
+        self.ids.clear();
+    }
+
+    pub(super) fn push(&mut self, id: u32) {
+        self.ids.push(id);
+    }
+
+    /// Whether these are finite states of the known particles: one pass without branches for the usual message. What is
+    /// wrong with another one is found out at leisure.
+    fn match_at_once(&self, epoch: u64, records: &[StateRecord]) -> bool {
+        let good = |(id, record): (&u32, &StateRecord)| (*id == record.id) & state_is_finite(record);
+        self.is_current(epoch, records.len())
+            && self.ids.iter().zip(records).fold(true, |all, pair| all & good(pair))
+    }
+
+    pub(super) fn is_current(&self, epoch: u64, count: usize) -> bool {
+        self.epoch == Some(epoch) && self.ids.len() == count
+    }
+}
+
+/// Checks the states of a phase.
+#[derive(Debug)]
+pub(super) struct StateCheck {
+    run_id: u64,
+    peer: RoleName,
+    capacity: usize,
+    known: Identities,
+}
+
+impl StateCheck {
+    pub(super) fn new(config: &LinkConfig, peer: RoleName) -> Self {
+        let capacity = config.capacity(peer);
+        let known = Identities::new(capacity);
+        Self { run_id: config.run_id, peer, capacity: capacity as usize, known }
+    }
+
+    /// Whether this is the message that is due. A message that says that its sender failed or finished is: it must only
+    /// be of this run.
+    pub(super) fn verify(
+        &mut self,
+        header: &StateHeader,
+        records: &[StateRecord],
+        expect: &Expect,
+    ) -> Result<(), LinkError> {
+        let check = Check { peer: self.peer, expect };
+        check.identity(self.run_id, header.run_id, header.protocol, header.schema)?;
+        check.equal("count", records.len(), header.count as usize)?;
+        if records.len() > self.capacity {
+            let (needed, capacity) = (records.len(), self.capacity);
+            return Err(LinkError::Capacity {
+                peer: self.peer,
+                needed,
+                capacity,
+                key: LinkError::CAPACITY_KEY,
+            });
+        }
+        match header.status {
+            status::OK => {}
+            status::DIVERGED | status::FAILED => return Ok(()),
+            status::FINISHED => return check.equal("stage", 2, header.stage),
+            unknown => return Err(check.mismatch("status", "0 to 3", unknown)),
+        }
+        check.position(header.step, header.stage, header.time, header.dt)?;
+        check.finite("dt_limit", header.dt_limit)?;
+        check.finite("displacement", header.displacement)?;
+        if header.stage == 0 && header.dt_limit <= 0.0 {
+            return Err(check.mismatch("dt_limit", "a positive number", header.dt_limit));
+        }
+        if header.probe_count > MAX_PROBE_VALUES as u64 {
+            return Err(check.mismatch(
+                "probe_count",
+                format!("at most {MAX_PROBE_VALUES}"),
+                header.probe_count,
+            ));
+        }
+        if self.known.match_at_once(header.epoch, records) {
+            return Ok(());
+        }
+        self.identities(&check, header, records)?;
+        match records.iter().find(|record| !state_is_finite(record)) {
+            None => Ok(()),
+            Some(record) => {
+                let (field, value) = state_values(record).find(|(_, v)| !v.is_finite()).expect("just found");
+                Err(check.not_finite(field, Some(record.id), value))
+            }
+        }
+    }
+
+    fn identities(
+        &mut self,
+        check: &Check<'_>,
+        header: &StateHeader,
+        records: &[StateRecord],
+    ) -> Result<(), LinkError> {
+        if self.peer == RoleName::Solid {
+            check.equal("epoch", 0, header.epoch)?;
+        }
+        let known = &mut self.known;
+        match known.epoch {
+            Some(epoch) if header.epoch < epoch => {
+                return Err(check.mismatch("epoch", format!("at least {epoch}"), header.epoch));
+            }
+            Some(epoch) if header.epoch == epoch => {
+                check.equal("count", known.ids.len(), records.len())?;
+                return match known.ids.iter().zip(records).find(|(id, record)| **id != record.id) {
+                    Some((id, record)) => Err(check.mismatch("id", id, record.id)),
+                    None => Ok(()),
+                };
+            }
+            _ => {}
+        }
+        if let Some(pair) = records.windows(2).find(|pair| pair[0].id >= pair[1].id) {
+            return Err(check.mismatch("id", format!("more than {}", pair[0].id), pair[1].id));
+        }
+        known.begin(header.epoch);
+        known.ids.extend(records.iter().map(|record| record.id));
+        Ok(())
+    }
+}
+
+/// Checks the coupler's answer to an own state of these particles.
+pub(super) fn verify_forces(
+    run_id: u64,
+    sent: &Identities,
+    header: &ForceHeader,
+    records: &[ForceRecord],
+    expect: &Expect,
+) -> Result<(), LinkError> {
+    let check = Check { peer: RoleName::Coupler, expect };
+    check.identity(run_id, header.run_id, header.protocol, header.schema)?;
+    check.equal("count", records.len(), header.count as usize)?;
+    check.position(header.step, header.stage, header.time, header.dt)?;
+    check.finite("next_time", header.next_time)?;
+    let stops = header.order & order::STOP != 0;
+    if stops == (header.order & order::GO != 0) {
+        return Err(check.mismatch("order", "one of go and stop", header.order));
+    }
+    if stops {
+        return check.equal("stage", 0, header.stage);
+    }
+    if header.dt <= 0.0 {
+        return Err(check.mismatch("dt", "a positive number", header.dt));
+    }
+    check.equal("epoch", sent.epoch.unwrap_or_default(), header.epoch)?;
+    check.equal("count", sent.ids.len(), records.len())?;
+    for (id, record) in sent.ids.iter().zip(records) {
+        check.equal("id", *id, record.id)?;
+        if !force_is_finite(record) {
+            let (field, value) = force_values(record).find(|(_, v)| !v.is_finite()).expect("just found");
+            return Err(check.not_finite(field, Some(record.id), value));
+        }
+    }
+    Ok(())
+}
+
+/// All exponent bits set: neither finite nor the end of a sum that hides it.
+fn is_not_finite(value: f64) -> bool {
+    const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
+    value.to_bits() & EXPONENT == EXPONENT
+}
+
+/// Without early exit, so that it compiles to a few vector instructions.
+fn state_is_finite(r: &StateRecord) -> bool {
+    let vectors = r.position.iter().chain(&r.velocity).chain(&r.deviatoric_stress);
+    let bad = vectors.fold(false, |bad, v| bad | is_not_finite(*v));
+    !(bad | is_not_finite(r.density) | is_not_finite(r.pressure) | is_not_finite(r.mass))
+}
+
+fn force_is_finite(r: &ForceRecord) -> bool {
+    !r.cross_viscosity.iter().chain(&r.stress_force).fold(false, |bad, v| bad | is_not_finite(*v))
+}
+
+fn state_values(r: &StateRecord) -> impl Iterator<Item = (&'static str, f64)> {
+    let named = |name: &'static str, values: &[f64]| {
+        values.iter().map(|v| (name, *v)).collect::<Vec<_>>().into_iter()
+    };
+    named("position", &r.position)
+        .chain(named("velocity", &r.velocity))
+        .chain(named("density", &[r.density]))
+        .chain(named("pressure", &[r.pressure]))
+        .chain(named("mass", &[r.mass]))
+        .chain(named("deviatoric_stress", &r.deviatoric_stress))
+}
+
+fn force_values(r: &ForceRecord) -> impl Iterator<Item = (&'static str, f64)> {
+    let named = |name: &'static str, values: [f64; 3]| values.into_iter().map(move |v| (name, v));
+    named("cross_viscosity", r.cross_viscosity).chain(named("stress_force", r.stress_force))
+}

@@ -1,0 +1,111 @@
+//! What a run leaves behind: frames for viewers, probe curves, the report and two pictures.
+//!
+//! | file | who writes it |
+//! |---|---|
+//! | `frames/{fluid,solid}_NNNNNN.hdf`, `frames/{fluid,solid}.hdf.series` | [`FrameWriter`], one per process |
+//! | `probes.csv` | [`ProbeLog`] |
+//! | `run.json` | [`RunReport`] |
+//! | `plot.png`, `contact.png` | [`draw_plot`], [`draw_contact`] |
+//!
+//! A file that a reader can see is whole: except for `probes.csv`, which grows line by line, every file is written under a
+//! temporary name (`.NAME.tmp`), synchronised with the disk and renamed. Killing the program at any moment
+//! leaves nothing half-written under a final name.
+
+pub mod atomic;
+#[cfg(feature = "pictures")]
+pub mod pictures;
+pub mod probes;
+pub mod run_dir;
+pub mod run_json;
+pub mod series;
+pub mod vtkhdf;
+pub mod writer;
+
+pub use halfstep_wire::frame::{Frame, FramePoint};
+#[cfg(feature = "pictures")]
+pub use pictures::{draw_contact, draw_plot};
+pub use probes::{ProbeLog, Table, read_probes};
+pub use run_dir::RunDirectory;
+pub use run_json::RunReport;
+pub use writer::FrameWriter;
+
+use std::path::{Path, PathBuf};
+
+/// Why something could not be written or read. Every message is one line and says which file.
+#[derive(Debug, thiserror::Error)]
+pub enum OutputError {
+    /// The operating system refused.
+    #[error("cannot {action} {}: {error}", path.display())]
+    Io {
+        /// What was tried: a verb.
+        action: &'static str,
+        /// The file or folder.
+        path: PathBuf,
+        /// The system's reason.
+        error: std::io::Error,
+    },
+    /// The HDF5 library refused.
+    #[error("cannot {action} {}: HDF5: {reason}", path.display())]
+    Hdf5 {
+        /// What was tried: a verb.
+        action: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// The library's reason.
+        reason: String,
+    },
+    /// A file exists but does not hold what its name promises.
+    #[error("{}: {reason}", path.display())]
+    Malformed {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// A row has another number of values than the file has columns.
+    #[error("{}: a row of {got} values for {expected} columns", path.display())]
+    Columns {
+        /// The file.
+        path: PathBuf,
+        /// Columns beside the time.
+        expected: usize,
+        /// Values given.
+        got: usize,
+    },
+    /// The folder holds an earlier run.
+    #[error("{} holds an earlier run ({found}); give another folder, or --force to replace that run", dir.display())]
+    Occupied {
+        /// The folder.
+        dir: PathBuf,
+        /// A file of the earlier run.
+        found: String,
+    },
+    /// A picture could not be drawn.
+    #[error("cannot draw {}: {reason}", path.display())]
+    Picture {
+        /// The picture.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// The thread that writes the frames is gone: it panicked, or its error was reported before.
+    #[error("the writer of the {stem} frames in {} has stopped", dir.display())]
+    WriterStopped {
+        /// The folder of the frames.
+        dir: PathBuf,
+        /// `fluid` or `solid`.
+        stem: String,
+    },
+}
+
+impl OutputError {
+    pub(crate) fn io(action: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Self {
+        move |error| Self::Io { action, path: path.into(), error }
+    }
+    pub(crate) fn hdf5(action: &'static str, path: &Path) -> impl FnOnce(hdf5::Error) -> Self {
+        move |error| Self::Hdf5 { action, path: path.into(), reason: error.to_string() }
+    }
+    pub(crate) fn malformed(path: &Path, reason: impl Into<String>) -> Self {
+        Self::Malformed { path: path.into(), reason: reason.into() }
+    }
+}

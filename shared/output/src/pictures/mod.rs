@@ -1,0 +1,16 @@
+//! The two pictures of a run, and the canvas that they are drawn on.
+
+pub mod canvas;
+pub mod contact;
+#[cfg(test)]
+mod fixture;
+mod panels;
+pub mod plot;
+mod stamp;
+#[cfg(test)]
+mod tests;
+pub mod units;
+mod view;
+
+pub use contact::draw_contact;
+pub use plot::draw_plot;

@@ -1,0 +1,151 @@
+//! The pictures, decoded again: size, colours, and what a viewer must find on them.
+
+use super::plot::{CURVES, HEAD, REFERENCES};
+use super::stamp::{Scale, WALL, palette};
+use super::*;
+use crate::{ProbeLog, series};
+use std::collections::HashMap;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+
+/// Folder of a drawn run; it stays for people to look at.
+fn folder(name: &str) -> PathBuf {
+    let target = std::env::current_exe().unwrap();
+    let dir = target.ancestors().nth(3).unwrap().join("tmp/pictures").join(name);
+    let _ = std::fs::remove_dir_all(&dir);
+    std::fs::create_dir_all(&dir).unwrap();
+    dir
+}
+
+/// Width, height and how often each RGB colour appears.
+fn decode(path: &Path) -> (u32, u32, HashMap<[u8; 3], u32>) {
+    let mut decoder = png::Decoder::new(BufReader::new(std::fs::File::open(path).unwrap()));
+    decoder.set_transformations(png::Transformations::EXPAND);
+    let mut reader = decoder.read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut pixels).unwrap();
+    let mut colors = HashMap::new();
+    for rgb in pixels[..info.buffer_size()].chunks_exact(3) {
+        *colors.entry([rgb[0], rgb[1], rgb[2]]).or_default() += 1;
+    }
+    (info.width, info.height, colors)
+}
+
+fn rgb(color: plotters::style::RGBColor) -> [u8; 3] {
+    [color.0, color.1, color.2]
+}
+
+#[test]
+fn the_plot_shows_curves_and_references() {
+    let dir = folder("plot");
+    let plain = folder("plot-plain");
+    let mut scene = fixture::scene();
+    fixture::probes(&scene, &plain);
+    fixture::probes(&scene, &dir);
+    let path = draw_plot(&scene, &dir).unwrap();
+    assert_eq!(path, dir.join("plot.png"));
+    let (width, height, with) = decode(&path);
+    // Three panels below each other: tip.x and tip.y have references, the pressure is alone.
+    assert_eq!((width, height), (1000, HEAD + 3 * 400));
+    let count = |colors: &HashMap<[u8; 3], u32>, color| colors.get(&rgb(color)).copied().unwrap_or(0);
+    assert!(count(&with, CURVES[0]) > 1000);
+    assert!(count(&with, REFERENCES[0]) > 100 && count(&with, REFERENCES[1]) > 100);
+    assert_eq!(count(&with, CURVES[1]), 0);
+
+    scene.references.clear();
+    let (_, height, without) = decode(&draw_plot(&scene, &plain).unwrap());
+    assert_eq!(height, HEAD + 2 * 400, "the components of the tip share a panel");
+    assert!(count(&without, CURVES[0]) > 1000 && count(&without, CURVES[1]) > 300);
+    assert_eq!(count(&without, REFERENCES[1]), 0);
+}
+
+#[test]
+fn a_run_that_diverged_or_measured_nothing_still_has_a_plot() {
+    let dir = folder("plot-diverged");
+    let mut scene = fixture::scene();
+    let columns: Vec<String> = scene.probes.iter().flat_map(|probe| probe.columns(2)).collect();
+    let mut log = ProbeLog::create(&dir.join("probes.csv"), &columns).unwrap();
+    for (time, value) in [(0.0, 0.0), (0.1, 0.02), (0.2, f64::NAN), (0.3, f64::INFINITY), (0.4, 0.01)] {
+        log.row(time, &[value, -value, 1e5 * value]).unwrap();
+    }
+    let (.., colors) = decode(&draw_plot(&scene, &dir).unwrap());
+    assert!(colors[&rgb(CURVES[0])] > 100);
+
+    scene.probes.clear();
+    scene.references.clear();
+    ProbeLog::create(&dir.join("probes.csv"), &[]).unwrap();
+    let (width, _, colors) = decode(&draw_plot(&scene, &dir).unwrap());
+    assert_eq!(width, 1000);
+    assert!(!colors.contains_key(&rgb(CURVES[0])));
+}
+
+#[test]
+fn many_probes_share_a_picture_in_columns() {
+    let dir = folder("plot-many");
+    let mut scene = fixture::scene();
+    scene.references.clear();
+    let pressure = |k| halfstep_scene::Probe {
+        name: format!("p{k}"),
+        kind: halfstep_scene::ProbeKind::Pressure { at: [0.0; 3] },
+    };
+    scene.probes.extend((1..=4).map(pressure));
+    let columns: Vec<String> = scene.probes.iter().flat_map(|probe| probe.columns(2)).collect();
+    let mut log = ProbeLog::create(&dir.join("probes.csv"), &columns).unwrap();
+    for k in 0..=400 {
+        let time = f64::from(k) * 0.001;
+        let wave = |k: u32| 4000.0 * (30.0 * time + f64::from(k)).sin();
+        log.row(time, &[time, 0.0, wave(0), wave(1), wave(2), wave(3), 1e3 * wave(4)]).unwrap();
+    }
+    let (width, height, _) = decode(&draw_plot(&scene, &dir).unwrap());
+    assert_eq!((width, height), (1520, HEAD + 4 * 340), "seven panels");
+}
+
+#[test]
+fn the_contact_sheet_shows_all_phases_in_their_colours() {
+    let dir = folder("contact");
+    let scene = fixture::scene();
+    assert_eq!(draw_contact(&scene, &dir).unwrap(), None, "no frames, no picture");
+    fixture::frames(&dir, 21);
+    let path = draw_contact(&scene, &dir).unwrap().unwrap();
+    let (width, height, colors) = decode(&path);
+    assert!((1200..=1700).contains(&width) && (400..=1310).contains(&height), "{width} x {height}");
+    let palette = palette();
+    let pixels = |index: u8| {
+        let at = 3 * usize::from(index);
+        colors.get(&palette[at..at + 3]).copied().unwrap_or(0)
+    };
+    // Wall particles cover as much of each panel as their number says: 750 of them in six panels.
+    let view = [0.298, 0.144].map(|length| length + 3.0 * fixture::SPACING);
+    let scale = view::layout(6, view, contact::HEAD, contact::FOOT, fixture::SPACING).scale;
+    let expected = 6.0 * 750.0 * (scale * fixture::SPACING).powi(2);
+    let share = f64::from(pixels(WALL)) / expected;
+    assert!((0.95..1.2).contains(&share), "{share}");
+    let covered = |scale: Scale| (0..=100).map(|k| scale.index(f64::from(k) / 100.0)).collect::<Vec<_>>();
+    for scale in [Scale::Fluid, Scale::Solid] {
+        let seen = covered(scale).iter().filter(|&&index| pixels(index) > 40).count();
+        assert!(seen > 50, "{scale:?}: only {seen} of its colours appear");
+    }
+    // A drop thirty metres away does not shrink the view: the water covers a good part of the picture.
+    let fluid: u32 = covered(Scale::Fluid)
+        .iter()
+        .collect::<std::collections::HashSet<_>>()
+        .iter()
+        .map(|&&k| pixels(k))
+        .sum();
+    assert!(f64::from(fluid) > 0.1 * f64::from(width * height), "{fluid}");
+}
+
+#[test]
+fn one_frame_of_one_side_is_enough_for_a_sheet() {
+    let dir = folder("contact-solid");
+    fixture::frames(&dir, 1);
+    std::fs::remove_file(series::frames_folder(&dir).join(series::index_name("fluid"))).unwrap();
+    let path = draw_contact(&fixture::scene(), &dir).unwrap().unwrap();
+    let (width, _, colors) = decode(&path);
+    assert!(width >= 700);
+    let palette = palette();
+    let color = |index: u8| [0, 1, 2].map(|c| palette[3 * usize::from(index) + c]);
+    assert!(colors[&color(Scale::Solid.index(0.0))] > 1000);
+    assert!(!colors.contains_key(&color(WALL)));
+    assert!(!colors.contains_key(&color(Scale::Fluid.index(0.5))));
+}

@@ -1,0 +1,177 @@
+//! What part of space `contact.png` shows, and where on the picture.
+
+use super::contact::Instant;
+use super::stamp::Rect;
+use halfstep_scene::Scene;
+use halfstep_wire::frame::{FLUID, SOLID, WALL};
+
+/// Largest picture, pixels.
+const LARGEST: [f64; 2] = [1680.0, 1300.0];
+/// Pixels between the panels and around them, and above each one for its time.
+const GAP: i32 = 18;
+const CAPTION: i32 = 26;
+/// Largest distance of two particles on the picture, pixels.
+const WIDEST_SPACING: f64 = 30.0;
+/// The view grows with what moves, at most by this part of its size at each side.
+const GROWTH: f64 = 0.5;
+/// Part of the fluid on each side that does not make the view grow: spray.
+const SPRAY: f64 = 0.02;
+
+/// A rectangle of the x-y plane; of three-dimensional scenes a slice through the middle.
+pub(crate) struct View {
+    min: [f64; 2],
+    max: [f64; 2],
+    slice: Option<[f64; 2]>,
+}
+
+impl View {
+    /// The box of all particles at the first instant, widened by where the solid and the bulk of the fluid go.
+    /// `None` without particles.
+    pub(crate) fn of(scene: &Scene, instants: &[Instant]) -> Option<Self> {
+        let mut initial = [Range::EMPTY; 3];
+        for phase in [FLUID, SOLID, WALL] {
+            for (frame, k) in instants.first()?.phase(phase) {
+                for (range, x) in initial.iter_mut().zip(frame.points[k]) {
+                    range.include(f64::from(x));
+                }
+            }
+        }
+        let mut bounds = [initial[0], initial[1]];
+        if !bounds.iter().all(Range::is_finite) {
+            return None;
+        }
+        for instant in &instants[1..] {
+            for axis in 0..2 {
+                let along = |phase| {
+                    let all = instant.phase(phase).map(|(frame, k)| f64::from(frame.points[k][axis]));
+                    let mut all: Vec<f64> = all.filter(|x| x.is_finite()).collect();
+                    all.sort_by(f64::total_cmp);
+                    all
+                };
+                let (fluid, solid) = (along(FLUID), along(SOLID));
+                let spray = (fluid.len() as f64 * SPRAY) as usize;
+                let reach = [fluid.get(spray), fluid.iter().nth_back(spray), solid.first(), solid.last()];
+                for x in reach.into_iter().flatten() {
+                    bounds[axis].include(initial[axis].limit(*x));
+                }
+            }
+        }
+        let edge = 1.5 * scene.resolution;
+        let middle = 0.5 * (initial[2].low + initial[2].high);
+        Some(Self {
+            min: bounds.map(|range| range.low - edge),
+            max: bounds.map(|range| range.high + edge),
+            slice: (scene.dimension == 3).then_some([middle - scene.resolution, middle + scene.resolution]),
+        })
+    }
+
+    /// Width and height, m.
+    pub(crate) fn size(&self) -> [f64; 2] {
+        [0, 1].map(|axis| self.max[axis] - self.min[axis])
+    }
+
+    /// Whether a point lies in the slice that is shown.
+    pub(crate) fn shows(&self, point: [f32; 3]) -> bool {
+        self.slice.is_none_or(|[low, high]| (low..=high).contains(&f64::from(point[2])))
+    }
+
+    /// Where in a panel a point lies; y points up in space and down in the picture.
+    pub(crate) fn pixel(&self, point: [f32; 3], panel: Rect, scale: f64) -> [f64; 2] {
+        let [x, y] = [f64::from(point[0]), f64::from(point[1])];
+        [f64::from(panel.x) + (x - self.min[0]) * scale, f64::from(panel.y) + (self.max[1] - y) * scale]
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Range {
+    low: f64,
+    high: f64,
+}
+
+impl Range {
+    const EMPTY: Self = Self { low: f64::INFINITY, high: f64::NEG_INFINITY };
+
+    fn include(&mut self, x: f64) {
+        self.low = self.low.min(x);
+        self.high = self.high.max(x);
+    }
+
+    fn is_finite(&self) -> bool {
+        self.low.is_finite() && self.high.is_finite()
+    }
+
+    /// The nearest value inside the range widened by its growth.
+    fn limit(&self, x: f64) -> f64 {
+        let growth = GROWTH * (self.high - self.low);
+        x.clamp(self.low - growth, self.high + growth)
+    }
+}
+
+/// Where everything lies on the picture.
+pub(crate) struct Layout {
+    /// Of the picture, pixels.
+    pub(crate) width: i32,
+    /// Of the picture, pixels.
+    pub(crate) height: i32,
+    /// Pixels per metre.
+    pub(crate) scale: f64,
+    pub(crate) panels: Vec<Rect>,
+}
+
+/// Arranges `count` views in the grid that shows them largest, below a heading and above a foot.
+pub(crate) fn layout(count: usize, size: [f64; 2], head: i32, foot: i32, spacing: f64) -> Layout {
+    let count = count.max(1) as i32;
+    let scale = |columns: i32| {
+        let rows = (count + columns - 1) / columns;
+        let width = (LARGEST[0] - f64::from(GAP * (columns + 1))) / f64::from(columns);
+        let height = (LARGEST[1] - f64::from(head + foot + (GAP + CAPTION) * rows)) / f64::from(rows);
+        (width / size[0]).min(height / size[1]).min(WIDEST_SPACING / spacing)
+    };
+    // Of equals the widest: people scroll down, and the heading needs room.
+    let columns = (1..=count).max_by(|&a, &b| f64::total_cmp(&scale(a), &scale(b))).unwrap_or(1);
+    let rows = (count + columns - 1) / columns;
+    let scale = scale(columns);
+    let [width, height] = size.map(|length| ((length * scale).round() as i32).max(1));
+    let panel = |k| Rect {
+        x: GAP + k % columns * (width + GAP),
+        y: head + CAPTION + k / columns * (height + GAP + CAPTION),
+        width,
+        height,
+    };
+    Layout {
+        width: (GAP + columns * (width + GAP)).max(700),
+        height: head + foot + rows * (height + GAP + CAPTION),
+        scale,
+        panels: (0..count).map(panel).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn panels_fit_and_do_not_overlap() {
+        for size in [[1.0, 1.0], [8.0, 1.0], [1.0, 5.0], [0.02, 0.01]] {
+            for count in 1..=6 {
+                let place = layout(count, size, 50, 80, 1e-4);
+                assert_eq!(place.panels.len(), count);
+                assert!(
+                    f64::from(place.width) <= LARGEST[0] + 1.0 && f64::from(place.height) <= LARGEST[1] + 6.0
+                );
+                for (k, a) in place.panels.iter().enumerate() {
+                    assert!(
+                        a.x >= GAP
+                            && a.x + a.width + GAP <= place.width
+                            && a.y + a.height + 80 <= place.height
+                    );
+                    let apart = |b: &Rect| a.x + a.width < b.x || a.y + a.height + CAPTION <= b.y;
+                    assert!(place.panels[k + 1..].iter().all(apart), "{size:?} {count}");
+                }
+            }
+        }
+        // Long channels stand above each other, towers side by side.
+        assert!(layout(6, [8.0, 1.0], 50, 80, 1e-4).panels[1].x == GAP);
+        assert!(layout(6, [1.0, 5.0], 50, 80, 1e-4).panels[5].x > GAP);
+    }
+}

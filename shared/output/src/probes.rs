@@ -1,0 +1,148 @@
+//! `probes.csv`: what is measured while the run goes on, one row an instant.
+
+use super::OutputError;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+/// Header of the first column.
+pub const TIME_COLUMN: &str = "time [s]";
+/// A row must fit into one write to the file, so that a reader never sees a part of it.
+const ROW_CAPACITY: usize = 1 << 16;
+
+/// Writes `probes.csv` row by row.
+#[derive(Debug)]
+pub struct ProbeLog {
+    path: PathBuf,
+    writer: csv::Writer<File>,
+    columns: usize,
+}
+
+impl ProbeLog {
+    /// Creates the file with the header `time [s]` and then `columns` (see [`halfstep_scene::Probe::columns`]).
+    pub fn create(path: &Path, columns: &[String]) -> Result<Self, OutputError> {
+        let file = File::create(path).map_err(OutputError::io("create", path))?;
+        let mut writer =
+            csv::WriterBuilder::new().has_headers(false).buffer_capacity(ROW_CAPACITY).from_writer(file);
+        writer
+            .write_record(std::iter::once(TIME_COLUMN).chain(columns.iter().map(String::as_str)))
+            .and_then(|()| Ok(writer.flush()?))
+            .map_err(|e| OutputError::Io { action: "write", path: path.into(), error: e.into() })?;
+        Ok(Self { path: path.into(), writer, columns: columns.len() })
+    }
+
+    /// Appends the values at `time` (s), in the order and the units of the columns. The row is in the file when this
+    /// returns; values read back bit for bit.
+    pub fn row(&mut self, time: f64, values: &[f64]) -> Result<(), OutputError> {
+        if values.len() != self.columns {
+            let path = self.path.clone();
+            return Err(OutputError::Columns { path, expected: self.columns, got: values.len() });
+        }
+        self.writer
+            .serialize((time, values))
+            .and_then(|()| Ok(self.writer.flush()?))
+            .map_err(|e| OutputError::Io { action: "write", path: self.path.clone(), error: e.into() })
+    }
+}
+
+/// A table of numbers with named columns.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Table {
+    /// Headers; the first is `time [s]`.
+    pub columns: Vec<String>,
+    /// Rows, each as long as `columns`.
+    pub rows: Vec<Vec<f64>>,
+}
+
+impl Table {
+    /// Position of a column: by its whole header, or by the header without its unit (`tip.x`).
+    pub fn position(&self, name: &str) -> Option<usize> {
+        self.columns.iter().position(|column| column == name || split_unit(column).0 == name)
+    }
+
+    /// Values of a column, found as by [`Self::position`].
+    pub fn column(&self, name: &str) -> Option<Vec<f64>> {
+        self.position(name).map(|k| self.rows.iter().map(|row| row[k]).collect())
+    }
+
+    /// Times, s.
+    pub fn times(&self) -> Vec<f64> {
+        self.rows.iter().map(|row| row[0]).collect()
+    }
+}
+
+/// Splits a header `NAME [UNIT]` into name and unit; the unit is empty where there is none.
+pub fn split_unit(header: &str) -> (&str, &str) {
+    header
+        .strip_suffix(']')
+        .and_then(|rest| rest.rsplit_once(" ["))
+        .map_or((header, ""), |(name, unit)| (name, unit))
+}
+
+/// Reads a `probes.csv`, also while it is being written: a last line that has no end yet is left out.
+pub fn read_probes(path: &Path) -> Result<Table, OutputError> {
+    let text = std::fs::read_to_string(path).map_err(OutputError::io("read", path))?;
+    let whole = &text[..text.rfind('\n').map_or(0, |end| end + 1)];
+    let mut reader = csv::Reader::from_reader(whole.as_bytes());
+    let bad = |e: csv::Error| OutputError::malformed(path, e.to_string());
+    let columns: Vec<String> = reader.headers().map_err(bad)?.iter().map(Into::into).collect();
+    if columns.first().is_none_or(|first| first != TIME_COLUMN) {
+        return Err(OutputError::malformed(path, format!("its first column is not '{TIME_COLUMN}'")));
+    }
+    let rows = reader.deserialize().collect::<Result<_, _>>().map_err(bad)?;
+    Ok(Table { columns, rows })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_read_back_bit_for_bit_while_the_log_is_open() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("probes.csv");
+        let columns = ["tip.x [m]".to_string(), "a, \"b\" [Pa]".to_string()];
+        let mut log = ProbeLog::create(&path, &columns).unwrap();
+        assert_eq!(read_probes(&path).unwrap().rows.len(), 0);
+        let rows = [[0.0, -0.0, 1.0 / 3.0], [1e-9, 5e-324, f64::MAX], [0.1 + 0.2, -1.5e-7, f64::INFINITY]];
+        for (k, row) in rows.iter().enumerate() {
+            log.row(row[0], &row[1..]).unwrap();
+            let table = read_probes(&path).unwrap();
+            assert_eq!(table.columns[1..], columns);
+            assert_eq!(table.rows.len(), k + 1);
+            let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+            assert_eq!(bits(&table.rows[k]), bits(row));
+        }
+        let table = read_probes(&path).unwrap();
+        assert_eq!(table.column("tip.x").unwrap(), table.column("tip.x [m]").unwrap());
+        assert_eq!(table.position("tip"), None);
+        assert_eq!(table.times(), [0.0, 1e-9, 0.1 + 0.2]);
+    }
+
+    #[test]
+    fn a_row_of_the_wrong_length_is_refused_and_not_written() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("probes.csv");
+        let mut log = ProbeLog::create(&path, &["level.level [m]".into()]).unwrap();
+        assert!(matches!(log.row(0.0, &[1.0, 2.0]), Err(OutputError::Columns { expected: 1, got: 2, .. })));
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "time [s],level.level [m]\n");
+    }
+
+    #[test]
+    fn an_unfinished_last_line_is_left_out_and_a_wrong_cell_is_named() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("probes.csv");
+        std::fs::write(&path, "time [s],p [Pa]\n0.0,1.0\n0.1,2").unwrap();
+        assert_eq!(read_probes(&path).unwrap().rows, [[0.0, 1.0]]);
+        std::fs::write(&path, "time [s],p [Pa]\n0.0,water\n").unwrap();
+        let message = read_probes(&path).unwrap_err().to_string();
+        assert!(message.contains("probes.csv") && message.contains("line: 2"), "{message}");
+        std::fs::write(&path, "t,p\n0.0,1.0\n").unwrap();
+        assert!(read_probes(&path).unwrap_err().to_string().contains("first column"));
+    }
+
+    #[test]
+    fn headers_split_into_name_and_unit() {
+        assert_eq!(split_unit("tip.x [m]"), ("tip.x", "m"));
+        assert_eq!(split_unit("ratio"), ("ratio", ""));
+    }
+}

@@ -1,0 +1,366 @@
+//! What must hold between keys. A check that would only repeat an error of one of its keys says nothing.
+
+use super::document::Node;
+use super::error::{Report, listed, nearest};
+use super::*;
+use crate::geometry::fewest_rows;
+use crate::geometry::{self, Plate};
+use crate::probe::MAX_PROBE_VALUES;
+
+/// Frames, rows and steps that no run can be meant to have.
+const MAX_FRAMES: f64 = 1e5;
+const MAX_ROWS: f64 = 1e7;
+const MAX_STEPS: f64 = 1e9;
+
+/// The keys that can choose the phase-blind treatment.
+const PHASE_BLIND_BY: [&str; 2] = ["interface.treatment", "preset"];
+
+pub(super) struct Check<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) root: &'a Node,
+    pub(super) report: &'a Report,
+}
+
+impl Check<'_> {
+    pub(super) fn all(&self) {
+        self.phases();
+        self.shape_names();
+        self.sizes();
+        self.thin_plates();
+        self.interface();
+        self.solid_time_step();
+        self.times();
+        self.not_yet();
+        self.probes();
+        self.references();
+        self.metrics();
+    }
+
+    fn wrong(&self, key: &str, reason: impl Into<String>) {
+        self.report.among(self.root, key, &[], reason);
+    }
+
+    fn place(&self, key: &str, reason: impl Into<String>) {
+        self.report.place(key, self.root.origin_of(key), reason);
+    }
+
+    /// The key of the shape of that index: by index, since names may be taken twice.
+    fn shape_key(&self, index: usize) -> String {
+        let shape = &self.scene.shapes[index];
+        let first = self.scene.shapes.iter().position(|s| s.name == shape.name);
+        if first == Some(index) && !shape.name.is_empty() {
+            format!("shape.{}", shape.name)
+        } else {
+            format!("shape.{index}")
+        }
+    }
+
+    fn phases(&self) {
+        if self.report.has("shape") {
+            return;
+        }
+        let shape_of = |phase| self.scene.shapes.iter().position(|s| s.phase == phase);
+        for (phase, section, present) in [
+            (Phase::Fluid, "fluid", self.scene.fluid.is_some()),
+            (Phase::Solid, "solid", self.scene.solid.is_some()),
+        ] {
+            match (shape_of(phase), present) {
+                _ if self.report.has(section) => (),
+                (None, true) => self.place(section, format!("the scene has no shape of phase \"{section}\"")),
+                (Some(index), false) => self.place(
+                    &format!("{}.phase", self.shape_key(index)),
+                    format!("the scene has no [{section}] section that says what it is made of"),
+                ),
+                _ => (),
+            }
+        }
+        let moving = [Phase::Fluid, Phase::Solid].into_iter().any(|phase| shape_of(phase).is_some());
+        if !moving && self.scene.fluid.is_none() && self.scene.solid.is_none() {
+            self.place("shape", "the scene has no shape of phase \"fluid\" or \"solid\": nothing would move");
+        }
+    }
+
+    fn shape_names(&self) {
+        let names: Vec<&str> = self.scene.shapes.iter().map(|s| s.name.as_str()).collect();
+        self.unique("shape", &names);
+    }
+
+    pub(super) fn unique(&self, array: &str, names: &[&str]) {
+        for (index, name) in names.iter().enumerate() {
+            if !name.is_empty() && names[..index].contains(name) {
+                // By index: by name the first would be found.
+                let place = self.root.child(array).and_then(|items| match &items.value {
+                    document::Value::Array(items) => items.get(index)?.child("name"),
+                    _ => None,
+                });
+                if let Some(place) = place {
+                    let key = format!("{array}.{index}.name");
+                    self.report.value(&key, place.origin, format!("another {array} has this name"));
+                }
+            }
+        }
+    }
+
+    /// Every shape holds at least one particle.
+    fn sizes(&self) {
+        let dx = self.scene.resolution;
+        if self.report.has_any(&["resolution", "dimension"]) {
+            return;
+        }
+        for (index, shape) in self.scene.shapes.iter().enumerate() {
+            let key = self.shape_key(index);
+            if self.report.has(&key) {
+                continue;
+            }
+            let (kind, thickness) = match &shape.geometry {
+                Geometry::Box(b) => ("box", self.thinnest(b)),
+                Geometry::Tank { cavity, .. } => ("tank", self.thinnest(cavity)),
+                Geometry::Disc { radius, .. } => ("disc", *radius),
+                Geometry::Ring { inner, outer, .. } => ("ring", outer - inner),
+            };
+            let nodal = self.scene.numerics.lattice == Lattice::Nodal && shape.phase != Phase::Wall;
+            // One row of particles has no deformation gradient across.
+            let row = shape.phase == Phase::Solid && self.total_lagrangian() && kind != "disc";
+            let needed =
+                if row { "two particles of the total-lagrangian model need" } else { "one particle needs" };
+            let least = dx * (1.0 + f64::from(u8::from(nodal)) + f64::from(u8::from(row)));
+            let convention = if nodal { " in the nodal lattice" } else { "" };
+            if thickness < least * (1.0 - 1e-9) {
+                let place = format!("{key}.{kind}");
+                let corners = [format!("{place}.min"), format!("{place}.max")];
+                let others =
+                    [&corners[0], &corners[1], "resolution", "numerics.lattice", "solid.model", "preset"];
+                // In single precision: without the last digits that a difference leaves.
+                let thickness = thickness as f32;
+                let reason = format!("is {thickness} m thin, and {needed} {least} m{convention}");
+                self.report.among(self.root, &place, &others, reason);
+            }
+        }
+    }
+
+    /// A plate holds water only where the fluid on one face does not reach that on the other.
+    fn thin_plates(&self) {
+        if self.report.has_any(&["resolution", "dimension", "smoothing_ratio", "interface", "effects"]) {
+            return;
+        }
+        let Some(fewest) = fewest_rows(self.scene) else { return };
+        for (index, shape) in self.scene.shapes.iter().enumerate() {
+            let key = self.shape_key(index);
+            let Some(plate) = Plate::<2>::of(self.scene, shape) else { continue };
+            if plate.rows >= fewest || self.report.has(&key) {
+                continue;
+            }
+            let place = match shape.geometry {
+                Geometry::Ring { .. } => format!("{key}.ring"),
+                _ => format!("{key}.box"),
+            };
+            let others =
+                ["resolution", "smoothing_ratio", "numerics.lattice", "interface.treatment", "preset"];
+            let corners = [format!("{place}.min"), format!("{place}.max")];
+            let others: Vec<&str> = corners.iter().map(String::as_str).chain(others).collect();
+            let rows = plate.rows.round();
+            let reason = format!(
+                "has {rows} of at least {fewest} particles across: fluid on one face reaches the other through it \
+                 (2h) and leaks; effects.thin-plate-screen = \"off\" lets it pass"
+            );
+            self.report.among(self.root, &place, &others, reason);
+        }
+    }
+
+    fn total_lagrangian(&self) -> bool {
+        self.scene.solid.as_ref().is_some_and(|s| s.model == SolidModelName::TotalLagrangian)
+    }
+
+    fn thinnest(&self, block: &Block) -> f64 {
+        let extents = (0..self.scene.dimension).map(|a| block.max[a] - block.min[a]);
+        extents.fold(f64::INFINITY, f64::min)
+    }
+
+    fn interface(&self) {
+        if self.report.has("interface.treatment") || self.scene.interface.treatment != Treatment::PhaseBlind {
+            return;
+        }
+        if self.total_lagrangian() {
+            let why = "the fluid's share in a velocity gradient means nothing to a deformation gradient";
+            let reason = format!("cannot be phase-blind with solid.model = \"total-lagrangian\": {why}");
+            self.report.among(self.root, "interface.treatment", &["solid.model", "preset"], reason);
+        }
+        if let Some(SubSteps::Fixed(n)) = self.scene.solid.as_ref().map(|s| s.sub_steps)
+            && n != 1
+        {
+            let why = "a particle close to the interface hangs on a spring as stiff as the solid";
+            let reason = format!("must be \"auto\" or 1 with phase-blind: {why}");
+            self.report.among(self.root, "solid.sub_steps", &PHASE_BLIND_BY, reason);
+        }
+        if self.scene.smoothing_ratio < 1.1 && !self.report.has("smoothing_ratio") {
+            let why = "with h / dx = 1.0 the sums over both phases blow up at once";
+            let reason = format!("must be at least 1.1 with phase-blind: {why}");
+            self.report.among(self.root, "smoothing_ratio", &PHASE_BLIND_BY, reason);
+        }
+    }
+
+    /// The limit of the total-Lagrangian model is below what `numerics.solid_cfl` allows in general.
+    fn solid_time_step(&self) {
+        let key = "numerics.solid_cfl";
+        let cfl = self.scene.numerics.solid_cfl;
+        if self.total_lagrangian() && cfl > 0.9 && !self.report.has(key) {
+            let reason = "must be at most 0.9 with solid.model = \"total-lagrangian\": it is stable to 0.94";
+            self.report.among(self.root, key, &["solid.model"], reason);
+        }
+    }
+
+    fn times(&self) {
+        if self.report.has("end_time") {
+            return;
+        }
+        let end = self.scene.end_time;
+        let step = match self.scene.time_step {
+            TimeStep::Fixed(dt) => dt,
+            TimeStep::Auto => end,
+        };
+        if step > end && !self.report.has("time_step") {
+            let reason = format!("must be at most end_time, {end} s");
+            self.report.among(self.root, "time_step", &["end_time", "preset"], reason);
+        }
+        let output = &self.scene.output;
+        for (key, interval, most, what) in [
+            ("time_step", step, MAX_STEPS, "steps"),
+            ("output.frame_interval", output.frame_interval, MAX_FRAMES, "frames"),
+            ("output.probe_interval", output.probe_interval, MAX_ROWS, "rows in probes.csv"),
+        ] {
+            let number = end / interval;
+            if interval > 0.0 && number > most && !self.report.has(key) {
+                let reason = format!("would make {number:.0} {what} until {end} s; at most {most:.0}");
+                self.report.among(self.root, key, &["end_time", "preset"], reason);
+            }
+        }
+    }
+
+    /// What the scene language has and the program does not do yet, and numbers that must be whole.
+    fn not_yet(&self) {
+        let key = "output.checkpoint_interval";
+        if self.scene.output.checkpoint_interval > 0.0 && !self.report.has(key) {
+            self.report.among(self.root, key, &[], "checkpoints cannot be written yet; leave it at 0");
+        }
+        let key = "solid.artificial_stress.exponent";
+        let exponent = self.scene.solid.as_ref().map_or(1.0, |s| s.artificial_stress.exponent);
+        if exponent.fract() != 0.0 && !self.report.has(key) {
+            self.report.among(
+                self.root,
+                key,
+                &[],
+                "must be a whole number: it is a power of a ratio of kernels",
+            );
+        }
+    }
+
+    fn probes(&self) {
+        let names: Vec<&str> = self.scene.probes.iter().map(|p| p.name.as_str()).collect();
+        if !self.report.has("probe") {
+            self.unique("probe", &names);
+        }
+        let mut values = [0_usize; 3];
+        for probe in &self.scene.probes {
+            let key = format!("probe.{}", probe.name);
+            if self.report.has(&key) {
+                continue;
+            }
+            let phase = probe.kind.phase();
+            let (name, section) = match phase {
+                Phase::Solid => ("solid", self.scene.solid.is_some()),
+                _ => ("fluid", self.scene.fluid.is_some()),
+            };
+            // A shape without its section has been noted.
+            let present = section || self.scene.shapes.iter().any(|s| s.phase == phase);
+            if !present && !self.report.has(name) {
+                self.place(&key, format!("measures a {name}, and the scene has none"));
+                continue;
+            }
+            let count = &mut values[phase as usize];
+            let before = *count;
+            *count += probe.kind.components(self.scene.dimension).0.len();
+            if *count > MAX_PROBE_VALUES && before <= MAX_PROBE_VALUES {
+                let reason = format!("is one probe too many: a phase has at most {MAX_PROBE_VALUES} values");
+                self.place(&key, reason);
+            }
+            self.probe_place(probe, &key);
+        }
+    }
+
+    fn probe_place(&self, probe: &Probe, key: &str) {
+        if self.report.has_any(&["resolution", "shape", "dimension"]) {
+            return;
+        }
+        match &probe.kind {
+            ProbeKind::Displacement { at } => {
+                let near = |s: &&Shape| {
+                    let bounds = geometry::bounding_box(s, self.scene);
+                    s.phase == Phase::Solid && geometry::holds(&bounds, at, 2.0 * self.scene.resolution)
+                };
+                if !self.scene.shapes.iter().any(|s| near(&s)) {
+                    self.wrong(&format!("{key}.at"), "is in or beside no solid shape");
+                }
+            }
+            ProbeKind::Pressure { at }
+                if !self.report.has("numerics.domain")
+                    && !geometry::holds(&geometry::domain(self.scene), at, 0.0) =>
+            {
+                self.wrong(&format!("{key}.at"), "is outside the domain: no fluid gets there");
+            }
+            ProbeKind::WaterLevel { x } if !self.report.has("numerics.domain") => {
+                let domain = geometry::domain(self.scene);
+                if *x < domain.min[0] || *x > domain.max[0] {
+                    self.wrong(&format!("{key}.x"), "is outside the domain: no fluid gets there");
+                }
+            }
+            ProbeKind::Force { .. } if self.scene.fluid.is_none() || self.scene.solid.is_none() => {
+                self.wrong(&format!("{key}.kind"), "needs a fluid and a solid");
+            }
+            ProbeKind::Force { within: Some(within) } => {
+                let near = |s: &&Shape| {
+                    let bounds = geometry::bounding_box(s, self.scene);
+                    s.phase == Phase::Solid
+                        && (0..self.scene.dimension)
+                            .all(|a| bounds.min[a] < within.max[a] && within.min[a] < bounds.max[a])
+                };
+                if !self.scene.shapes.iter().any(|s| near(&s)) {
+                    self.wrong(&format!("{key}.within"), "holds no part of a solid shape");
+                }
+            }
+            _ => (),
+        }
+    }
+
+    fn references(&self) {
+        if self.report.has_any(&["reference", "probe"]) {
+            return;
+        }
+        for (index, reference) in self.scene.references.iter().enumerate() {
+            self.component(&format!("reference.{index}.probe"), &reference.probe);
+        }
+    }
+
+    /// Notes that the value of a key is no component of a probe, where it is none.
+    pub(super) fn component(&self, key: &str, name: &str) {
+        let of_probe = |p: &Probe| {
+            let (parts, _) = p.kind.components(self.scene.dimension);
+            parts.iter().map(|part| format!("{}.{part}", p.name)).collect::<Vec<_>>()
+        };
+        let components: Vec<String> = self.scene.probes.iter().flat_map(of_probe).collect();
+        if components.iter().any(|component| component == name) {
+            return;
+        }
+        let known = || components.iter().map(String::as_str);
+        let note = self.report.value(key, self.root.origin_of(key), "is no component of a probe");
+        match nearest(name, known()) {
+            Some(near) => note.help(format!("did you mean `{near}`?")),
+            None if components.is_empty() => note.help("the scene has no probes"),
+            None => note.help(format!("the components are {}", listed(known(), "and"))),
+        }
+    }
+
+    /// Whether a key's value comes from an override.
+    pub(super) fn is_overridden(&self, key: &str) -> bool {
+        self.report.is_override(self.root.origin_of(key))
+    }
+}

@@ -1,0 +1,159 @@
+//! The closed list of effects that a scene may switch. Each has a file of its own with its equation and source; the
+//! program derives from the scene whether it takes part, and says why.
+
+use super::Scene;
+use serde::{Deserialize, Serialize};
+
+/// The pair effects of the fluid, one line each: documentation, type, name in the scene, module in the fluid's crate.
+/// Hands the list to another macro; the fluid composes its neighbour pass from it.
+#[macro_export]
+macro_rules! fluid_effects {
+    ($then:ident) => {
+        $then! {
+            /// Artificial viscosity between fluid particles.
+            ArtificialViscosity "artificial-viscosity" artificial_viscosity,
+            /// Diffusion of density, in the variant that `fluid.density_diffusion` names.
+            DensityDiffusion "density-diffusion" density_diffusion,
+            /// Physical viscosity of the fluid.
+            Viscosity "viscosity" viscosity,
+        }
+    };
+}
+
+macro_rules! effect_names {
+    ($($(#[$doc:meta])* $effect:ident $name:literal $module:ident,)*) => {
+        names! {
+            $($(#[$doc])* $effect $name,)*
+            /// The renormalised density gradient of delta-SPH is computed once a step.
+            FrozenDiffusion "frozen-diffusion",
+            /// Artificial viscosity of at least A = 1 between fluid and free-slip walls.
+            WallGuard "wall-guard",
+            /// Pressure shown by walls, and by the solid as moving wall, is never negative.
+            NonNegativeWallPressure "non-negative-wall-pressure",
+            /// Artificial stress in the solid.
+            ArtificialStress "artificial-stress",
+            /// Renormalised velocity gradient in the solid.
+            RenormalisedGradient "renormalised-gradient",
+            /// Clamps hold the total-Lagrangian solid at their boxes' faces.
+            ClampFace "clamp-face",
+            /// Clamps act on the hypoelastic solid as walls do.
+            WallClamp "wall-clamp",
+            /// Rigid walls toward the solid.
+            WallContact "wall-contact",
+            /// A solid that rests is not computed until fluid comes near.
+            SleepingSolid "sleeping-solid",
+            /// Thin plates show the fluid on each face a pressure of its own.
+            ThinPlateScreen "thin-plate-screen",
+        }
+    };
+}
+
+macro_rules! names {
+    ($($(#[$doc:meta])* $effect:ident $name:literal,)*) => {
+        /// Effects that the program derives from the scene and the user may force.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+        #[serde(rename_all = "kebab-case")]
+        pub enum EffectName {
+            $($(#[$doc])* $effect,)*
+        }
+
+        impl EffectName {
+            /// All of them.
+            pub const ALL: &[Self] = &[$(Self::$effect,)*];
+
+            /// Its name in scenes and reports.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$effect => $name,)*
+                }
+            }
+        }
+    };
+}
+
+fluid_effects!(effect_names);
+
+/// A forced effect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Switch {
+    /// The program decides.
+    Auto,
+    /// Always.
+    On,
+    /// Never.
+    Off,
+}
+
+/// Whether an effect takes part, and why.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Decision {
+    /// Which.
+    pub effect: EffectName,
+    /// It takes part.
+    pub on: bool,
+    /// The scene's key or the fact that decided.
+    pub why: String,
+}
+
+/// What a scene says about an effect before the user's switch.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Derived {
+    /// There is nothing that it could act on: the switch does not matter.
+    Impossible(String),
+    /// On.
+    On(String),
+    /// Off.
+    Off(String),
+}
+
+impl Decision {
+    /// The user's switch decides where the effect is possible; else what follows from the scene.
+    pub fn new(scene: &Scene, effect: EffectName, derived: Derived) -> Self {
+        let key = |word: &str| format!("effects.{} is \"{word}\"", effect.name());
+        let (on, why) = match (derived, scene.switch(effect)) {
+            (Derived::Impossible(why), _) => (false, why),
+            (_, Switch::On) => (true, key("on")),
+            (_, Switch::Off) => (false, key("off")),
+            (Derived::On(why), Switch::Auto) => (true, why),
+            (Derived::Off(why), Switch::Auto) => (false, why),
+        };
+        Self { effect, on, why }
+    }
+}
+
+impl Scene {
+    /// What the user wants of an effect.
+    pub fn switch(&self, effect: EffectName) -> Switch {
+        self.effects.get(&effect).copied().unwrap_or(Switch::Auto)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    #[test]
+    fn names_are_those_of_the_files() {
+        for effect in EffectName::ALL {
+            assert_eq!(serde_json::to_value(effect).unwrap(), effect.name());
+        }
+    }
+
+    #[test]
+    fn the_switch_beats_the_derivation_but_not_the_impossible() {
+        let text = "resolution = 0.01\nend_time = 1.0\n[fluid]\ndensity = 1000.0\n[[shape]]\nname = \"w\"\n\
+                    phase = \"fluid\"\nbox = { min = [0.0, 0.0], max = [0.1, 0.1] }\n[effects]\nviscosity = \"off\"\n";
+        let scene = crate::parse(text, Path::new("x.toml"), &[]).unwrap();
+        let decide = |effect, derived| {
+            let d = Decision::new(&scene, effect, derived);
+            (d.on, d.why)
+        };
+        let off = (false, "effects.viscosity is \"off\"".to_owned());
+        assert_eq!(decide(EffectName::Viscosity, Derived::On("it matters".into())), off);
+        assert_eq!(decide(EffectName::WallGuard, Derived::On("walls".into())), (true, "walls".into()));
+        let none = Derived::Impossible("no mu".into());
+        assert_eq!(decide(EffectName::Viscosity, none), (false, "no mu".into()));
+    }
+}

@@ -1,0 +1,304 @@
+//! Where the particles of a scene are at first.
+//!
+//! Every shape carries its own lattice of spacing dx. A box's lattice starts at its lowest corner and has
+//! round(extent / dx) cells along each axis; a disc's or ring's is symmetric about its centre. [`Lattice`] says whether
+//! particles sit at the cells' centres or at their corners.
+//!
+//! Where shapes overlap, the solid wins over the wall, the wall over the fluid, and in one phase the shape that comes
+//! first in the file. The loser has no particle inside the winner nor closer than dx / 2 to one of its particles.
+
+mod nearest;
+mod occupied;
+mod plate;
+mod points;
+#[cfg(test)]
+mod tests;
+
+use crate::{Block, CantileverMode, Geometry, Lattice, Phase, Scene, Shape};
+pub use nearest::nearest;
+use occupied::Occupied;
+pub use plate::Plate;
+pub(crate) use plate::fewest_rows;
+use points::Spacing;
+
+/// Relative tolerance of every comparison of lengths, in spacings.
+const TOLERANCE: f64 = 1e-9;
+
+/// A fluid particle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FluidPoint<const D: usize> {
+    /// Position, m.
+    pub position: [f64; D],
+    /// Velocity, m/s.
+    pub velocity: [f64; D],
+    /// Pressure, Pa, above the background's: rho g times the depth below its shape's highest point, or zero; and what
+    /// belongs to its velocity field.
+    pub pressure: f64,
+}
+
+/// A solid particle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolidPoint<const D: usize> {
+    /// Position, m.
+    pub position: [f64; D],
+    /// Velocity, m/s; zero where clamped.
+    pub velocity: [f64; D],
+    /// Whether it keeps zero velocity.
+    pub clamped: bool,
+    /// Index of its shape in [`Scene::shapes`].
+    pub body: u32,
+}
+
+/// A wall particle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WallPoint<const D: usize> {
+    /// Position, m.
+    pub position: [f64; D],
+    /// Velocity of the wall, m/s.
+    pub velocity: [f64; D],
+    /// Unit normal of the surface it stands for, out of the wall. In a corner: the diagonal.
+    pub normal: [f64; D],
+    /// Whether it stands for two or more surfaces: all components of a velocity are reversed.
+    pub corner: bool,
+    /// Free slip (true) or no slip (false).
+    pub free_slip: bool,
+    /// Whether the solid may touch it.
+    pub contact: bool,
+    /// Index of its shape in [`Scene::shapes`].
+    pub shape: u32,
+}
+
+/// All particles of a scene: shapes in the file's order, in a shape z outermost and x innermost.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Layout<const D: usize> {
+    /// Fluid particles.
+    pub fluid: Vec<FluidPoint<D>>,
+    /// Solid particles.
+    pub solid: Vec<SolidPoint<D>>,
+    /// Wall particles.
+    pub wall: Vec<WallPoint<D>>,
+}
+
+impl<const D: usize> Layout<D> {
+    /// How many there are.
+    pub fn counts(&self) -> Counts {
+        let [fluid, solid, wall] = [self.fluid.len(), self.solid.len(), self.wall.len()].map(|n| n as u64);
+        Counts { fluid, solid, wall }
+    }
+}
+
+/// Numbers of particles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Fluid particles.
+    pub fluid: u64,
+    /// Solid particles.
+    pub solid: u64,
+    /// Wall particles.
+    pub wall: u64,
+}
+
+impl Counts {
+    /// All particles; `u64::MAX` where the sum is larger.
+    pub fn total(&self) -> u64 {
+        self.fluid.saturating_add(self.solid).saturating_add(self.wall)
+    }
+}
+
+/// Places the particles of a scene.
+///
+/// # Panics
+/// Where `D` is not the scene's dimension.
+pub fn layout<const D: usize>(scene: &Scene) -> Layout<D> {
+    assert_eq!(D, scene.dimension, "layout of another dimension than the scene's");
+    let mut layout = Layout { fluid: Vec::new(), solid: Vec::new(), wall: Vec::new() };
+    let mut occupied = Occupied::new(scene.resolution);
+    for phase in [Phase::Solid, Phase::Wall, Phase::Fluid] {
+        for (index, shape) in scene.shapes.iter().enumerate().filter(|(_, s)| s.phase == phase) {
+            let spacing = Spacing::of(scene, shape);
+            let mut kept = points::of_shape::<D>(&shape.geometry, spacing);
+            kept.retain(|p| occupied.is_free(&p.position));
+            occupied.add(&shape.geometry, spacing, phase, kept.iter().map(|p| p.position));
+            let velocity = truncated(shape.velocity);
+            match phase {
+                Phase::Solid => {
+                    layout.solid.extend(kept.iter().map(|p| solid_point(scene, shape, index, p.position)));
+                }
+                Phase::Wall => layout.wall.extend(kept.iter().map(|p| WallPoint {
+                    position: p.position,
+                    velocity,
+                    normal: p.normal,
+                    corner: p.corner,
+                    free_slip: shape.free_slip,
+                    contact: shape.contact,
+                    shape: index as u32,
+                })),
+                Phase::Fluid => layout.fluid.extend(kept.iter().map(|p| FluidPoint {
+                    position: p.position,
+                    velocity: added(velocity, field_velocity(scene, shape, &p.position)),
+                    pressure: initial_pressure(scene, shape, &p.position),
+                })),
+            }
+        }
+    }
+    layout
+}
+
+/// The numbers of particles from the shapes' sizes, without placing any: overlaps count twice, curved shapes by
+/// their area.
+pub fn estimate(scene: &Scene) -> Counts {
+    let mut counts = [0_u64; 3];
+    for shape in &scene.shapes {
+        // A float beyond the range becomes u64::MAX.
+        let n = points::expected(&shape.geometry, Spacing::of(scene, shape), scene.dimension) as u64;
+        let count = &mut counts[shape.phase as usize];
+        *count = count.saturating_add(n);
+    }
+    let [fluid, solid, wall] = [Phase::Fluid, Phase::Solid, Phase::Wall].map(|p| counts[p as usize]);
+    Counts { fluid, solid, wall }
+}
+
+/// The box that fluid particles must stay in: [`crate::Numerics::domain`], or the box of all shapes, where they are
+/// and where they move to, widened by its own size on every side.
+pub fn domain(scene: &Scene) -> Block {
+    if let Some(block) = scene.numerics.domain {
+        return block;
+    }
+    let mut block = Block { min: [0.0; 3], max: [0.0; 3] };
+    for axis in 0..scene.dimension {
+        let bounds = scene.shapes.iter().map(|s| bounding_box(s, scene));
+        let (low, high) = bounds.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), b| {
+            (low.min(b.min[axis]), high.max(b.max[axis]))
+        });
+        let reaches = scene.shapes.iter().filter_map(|s| s.motion.map(|m| m.reach(scene.end_time)[axis]));
+        let (low, high) =
+            reaches.fold((low, high), |(l, h), (back, forth)| (l.min(low + back), h.max(high + forth)));
+        (block.min[axis], block.max[axis]) = (low - (high - low), high + (high - low));
+    }
+    block
+}
+
+/// The box around a shape; a tank's with its walls.
+pub fn bounding_box(shape: &Shape, scene: &Scene) -> Block {
+    let round = |center: [f64; 3], radius: f64| Block {
+        min: std::array::from_fn(|a| if a < scene.dimension { center[a] - radius } else { 0.0 }),
+        max: std::array::from_fn(|a| if a < scene.dimension { center[a] + radius } else { 0.0 }),
+    };
+    match &shape.geometry {
+        Geometry::Box(block) => *block,
+        Geometry::Disc { center, radius } => round(*center, *radius),
+        Geometry::Ring { center, outer, .. } => round(*center, *outer),
+        Geometry::Tank { cavity, open } => {
+            let thickness = Spacing::of(scene, shape).layers() as f64 * scene.resolution;
+            let mut block = *cavity;
+            for axis in 0..scene.dimension {
+                let [low, high] = points::sides(axis);
+                block.min[axis] -= if open.contains(&low) { 0.0 } else { thickness };
+                block.max[axis] += if open.contains(&high) { 0.0 } else { thickness };
+            }
+            block
+        }
+    }
+}
+
+/// Whether each clamp of a solid shape holds one of its particles.
+pub(crate) fn clamp_catches(scene: &Scene, shape: &Shape) -> Vec<bool> {
+    match scene.dimension {
+        2 => catches::<2>(scene, shape),
+        _ => catches::<3>(scene, shape),
+    }
+}
+
+fn catches<const D: usize>(scene: &Scene, shape: &Shape) -> Vec<bool> {
+    let points = points::of_shape::<D>(&shape.geometry, Spacing::of(scene, shape));
+    let tolerance = TOLERANCE * scene.resolution;
+    let any = |block| points.iter().any(|p| holds(block, &p.position, tolerance));
+    shape.clamp.iter().map(any).collect()
+}
+
+fn solid_point<const D: usize>(
+    scene: &Scene,
+    shape: &Shape,
+    index: usize,
+    position: [f64; D],
+) -> SolidPoint<D> {
+    let clamped = shape.clamp.iter().any(|block| holds(block, &position, TOLERANCE * scene.resolution));
+    let mut velocity = truncated(shape.velocity);
+    if let (Some(mode), Some(solid)) = (&shape.cantilever_mode, &scene.solid) {
+        velocity[1] += cantilever_velocity(mode, solid.sound_speed(), position[0]);
+    }
+    SolidPoint { position, velocity: if clamped { [0.0; D] } else { velocity }, clamped, body: index as u32 }
+}
+
+/// Whether a point lies in a box, its surface included, or within `tolerance` (m) of it.
+pub fn holds<const D: usize>(block: &Block, position: &[f64; D], tolerance: f64) -> bool {
+    (0..D).all(|a| block.min[a] - tolerance <= position[a] && position[a] <= block.max[a] + tolerance)
+}
+
+/// First root of cos(kL) cosh(kL) = -1.
+const FIRST_MODE: f64 = 1.875_104_068_711_961_2;
+
+/// Velocity across a cantilever in its first bending mode (Landau and Lifshitz, Theory of Elasticity, section 25):
+/// fraction c_0 F(x) / F(L) with F(x) = (cos kL + cosh kL)(cosh kx - cos kx) + (sin kL - sinh kL)(sinh kx - sin kx).
+/// Zero behind the root.
+pub fn cantilever_velocity(mode: &CantileverMode, sound_speed: f64, x: f64) -> f64 {
+    let end = FIRST_MODE;
+    let shape = |kx: f64| {
+        (end.cos() + end.cosh()) * (kx.cosh() - kx.cos()) + (end.sin() - end.sinh()) * (kx.sinh() - kx.sin())
+    };
+    let along = ((x - mode.root) / mode.length * end).max(0.0);
+    mode.fraction * sound_speed * shape(along) / shape(end)
+}
+
+fn in_plane<const D: usize>(position: &[f64; D]) -> [f64; 2] {
+    [position[0], position[1]]
+}
+
+fn field_velocity<const D: usize>(scene: &Scene, shape: &Shape, position: &[f64; D]) -> [f64; 2] {
+    let gravity = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+    shape.velocity_field.map_or([0.0; 2], |field| field.velocity(in_plane(position), gravity))
+}
+
+fn added<const D: usize>(mut velocity: [f64; D], field: [f64; 2]) -> [f64; D] {
+    velocity.iter_mut().zip(field).for_each(|(v, f)| *v += f);
+    velocity
+}
+
+fn initial_pressure<const D: usize>(scene: &Scene, shape: &Shape, position: &[f64; D]) -> f64 {
+    let at_rest = if shape.hydrostatic { hydrostatic(scene, shape, position) } else { 0.0 };
+    let density = scene.fluid.as_ref().map_or(0.0, |fluid| fluid.density);
+    at_rest + shape.velocity_field.map_or(0.0, |field| field.pressure(in_plane(position), density))
+}
+
+/// rho g times the depth below the shape's highest point.
+fn hydrostatic<const D: usize>(scene: &Scene, shape: &Shape, position: &[f64; D]) -> f64 {
+    let density = scene.fluid.as_ref().map_or(0.0, |fluid| fluid.density);
+    let g = scene.gravity;
+    // Gravity's potential falls with depth: g . x is least at the highest point.
+    let highest: f64 = match &shape.geometry {
+        Geometry::Box(block) | Geometry::Tank { cavity: block, .. } => {
+            (0..D).map(|a| (g[a] * block.min[a]).min(g[a] * block.max[a])).sum()
+        }
+        Geometry::Disc { center, radius: outer } | Geometry::Ring { center, outer, .. } => {
+            let size = (0..D).map(|a| g[a] * g[a]).sum::<f64>().sqrt();
+            (0..D).map(|a| g[a] * center[a]).sum::<f64>() - size * outer
+        }
+    };
+    let here: f64 = (0..D).map(|a| g[a] * position[a]).sum();
+    density * (here - highest).max(0.0)
+}
+
+fn truncated<const D: usize>(vector: [f64; 3]) -> [f64; D] {
+    std::array::from_fn(|a| vector[a])
+}
+
+impl Spacing {
+    fn of(scene: &Scene, shape: &Shape) -> Self {
+        Self {
+            dx: scene.resolution,
+            nodal: scene.numerics.lattice == Lattice::Nodal,
+            wall: shape.phase == Phase::Wall,
+            support: 2.0 * scene.smoothing_ratio,
+        }
+    }
+}

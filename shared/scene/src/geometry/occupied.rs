@@ -1,0 +1,92 @@
+//! Which places earlier shapes have taken.
+
+use super::TOLERANCE;
+use super::points::{Spacing, sides};
+use crate::{Block, Geometry, Phase};
+use std::collections::HashMap;
+use std::hash::BuildHasherDefault;
+use xxhash_rust::xxh3::Xxh3Default;
+
+/// The shapes placed so far, and their particles in cells of side dx.
+pub(super) struct Occupied<'s, const D: usize> {
+    dx: f64,
+    taken: Vec<(&'s Geometry, Spacing, Phase)>,
+    cells: HashMap<[i64; D], Vec<[f64; D]>, BuildHasherDefault<Xxh3Default>>,
+}
+
+impl<'s, const D: usize> Occupied<'s, D> {
+    pub(super) fn new(dx: f64) -> Self {
+        Self { dx, taken: Vec::new(), cells: HashMap::default() }
+    }
+
+    /// Takes a shape's places.
+    pub(super) fn add(
+        &mut self,
+        geometry: &'s Geometry,
+        spacing: Spacing,
+        phase: Phase,
+        positions: impl Iterator<Item = [f64; D]>,
+    ) {
+        for position in positions {
+            self.cells.entry(self.cell(&position)).or_default().push(position);
+        }
+        self.taken.push((geometry, spacing, phase));
+    }
+
+    /// Whether no shape holds this place and no particle is closer than dx / 2.
+    pub(super) fn is_free(&self, position: &[f64; D]) -> bool {
+        if self.taken.is_empty() {
+            return true;
+        }
+        let inside = self.taken.iter().any(|(g, spacing, phase)| {
+            // A wall's surface is its own, as it carries the wall's nodes.
+            let margin = if *phase == Phase::Wall && spacing.nodal { TOLERANCE } else { -TOLERANCE };
+            contains(g, *spacing, position, margin * self.dx)
+        });
+        !inside && !self.has_neighbour(position)
+    }
+
+    fn has_neighbour(&self, position: &[f64; D]) -> bool {
+        let limit = (0.5 - TOLERANCE) * self.dx;
+        let home = self.cell(position);
+        // A neighbour within dx / 2 is in one of the 3^D cells around.
+        (0..3_usize.pow(D as u32)).any(|code| {
+            let cell = std::array::from_fn(|a| home[a] + (code / 3_usize.pow(a as u32) % 3) as i64 - 1);
+            self.cells.get(&cell).is_some_and(|points| {
+                points
+                    .iter()
+                    .any(|p| (0..D).map(|a| (p[a] - position[a]).powi(2)).sum::<f64>() < limit * limit)
+            })
+        })
+    }
+
+    fn cell(&self, position: &[f64; D]) -> [i64; D] {
+        position.map(|x| (x / self.dx).floor() as i64)
+    }
+}
+
+/// Whether a geometry, grown by `margin` (shrunk where negative), holds a point.
+fn contains<const D: usize>(geometry: &Geometry, spacing: Spacing, p: &[f64; D], margin: f64) -> bool {
+    let radius = |center: &[f64; 3]| (0..D).map(|a| (p[a] - center[a]).powi(2)).sum::<f64>().sqrt();
+    match geometry {
+        Geometry::Box(block) => super::holds(block, p, margin),
+        Geometry::Disc { center, radius: outer } => radius(center) <= outer + margin,
+        Geometry::Ring { center, inner, outer } => {
+            (inner - margin..=outer + margin).contains(&radius(center))
+        }
+        Geometry::Tank { cavity, open } => {
+            let thickness = spacing.layers() as f64 * spacing.dx;
+            let mut around = Block { min: cavity.min, max: cavity.max };
+            let mut in_cavity = true;
+            for a in 0..D {
+                let [low, high] = sides(a).map(|side| !open.contains(&side));
+                around.min[a] -= if low { thickness } else { 0.0 };
+                around.max[a] += if high { thickness } else { 0.0 };
+                // Open sides do not end the cavity here: the outer box does.
+                in_cavity &= !(low && p[a] <= cavity.min[a] + margin);
+                in_cavity &= !(high && p[a] >= cavity.max[a] - margin);
+            }
+            super::holds(&around, p, margin) && !in_cavity
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! Solid shapes that are plates: how many particles they have across, and which way their faces look.
+
+use super::Spacing;
+use crate::{EffectName, Geometry, Phase, Scene, Shape, Switch, Treatment};
+
+/// A box or ring that is longer than thick.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plate<const D: usize> {
+    /// Name of its shape.
+    pub name: String,
+    /// Rows of particles across; a ring's walls may hold a fraction more.
+    pub rows: f64,
+    kind: Kind<D>,
+    /// Half the spacing, m: how far a particle may stand beyond the shape's surface.
+    margin: f64,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Kind<const D: usize> {
+    Box { low: [f64; D], high: [f64; D], across: usize },
+    Ring { center: [f64; D], inner: f64, outer: f64 },
+}
+
+impl<const D: usize> Plate<D> {
+    /// The plate that a shape is; `None` for other phases and for what is not at least twice as long as thick.
+    pub fn of(scene: &Scene, shape: &Shape) -> Option<Self> {
+        if shape.phase != Phase::Solid {
+            return None;
+        }
+        let spacing = Spacing::of(scene, shape);
+        let (kind, rows) = match &shape.geometry {
+            Geometry::Box(block) => {
+                let extent = |a: usize| block.max[a] - block.min[a];
+                let across = (0..D).min_by(|&a, &b| extent(a).total_cmp(&extent(b)))?;
+                let longest = (0..D).map(extent).fold(0.0, f64::max);
+                if longest < 2.0 * extent(across) {
+                    return None;
+                }
+                // Where the lattice ends, which a rounded extent is not.
+                let low: [f64; D] = std::array::from_fn(|a| block.min[a]);
+                let cells = |a: usize| spacing.cells(extent(a)) as f64 * spacing.dx;
+                let high = std::array::from_fn(|a| low[a] + cells(a));
+                (Kind::Box { low, high, across }, spacing.expected(extent(across), 0.0))
+            }
+            Geometry::Ring { center, inner, outer } if *inner > 0.5 * (outer - inner) => {
+                let center = std::array::from_fn(|a| center[a]);
+                (Kind::Ring { center, inner: *inner, outer: *outer }, (outer - inner) / spacing.dx)
+            }
+            _ => return None,
+        };
+        Some(Self { name: shape.name.clone(), rows, kind, margin: 0.5 * spacing.dx })
+    }
+
+    /// Whether a particle that begins there belongs to it.
+    pub fn holds(&self, x: &[f64; D]) -> bool {
+        let m = self.margin;
+        match &self.kind {
+            Kind::Box { low, high, .. } => (0..D).all(|a| low[a] - m <= x[a] && x[a] <= high[a] + m),
+            Kind::Ring { center, inner, outer } => {
+                let r = length(&std::array::from_fn::<_, D, _>(|a| x[a] - center[a]));
+                inner - m <= r && r <= outer + m
+            }
+        }
+    }
+
+    /// Unit normal there, and how far before the plate's middle along it, m.
+    pub fn across(&self, x: &[f64; D]) -> ([f64; D], f64) {
+        match &self.kind {
+            Kind::Box { low, high, across } => {
+                let normal = std::array::from_fn(|a| f64::from(u8::from(a == *across)));
+                (normal, x[*across] - 0.5 * (low[*across] + high[*across]))
+            }
+            Kind::Ring { center, inner, outer } => {
+                let from: [f64; D] = std::array::from_fn(|a| x[a] - center[a]);
+                let r = length(&from);
+                (from.map(|x| x / r), r - 0.5 * (inner + outer))
+            }
+        }
+    }
+}
+
+fn length<const D: usize>(x: &[f64; D]) -> f64 {
+    x.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// Relative tolerance of lengths.
+const TOLERANCE: f64 = 1e-9;
+
+/// Fewest rows of particles that a plate needs as the fluid's moving wall; with fewer it does not hold water. `None` where
+/// that is not asked for.
+pub(crate) fn fewest_rows(scene: &Scene) -> Option<f64> {
+    let asked = scene.fluid.is_some()
+        && scene.solid.is_some()
+        && scene.interface.treatment == Treatment::MovingWall
+        && scene.switch(EffectName::ThinPlateScreen) != Switch::Off;
+    asked.then(|| (2.0 * scene.smoothing_ratio * (1.0 - TOLERANCE) - 1.0).ceil().max(1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parse;
+    use std::path::Path;
+
+    fn plate(geometry: &str) -> Option<Plate<2>> {
+        let text = format!(
+            "resolution = 0.01\nend_time = 1.0\n[solid]\nmodel = \"hypoelastic\"\ndensity = 1000.0\n\
+             youngs_modulus = 1e6\npoissons_ratio = 0.3\n[[shape]]\nname = \"s\"\nphase = \"solid\"\n{geometry}\n"
+        );
+        let scene = parse(&text, Path::new("s.toml"), &[]).unwrap();
+        Plate::of(&scene, &scene.shapes[0])
+    }
+
+    #[test]
+    fn a_box_looks_along_its_thin_side() {
+        let wall = plate("box = { min = [0.1, 0.0], max = [0.13, 0.2] }").unwrap();
+        assert_eq!(wall.rows, 3.0);
+        let (normal, before) = wall.across(&[0.125, 0.05]);
+        assert_eq!(normal, [1.0, 0.0]);
+        assert!((before - 0.01).abs() < 1e-15);
+        assert!(wall.holds(&[0.105, 0.195]) && !wall.holds(&[0.14, 0.1]));
+        let floor = plate("box = { min = [0.0, 0.0], max = [0.2, 0.02] }").unwrap();
+        assert_eq!((floor.rows, floor.across(&[0.1, 0.005]).0), (2.0, [0.0, 1.0]));
+        assert_eq!(plate("box = { min = [0.0, 0.0], max = [0.03, 0.05] }"), None, "a block");
+    }
+
+    #[test]
+    fn a_ring_looks_outward() {
+        let ring = plate("ring = { center = [0.0, 0.0], inner = 0.05, outer = 0.07 }").unwrap();
+        assert!((ring.rows - 2.0).abs() < 1e-12);
+        let (normal, before) = ring.across(&[-0.065, 0.0]);
+        assert_eq!(normal, [-1.0, 0.0]);
+        assert!((before - 0.005).abs() < 1e-15);
+        assert!(ring.holds(&[0.0, 0.055]) && !ring.holds(&[0.0, 0.0]));
+        assert_eq!(plate("disc = { center = [0.0, 0.0], radius = 0.05 }"), None);
+    }
+}

@@ -1,0 +1,206 @@
+//! The lattice of one shape, and the normals of walls.
+
+use super::TOLERANCE;
+use crate::{Block, Geometry, Side};
+
+/// How a shape is filled.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spacing {
+    /// Particle spacing, m.
+    pub(super) dx: f64,
+    /// Particles at the cells' corners instead of their centres.
+    pub(super) nodal: bool,
+    /// A wall includes the nodes on its surface.
+    pub(super) wall: bool,
+    /// Kernel support over dx.
+    pub(super) support: f64,
+}
+
+impl Spacing {
+    /// Layers of a tank's wall, the surface's own (nodal) not counted.
+    pub(super) fn layers(&self) -> i64 {
+        (self.support - TOLERANCE).ceil() as i64
+    }
+
+    /// Cells along an extent.
+    pub(super) fn cells(&self, extent: f64) -> i64 {
+        (extent / self.dx).round() as i64
+    }
+
+    /// Place of lattice point k, in spacings.
+    fn place(&self, k: i64) -> f64 {
+        if self.nodal { k as f64 } else { k as f64 + 0.5 }
+    }
+
+    /// First and last lattice index of `cells` cells.
+    fn range(&self, cells: i64) -> [i64; 2] {
+        match (self.nodal, self.wall) {
+            (false, _) => [0, cells - 1],
+            (true, false) => [1, cells - 1],
+            (true, true) => [0, cells],
+        }
+    }
+
+    /// Number of lattice points along an extent, without overflow.
+    pub(super) fn expected(&self, extent: f64, cells_more: f64) -> f64 {
+        let cells = (extent / self.dx).round() + cells_more;
+        match (self.nodal, self.wall) {
+            (false, _) => cells,
+            (true, false) => cells - 1.0,
+            (true, true) => cells + 1.0,
+        }
+        .max(0.0)
+    }
+}
+
+/// A particle of a shape; the normal means something in a wall only.
+pub(super) struct Point<const D: usize> {
+    pub(super) position: [f64; D],
+    pub(super) normal: [f64; D],
+    pub(super) corner: bool,
+}
+
+/// The sides at the low and high end of an axis.
+pub(super) fn sides(axis: usize) -> [Side; 2] {
+    [[Side::Left, Side::Right], [Side::Bottom, Side::Top], [Side::Back, Side::Front]][axis]
+}
+
+/// All points of a shape, x innermost.
+pub(super) fn of_shape<const D: usize>(geometry: &Geometry, spacing: Spacing) -> Vec<Point<D>> {
+    match geometry {
+        Geometry::Box(block) => in_box(block, spacing),
+        Geometry::Disc { center, radius } => in_ring(center, -1.0, *radius, spacing),
+        Geometry::Ring { center, inner, outer } => in_ring(center, *inner, *outer, spacing),
+        Geometry::Tank { cavity, open } => around(cavity, open, spacing),
+    }
+}
+
+/// Expected number of points of a shape.
+pub(super) fn expected(geometry: &Geometry, spacing: Spacing, dimension: usize) -> f64 {
+    let measure = |radius: f64| {
+        let r = radius / spacing.dx;
+        std::f64::consts::PI * if dimension == 2 { r * r } else { 4.0 / 3.0 * r * r * r }
+    };
+    match geometry {
+        Geometry::Box(block) => {
+            (0..dimension).map(|a| spacing.expected(block.max[a] - block.min[a], 0.0)).product()
+        }
+        Geometry::Disc { radius, .. } => measure(*radius).round(),
+        Geometry::Ring { inner, outer, .. } => (measure(*outer) - measure(*inner)).round(),
+        Geometry::Tank { cavity, open } => {
+            // The walls are what a box around them has more than the cavity.
+            let hollow = Spacing { wall: false, ..spacing };
+            let (mut all, mut inside) = (1.0, 1.0);
+            for axis in 0..dimension {
+                let extent = cavity.max[axis] - cavity.min[axis];
+                let opened = sides(axis).iter().filter(|side| open.contains(side)).count() as f64;
+                all *= spacing.expected(extent, (2.0 - opened) * spacing.layers() as f64);
+                inside *= hollow.expected(extent, 0.0) + if spacing.nodal { opened } else { 0.0 };
+            }
+            // Beyond the floats' range the difference means nothing.
+            if all.is_finite() { all - inside } else { all }
+        }
+    }
+}
+
+fn in_box<const D: usize>(block: &Block, spacing: Spacing) -> Vec<Point<D>> {
+    let cells: [i64; D] = std::array::from_fn(|a| spacing.cells(block.max[a] - block.min[a]));
+    let mut points = Vec::new();
+    each_index(cells.map(|n| spacing.range(n)), |k| {
+        let place: [f64; D] = k.map(|k| spacing.place(k));
+        let (normal, corner) = nearest_face(&place, &cells);
+        let position = std::array::from_fn(|a| block.min[a] + place[a] * spacing.dx);
+        points.push(Point { position, normal, corner });
+    });
+    points
+}
+
+/// The outward normal of the face nearest to a place inside a box; a corner where faces of two axes are equally near.
+fn nearest_face<const D: usize>(place: &[f64; D], cells: &[i64; D]) -> ([f64; D], bool) {
+    // Places are multiples of 1/2: distances compare exactly.
+    let depth: [f64; D] = std::array::from_fn(|a| place[a].min(cells[a] as f64 - place[a]));
+    let least = depth.iter().copied().fold(f64::INFINITY, f64::min);
+    let direction = std::array::from_fn(|a| match depth[a] == least {
+        true if place[a] <= cells[a] as f64 - place[a] => -1.0,
+        true => 1.0,
+        false => 0.0,
+    });
+    normalised(direction)
+}
+
+/// A unit vector, and whether more than one component was set.
+fn normalised<const D: usize>(direction: [f64; D]) -> ([f64; D], bool) {
+    let set = direction.iter().filter(|c| **c != 0.0).count();
+    let length = (set.max(1) as f64).sqrt();
+    (direction.map(|c| c / length), set > 1)
+}
+
+fn in_ring<const D: usize>(center: &[f64; 3], inner: f64, outer: f64, spacing: Spacing) -> Vec<Point<D>> {
+    let reach = spacing.cells(outer) + 1;
+    let margin = TOLERANCE * if spacing.wall { spacing.dx } else { -spacing.dx };
+    let mut points = Vec::new();
+    each_index([[-reach, reach]; D], |k| {
+        let from_center: [f64; D] = k.map(|k| spacing.place(k) * spacing.dx);
+        let radius = from_center.iter().map(|c| c * c).sum::<f64>().sqrt();
+        if !(inner - margin..=outer + margin).contains(&radius) {
+            return;
+        }
+        let outward = if radius - inner < outer - radius && inner >= 0.0 { -1.0 } else { 1.0 };
+        let (normal, corner) = match radius > TOLERANCE * spacing.dx {
+            true => (from_center.map(|c| outward * c / radius), false),
+            false => normalised([1.0; D]),
+        };
+        let position = std::array::from_fn(|a| center[a] + from_center[a]);
+        points.push(Point { position, normal, corner });
+    });
+    points
+}
+
+fn around<const D: usize>(cavity: &Block, open: &[Side], spacing: Spacing) -> Vec<Point<D>> {
+    let cells: [i64; D] = std::array::from_fn(|a| spacing.cells(cavity.max[a] - cavity.min[a]));
+    let layers = spacing.layers();
+    let mut points = Vec::new();
+    let closed: [[bool; 2]; D] = std::array::from_fn(|a| sides(a).map(|side| !open.contains(&side)));
+    let ranges: [[i64; 2]; D] = std::array::from_fn(|a| {
+        let [first, last] = spacing.range(cells[a]);
+        [first - if closed[a][0] { layers } else { 0 }, last + if closed[a][1] { layers } else { 0 }]
+    });
+    each_index(ranges, |k| {
+        // The inward normal; zero in the cavity. A closed side's surface belongs to the wall, an open one's does not.
+        let direction: [f64; D] = std::array::from_fn(|a| {
+            let place = spacing.place(k[a]);
+            match () {
+                () if closed[a][0] && place <= 0.0 => 1.0,
+                () if closed[a][1] && place >= cells[a] as f64 => -1.0,
+                () => 0.0,
+            }
+        });
+        if direction == [0.0; D] {
+            return;
+        }
+        let (normal, corner) = normalised(direction);
+        let position = std::array::from_fn(|a| cavity.min[a] + spacing.place(k[a]) * spacing.dx);
+        points.push(Point { position, normal, corner });
+    });
+    points
+}
+
+/// Calls `visit` with every index in the inclusive ranges, the first axis innermost.
+fn each_index<const D: usize>(ranges: [[i64; 2]; D], mut visit: impl FnMut([i64; D])) {
+    if ranges.iter().any(|[first, last]| first > last) {
+        return;
+    }
+    let mut index = ranges.map(|[first, _]| first);
+    loop {
+        visit(index);
+        let mut axis = 0;
+        while index[axis] == ranges[axis][1] {
+            index[axis] = ranges[axis][0];
+            axis += 1;
+            if axis == D {
+                return;
+            }
+        }
+        index[axis] += 1;
+    }
+}

@@ -1,0 +1,320 @@
+//! What a user writes: the scene, as resolved from a TOML file, a preset and `--set` overrides.
+//!
+//! Every length is in metres, every time in seconds, every other quantity in SI units. Two-dimensional masses and
+//! forces are per metre of depth. A [`Scene`] that exists is valid: [`load`] refuses anything else with all of the
+//! file's errors at once. Vectors have three components; a two-dimensional scene leaves the third at zero.
+
+pub mod bounds;
+mod check;
+mod check_metric;
+mod document;
+mod effect;
+mod error;
+pub mod geometry;
+mod load;
+mod metric;
+mod motion;
+mod names;
+mod overrides;
+mod preset;
+mod probe;
+mod read;
+mod read_metric;
+mod read_probe;
+mod read_shape;
+mod resources;
+mod section;
+mod solid;
+mod velocity_field;
+
+pub use effect::{Decision, Derived, EffectName, Switch};
+pub use error::{Place, SceneError, SceneErrors};
+pub use halfstep_sph::Phase;
+pub use halfstep_sph::kernel::KernelName;
+pub use load::{load, parse};
+pub use metric::{Metric, MetricKind, MetricReference};
+pub use motion::{Motion, Placement};
+pub use probe::{MAX_PROBE_VALUES, Probe, ProbeKind, Reference};
+pub use resources::{BYTES_PER_PARTICLE, memory_available, memory_needed};
+pub use solid::{ArtificialStress, Material, Solid, SolidModelName, SubSteps};
+pub use velocity_field::VelocityField;
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// A scene with every default filled in and every value checked.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Scene {
+    /// The scene's name: the stem of its file.
+    pub name: String,
+    /// The file it was read from.
+    pub path: PathBuf,
+    /// The preset it started from.
+    pub preset: Option<Preset>,
+    /// Number of space dimensions.
+    pub dimension: usize,
+    /// Particle spacing dx, m.
+    pub resolution: f64,
+    /// Smoothing length over spacing, h / dx, of the fluid and the interface.
+    pub smoothing_ratio: f64,
+    /// Simulated time, s.
+    pub end_time: f64,
+    /// How the time step is chosen.
+    pub time_step: TimeStep,
+    /// Gravity, m/s².
+    pub gravity: [f64; 3],
+    /// The liquid, where the scene has one.
+    pub fluid: Option<Fluid>,
+    /// The solid, where the scene has one.
+    pub solid: Option<Solid>,
+    /// How fluid and solid act on each other.
+    pub interface: Interface,
+    /// What is written, and when.
+    pub output: Output,
+    /// Where the particles are at first.
+    pub shapes: Vec<Shape>,
+    /// What is measured.
+    pub probes: Vec<Probe>,
+    /// Curves of the literature drawn beside the probes.
+    pub references: Vec<Reference>,
+    /// Numbers that a study compares.
+    #[serde(default)]
+    pub metrics: Vec<Metric>,
+    /// Effects that the user forces on or off; those absent are `auto`.
+    pub effects: BTreeMap<EffectName, Switch>,
+    /// Numerical parameters that are no physics.
+    pub numerics: Numerics,
+}
+
+/// A named set of parameter values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Preset {
+    /// The values, geometry convention and interface of Kayaki's scheme.
+    Kayaki,
+}
+
+/// The choice of the time step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TimeStep {
+    /// From the stability limits of both phases at every step.
+    Auto,
+    /// Fixed, s.
+    Fixed(f64),
+}
+
+/// A weakly compressible liquid.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Fluid {
+    /// Reference density, kg/m³.
+    pub density: f64,
+    /// Dynamic viscosity, Pa s.
+    pub viscosity: f64,
+    /// Artificial speed of sound, m/s (resolved: ten times the expected speed where the scene says `auto`).
+    pub sound_speed: f64,
+    /// Monaghan's artificial viscosity.
+    pub artificial_viscosity: ArtificialViscosity,
+    /// Diffusion of density.
+    pub density_diffusion: DensityDiffusion,
+    /// Coefficient delta of the density diffusion.
+    pub density_diffusion_coefficient: f64,
+    /// Pressure added to the equation of state, Pa.
+    pub background_pressure: f64,
+}
+
+/// Coefficients A (linear) and B (quadratic) of the artificial viscosity.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ArtificialViscosity {
+    /// A: proportional to the sound speed.
+    pub linear: f64,
+    /// B: proportional to the square of the approach speed.
+    pub quadratic: f64,
+}
+
+/// The variants of density diffusion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DensityDiffusion {
+    /// None.
+    None,
+    /// Molteni and Colagrossi 2009.
+    Simple,
+    /// Fourtakas et al. 2019: the hydrostatic part is left out.
+    Hydrostatic,
+    /// Antuono et al. 2010, Marrone et al. 2011: with the renormalised gradient.
+    DeltaSph,
+}
+
+/// The coupling of fluid and solid.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Interface {
+    /// Which treatment.
+    pub treatment: Treatment,
+    /// Kayaki's C: strength of the cross-phase artificial viscosity f_i.
+    pub cross_viscosity: f64,
+}
+
+/// The treatments of the interface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Treatment {
+    /// The solid is a moving wall to the fluid; it receives the reaction.
+    MovingWall,
+    /// Kayaki's: continuity and stress sums do not ask for a neighbour's phase.
+    PhaseBlind,
+}
+
+/// When files are written.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Output {
+    /// Time between frames, s.
+    pub frame_interval: f64,
+    /// Time between rows of `probes.csv`, s.
+    pub probe_interval: f64,
+    /// Time between checkpoints, s; 0 writes none.
+    pub checkpoint_interval: f64,
+}
+
+/// Particles on a lattice inside a geometry.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Shape {
+    /// Its name; `--set shape.NAME.KEY=VALUE` finds it by this.
+    pub name: String,
+    /// Its phase.
+    #[serde(with = "names::PhaseName")]
+    pub phase: Phase,
+    /// Where it is.
+    pub geometry: Geometry,
+    /// Initial velocity, m/s (a wall: the constant velocity of its surface).
+    pub velocity: [f64; 3],
+    /// Initial velocity field of a vibrating cantilever, added to `velocity`.
+    pub cantilever_mode: Option<CantileverMode>,
+    /// Fluid only: initial velocity field, added to `velocity`.
+    #[serde(default)]
+    pub velocity_field: Option<VelocityField>,
+    /// Solid only: particles inside this box keep zero velocity.
+    pub clamp: Vec<Block>,
+    /// Wall only: prescribed motion.
+    #[serde(default)]
+    pub motion: Option<Motion>,
+    /// Wall only: the solid may touch this wall.
+    pub contact: bool,
+    /// Wall only: free slip (true) or no slip (false) toward the fluid.
+    pub free_slip: bool,
+    /// Fluid only: start with hydrostatic pressure below the shape's highest point.
+    pub hydrostatic: bool,
+}
+
+/// An axis-parallel box.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Block {
+    /// Lowest corner, m.
+    pub min: [f64; 3],
+    /// Highest corner, m.
+    pub max: [f64; 3],
+}
+
+/// The geometries a shape can have.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Geometry {
+    /// An axis-parallel box.
+    Box(Block),
+    /// A disc (2D) or ball (3D).
+    Disc {
+        /// Centre, m.
+        center: [f64; 3],
+        /// Radius, m.
+        radius: f64,
+    },
+    /// A ring (2D) or shell (3D).
+    Ring {
+        /// Centre, m.
+        center: [f64; 3],
+        /// Inner radius, m.
+        inner: f64,
+        /// Outer radius, m.
+        outer: f64,
+    },
+    /// The walls around an axis-parallel cavity, as thick as the kernel asks for.
+    Tank {
+        /// The cavity.
+        cavity: Block,
+        /// Sides left out.
+        open: Vec<Side>,
+    },
+}
+
+/// A side of a box.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Side {
+    /// Lowest x.
+    Left,
+    /// Highest x.
+    Right,
+    /// Lowest y.
+    Bottom,
+    /// Highest y.
+    Top,
+    /// Lowest z.
+    Back,
+    /// Highest z.
+    Front,
+}
+
+/// First bending mode of a cantilever (Landau and Lifshitz; Gray 2001): v_y = fraction c_0 F(x) / F(L), c_0 the bulk
+/// sound speed, x measured from `root` along the x axis.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CantileverMode {
+    /// Tip speed over the bulk sound speed.
+    pub fraction: f64,
+    /// x of the clamped end, m.
+    pub root: f64,
+    /// Free length, m.
+    pub length: f64,
+}
+
+/// Where lattice points lie.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Lattice {
+    /// At the centres of cells of side dx: n dx of material carry n particles.
+    Centred,
+    /// At multiples of dx strictly inside a fluid or a solid (n dx of material carry n - 1), and up to and including
+    /// the surface of a wall: Kayaki's counts.
+    Nodal,
+}
+
+/// Numbers that are no physics.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Numerics {
+    /// Smoothing kernel.
+    #[serde(with = "names::Kernel")]
+    pub kernel: KernelName,
+    /// Courant number of the fluid.
+    pub cfl: f64,
+    /// Courant number of the solid: dt c_P / dx.
+    pub solid_cfl: f64,
+    /// Largest number of solid sub-steps before the solid lowers the time step.
+    pub max_sub_steps: u32,
+    /// Largest number of fluid particles in the interface record; `None`: from the scene.
+    pub interface_capacity: Option<u32>,
+    /// Worker threads of each process.
+    pub threads: Threads,
+    /// Lattice convention.
+    pub lattice: Lattice,
+    /// Fluid particles that leave this box are removed; `None`: the box of all shapes, widened by its own size.
+    pub domain: Option<Block>,
+}
+
+/// Worker threads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Threads {
+    /// Of the fluid process.
+    pub fluid: usize,
+    /// Of the solid process.
+    pub solid: usize,
+}

@@ -1,0 +1,105 @@
+//! The scenes that come with the program load, and their particles are where their comments say.
+
+use halfstep_scene::geometry::{estimate, layout};
+use halfstep_scene::{Scene, Treatment, load};
+use std::path::{Path, PathBuf};
+
+fn scenes() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes")
+}
+
+fn shipped(name: &str, overrides: &[&str]) -> Scene {
+    let overrides: Vec<String> = overrides.iter().map(|o| o.to_string()).collect();
+    let path = scenes().join(name).with_extension("toml");
+    load(&path, &overrides).unwrap_or_else(|errors| panic!("{:?}", miette::Report::new(errors)))
+}
+
+#[test]
+fn every_shipped_scene_loads_and_survives_json() {
+    let mut found = 0;
+    for entry in std::fs::read_dir(scenes()).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
+        let scene = shipped(&name, &[]);
+        assert_eq!(scene.name, name);
+        assert!(!scene.probes.is_empty(), "{name} measures nothing");
+        assert!(!scene.metrics.is_empty(), "{name} has nothing to compare");
+        assert_eq!(Scene::from_json(&scene.to_json().unwrap()).unwrap(), scene, "{name}");
+        let (counts, layout) = (estimate(&scene), layout::<2>(&scene));
+        let placed = layout.fluid.len() + layout.solid.len() + layout.wall.len();
+        let ratio = placed as f64 / counts.total() as f64;
+        assert!((0.95..1.02).contains(&ratio), "{name}: {ratio}");
+        found += 1;
+    }
+    assert!(found >= 10, "{found} scenes");
+}
+
+#[test]
+fn the_gates_plate_is_5_across_and_clamped_above_its_free_length() {
+    let layout = layout::<2>(&shipped("elastic-gate", &[]));
+    assert_eq!(layout.fluid.len(), 100 * 140);
+    assert_eq!(layout.solid.len(), 5 * 99);
+    assert_eq!(layout.solid.iter().filter(|p| p.clamped).count(), 5 * 20);
+    assert!(layout.solid.iter().all(|p| p.clamped == (p.position[1] > 0.079)));
+    assert!(layout.wall.iter().all(|p| !p.contact));
+    // Water up to the plate's top and above: every wall it sees on the right turns its x component.
+    let facing = layout
+        .wall
+        .iter()
+        .filter(|p| (0.1..0.1027).contains(&p.position[0]) && (0.099..0.15).contains(&p.position[1]));
+    let normals: Vec<_> = facing.map(|p| (p.normal, p.corner)).collect();
+    assert_eq!(normals.len(), 3 * 51);
+    assert!(normals.iter().all(|n| *n == ([-1.0, 0.0], false)));
+}
+
+#[test]
+fn the_gates_other_thickness_is_one_override_away() {
+    let solid = layout::<2>(&shipped("elastic-gate", &["shape.plate.box.max=[0.106,0.099]"])).solid;
+    assert_eq!(solid.len(), 6 * 99);
+    assert_eq!(solid.iter().filter(|p| p.clamped).count(), 6 * 20);
+}
+
+#[test]
+fn the_demo_resolution_has_two_particles_across() {
+    let scene = shipped("elastic-gate", &["resolution=0.0025"]);
+    let layout = layout::<2>(&scene);
+    assert_eq!(layout.fluid.len(), 40 * 56);
+    assert_eq!(layout.solid.iter().filter(|p| p.position[1] < 0.0025).count(), 2);
+}
+
+#[test]
+fn the_presets_counts_are_the_papers() {
+    let scene = shipped("dam-break-plate", &["preset=kayaki"]);
+    assert_eq!(scene.interface.treatment, Treatment::PhaseBlind);
+    let layout = layout::<2>(&scene);
+    assert_eq!((layout.fluid.len(), layout.solid.len()), (72 * 145, 5 * 47));
+    let gate = shipped("elastic-gate", &["preset=kayaki", "shape.plate.box.max=[0.106,0.099]"]);
+    let row = halfstep_scene::geometry::layout::<2>(&gate).solid;
+    assert_eq!(row.iter().filter(|p| p.position[1] < 0.0015).count(), 5);
+}
+
+#[test]
+fn the_dam_breaks_plate_takes_the_floors_place() {
+    let layout = layout::<2>(&shipped("dam-break-plate", &[]));
+    assert_eq!(layout.solid.len(), 6 * 48);
+    assert_eq!(layout.solid.iter().filter(|p| p.clamped).count(), 6 * 8);
+    let under = |x: f64| (0.286..0.298).contains(&x);
+    assert!(!layout.wall.iter().any(|p| under(p.position[0])));
+}
+
+#[test]
+fn references_are_read_from_their_files_in_the_probes_unit() {
+    let gate = shipped("elastic-gate", &[]);
+    assert_eq!(gate.references[0].probe, "tip.x");
+    assert_eq!(gate.references[0].points.len(), 9);
+    assert_eq!(gate.references[0].points[3], [0.16, 46.4 * 0.001]);
+    assert_eq!(gate.references[1].points[3], [0.16, 17.1 * 0.001]);
+}
+
+#[test]
+fn the_sound_speed_is_ten_times_that_of_a_fall_through_the_water() {
+    let fluid = shipped("elastic-gate", &[]).fluid.unwrap();
+    assert!((fluid.sound_speed - 10.0 * (2.0_f64 * 9.81 * 0.14).sqrt()).abs() < 1e-12);
+    let fast = shipped("elastic-gate", &["shape.water.velocity=[3,4]"]).fluid.unwrap();
+    assert_eq!(fast.sound_speed, 50.0);
+}

@@ -1,0 +1,143 @@
+//! One instant of one process: the columns that go into a frame file.
+
+use crate::protocol::StateRecord;
+use halfstep_sph::Phase;
+
+/// Number of the fluid in [`Frame::phase`].
+pub const FLUID: u8 = 0;
+/// Number of the solid in [`Frame::phase`].
+pub const SOLID: u8 = 1;
+/// Number of the walls in [`Frame::phase`].
+pub const WALL: u8 = 2;
+
+/// All particles of a process at one instant, in single precision. The columns are equally long.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Frame {
+    /// Simulated time, s.
+    pub time: f64,
+    /// Positions, m.
+    pub points: Vec<[f32; 3]>,
+    /// Velocities, m/s.
+    pub velocity: Vec<[f32; 3]>,
+    /// Densities, kg/m³.
+    pub density: Vec<f32>,
+    /// Pressures, Pa.
+    pub pressure: Vec<f32>,
+    /// Cauchy stresses xx, yy, zz, xy, yz, xz, Pa; zero for fluid and walls.
+    pub stress: Vec<[f32; 6]>,
+    /// [`FLUID`], [`SOLID`] or [`WALL`].
+    pub phase: Vec<u8>,
+    /// Particle numbers: unique in a phase, the same in every frame.
+    pub id: Vec<i32>,
+}
+
+/// Why frames could not be written.
+pub type SinkError = Box<dyn std::error::Error + Send + Sync>;
+
+/// Where the frames of a participant go.
+pub trait FrameSink: Send {
+    /// Hands frame `number` over. `fill` gets an empty frame, with the memory of an earlier one.
+    ///
+    /// # Errors
+    /// An earlier frame could not be written.
+    fn submit(&mut self, number: u32, fill: &mut dyn FnMut(&mut Frame)) -> Result<(), SinkError>;
+    /// Number up to which, not including it, all frames are on disk.
+    fn safe(&self) -> u32;
+    /// Waits until everything submitted is on disk; returns what [`Self::safe`] then is.
+    ///
+    /// # Errors
+    /// A frame could not be written.
+    fn finish(self: Box<Self>) -> Result<u32, SinkError>;
+}
+
+/// One particle, as the numerics hold it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FramePoint {
+    /// Position, m.
+    pub position: [f64; 3],
+    /// Velocity, m/s.
+    pub velocity: [f64; 3],
+    /// Density, kg/m³.
+    pub density: f64,
+    /// Pressure, Pa.
+    pub pressure: f64,
+    /// Cauchy stress xx, yy, zz, xy, yz, xz, Pa; zero for fluid and walls.
+    pub stress: [f64; 6],
+    /// What the particle belongs to.
+    pub phase: Phase,
+    /// Its number.
+    pub id: u32,
+}
+
+impl FramePoint {
+    /// A solid particle as its record shows it.
+    pub fn solid(r: &StateRecord) -> Self {
+        let mut stress = r.deviatoric_stress;
+        for normal in &mut stress[..3] {
+            *normal -= r.pressure;
+        }
+        Self {
+            position: r.position,
+            velocity: r.velocity,
+            density: r.density,
+            pressure: r.pressure,
+            stress,
+            phase: Phase::Solid,
+            id: r.id,
+        }
+    }
+}
+
+impl Frame {
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Whether there are no particles.
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    /// Forgets time and particles and keeps the memory.
+    pub fn clear(&mut self) {
+        self.time = 0.0;
+        self.points.clear();
+        self.velocity.clear();
+        self.density.clear();
+        self.pressure.clear();
+        self.stress.clear();
+        self.phase.clear();
+        self.id.clear();
+    }
+
+    /// Appends a particle, rounded to single precision.
+    pub fn push(&mut self, particle: FramePoint) {
+        self.points.push(particle.position.map(|x| x as f32));
+        self.velocity.push(particle.velocity.map(|v| v as f32));
+        self.density.push(particle.density as f32);
+        self.pressure.push(particle.pressure as f32);
+        self.stress.push(particle.stress.map(|s| s as f32));
+        self.phase.push(match particle.phase {
+            Phase::Fluid => FLUID,
+            Phase::Solid => SOLID,
+            Phase::Wall => WALL,
+        });
+        self.id.push(particle.id as i32);
+    }
+
+    /// Whether all columns are equally long: what a file can hold.
+    pub fn is_consistent(&self) -> bool {
+        let n = self.len();
+        [
+            self.velocity.len(),
+            self.density.len(),
+            self.pressure.len(),
+            self.stress.len(),
+            self.phase.len(),
+            self.id.len(),
+        ]
+        .iter()
+        .all(|&length| length == n)
+    }
+}

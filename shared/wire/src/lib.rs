@@ -1,0 +1,20 @@
+//! The wire of a co-simulation: records and headers, what they mean, and the particles of an instant for output.
+
+pub mod failure;
+pub mod frame;
+pub mod protocol;
+
+/// A vector of the scene's dimension as the three components of the wire and of files.
+pub fn wide<const D: usize>(v: [f64; D]) -> [f64; 3] {
+    std::array::from_fn(|d| if d < D { v[d] } else { 0.0 })
+}
+
+/// Place of component (a, b), a <= b, in a record's stress: xx, yy, zz, xy, yz, xz.
+pub fn wire_component(a: usize, b: usize) -> usize {
+    match (a, b) {
+        (0, 1) => 3,
+        (1, 2) => 4,
+        (0, 2) => 5,
+        _ => a,
+    }
+}
