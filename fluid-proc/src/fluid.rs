@@ -13,7 +13,6 @@ use crate::viscosity::StressTerm;
 use crate::wall::{Damping, Walls};
 use crate::wall_guard::{self, GUARD};
 use halfstep_interface::{Parameters, non_negative_pressure};
-use halfstep_output::Frame;
 use halfstep_role::role::{Costs, CoverageError, Role};
 use halfstep_scene::bounds::Bounds;
 use halfstep_scene::geometry;
@@ -23,6 +22,7 @@ use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_sph::state_equation::StateEquation;
 use halfstep_sph::with_kernel;
 use halfstep_wire::failure::{Diverged, RoleName};
+use halfstep_wire::frame::Frame;
 use halfstep_wire::protocol::{ForceRecord, MAX_PROBE_VALUES, StateRecord};
 
 /// Margin of the neighbour lists over h: lists are renewed when two particles may have come that much closer.

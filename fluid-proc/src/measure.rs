@@ -2,10 +2,10 @@
 
 use crate::columns::Source;
 use crate::fluid::Fluid;
-use halfstep_output::{Frame, FramePoint};
 use halfstep_role::role::audit;
 use halfstep_scene::{Phase, ProbeKind};
 use halfstep_sph::neighbours::PADDING;
+use halfstep_wire::frame::{Frame, FramePoint};
 use halfstep_wire::protocol::MAX_PROBE_VALUES;
 use halfstep_wire::wide;
 use xxhash_rust::xxh3::Xxh3;

@@ -1,8 +1,8 @@
 //! The seam: what a solid model is to the rest of the program.
 
-use halfstep_output::{Frame, FramePoint};
 use halfstep_role::role::Costs;
 use halfstep_sph::quantity::Quantity;
+use halfstep_wire::frame::{Frame, FramePoint};
 use halfstep_wire::protocol::StateRecord;
 
 /// What the fluid does to the solid during one stage. One entry for each of the model's particles, by particle number;

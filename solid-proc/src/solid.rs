@@ -7,12 +7,12 @@ use crate::sleep::{Rest, Sleep};
 use crate::sub_steps::SubStepping;
 use crate::total_lagrangian::TotalLagrangian;
 use halfstep_interface::{Interface, Parameters};
-use halfstep_output::Frame;
 use halfstep_role::role::{Costs, CoverageError, Role, audit};
 use halfstep_scene::geometry::{holds, nearest};
 use halfstep_scene::{EffectName, Phase, ProbeKind, Scene, SolidModelName, Treatment};
 use halfstep_sph::lane::Isa;
 use halfstep_wire::failure::{Diverged, RoleName};
+use halfstep_wire::frame::Frame;
 use halfstep_wire::protocol::{ForceRecord, MAX_PROBE_VALUES, StateRecord};
 use xxhash_rust::xxh3::Xxh3;
 

@@ -16,7 +16,7 @@ use std::time::Instant;
 /// Who has the machine: coupled runs write, others read.
 static MACHINE: RwLock<()> = RwLock::new(());
 
-/// The program: `coupler/src/main.rs`, which this package builds as well, so that it is up to date when a test runs.
+/// The program: `coupler/cli/src/main.rs`, which this package builds as well, so that it is up to date when a test runs.
 pub fn program() -> &'static Path {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
     PROGRAM.get_or_init(|| {

@@ -81,7 +81,7 @@ fn paths_in_documents_exist() {
 
 #[test]
 fn words_are_told_from_paths() {
-    for path in ["shared/src/link", "scenes/elastic-gate.toml", "coupler/src/run.rs", "run.rs"] {
+    for path in ["shared/link/src", "scenes/elastic-gate.toml", "coupler/simulation/src/run.rs", "run.rs"] {
         assert!(is_repository_path(path), "{path}");
     }
     for word in [
