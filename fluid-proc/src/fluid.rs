@@ -5,7 +5,7 @@ use crate::columns::{Columns, fit};
 use crate::density_diffusion::Strength;
 use crate::effects::{self};
 use crate::interface::Coupling;
-use crate::midpoint::{self, Extremes, Stage};
+use crate::midpoint::{self, Conditions, Extremes};
 use crate::moving_wall::motions;
 use crate::rates::RateSum;
 use crate::time_step::Limits;
@@ -23,6 +23,7 @@ use halfstep_sph::state_equation::StateEquation;
 use halfstep_sph::with_kernel;
 use halfstep_wire::failure::{Diverged, RoleName};
 use halfstep_wire::frame::Frame;
+use halfstep_wire::half_step::{HalfStep, Stage};
 use halfstep_wire::protocol::{ForceRecord, MAX_PROBE_VALUES, StateRecord};
 
 /// Margin of the neighbour lists over h: lists are renewed when two particles may have come that much closer.
@@ -196,7 +197,7 @@ impl<const D: usize> Fluid<D> {
     }
 
     /// The particle that is farthest out of bounds, if any is.
-    fn find_divergence(&self, step: u64, stage: u32) -> Option<Diverged> {
+    fn find_divergence(&self, half_step: &HalfStep) -> Option<Diverged> {
         let c = &self.columns;
         let excess = |s: usize| {
             let particle = &c.now.sources[s];
@@ -211,8 +212,8 @@ impl<const D: usize> Fluid<D> {
             particle: c.id[s],
             quantity: worst.quantity,
             value: worst.value,
-            step,
-            stage,
+            step: half_step.step,
+            stage: half_step.stage,
             position: halfstep_wire::wide(position),
         })
     }
@@ -283,7 +284,7 @@ impl<const D: usize> Role for Fluid<D> {
         Ok(())
     }
 
-    fn advance(&mut self, step: u64, stage: u32, dt: f64, forces: &[ForceRecord]) -> Result<(), Diverged> {
+    fn advance(&mut self, half_step: &HalfStep, forces: &[ForceRecord]) -> Result<(), Diverged> {
         if let Some(coupling) = &self.coupling {
             for (&slot, force) in coupling.slots().iter().zip(forces) {
                 self.sums[slot as usize / LANES].add(
@@ -293,14 +294,13 @@ impl<const D: usize> Role for Fluid<D> {
                 );
             }
         }
-        if stage == 1 {
+        if half_step.stage == Stage::Second {
             self.gradient_known = false;
         }
-        let dt = if stage == 0 { 0.5 * dt } else { dt };
-        let stage_ = Stage::new(stage, dt, self.gravity, &self.state, &self.bounds);
-        let extremes = midpoint::advance(&mut self.columns, &self.sums, stage_);
+        let conditions = Conditions::new(half_step, self.gravity, &self.state, &self.bounds);
+        let extremes = midpoint::advance(&mut self.columns, &self.sums, conditions);
         self.remember(&extremes);
-        match extremes.out_of_bounds.then(|| self.find_divergence(step, stage)).flatten() {
+        match extremes.out_of_bounds.then(|| self.find_divergence(half_step)).flatten() {
             Some(diverged) => Err(diverged),
             None => Ok(()),
         }

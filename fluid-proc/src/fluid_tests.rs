@@ -6,6 +6,7 @@ use halfstep_role::role::{Role, audit};
 use halfstep_scene::{self as scene, Scene};
 use halfstep_sph::lane::Isa;
 use halfstep_sph::neighbours::PADDING;
+use halfstep_wire::half_step::HalfStep;
 use std::path::Path;
 
 fn tank(overrides: &[&str]) -> Scene {
@@ -80,11 +81,10 @@ fn still_water_stays_still() {
     let mut record = Vec::new();
     let mut largest = 0.0_f64;
     for step in 0..400 {
-        let dt = fluid.dt_limit();
-        for stage in 0..2 {
+        for half_step in HalfStep::begin(step, 0.0).lasting(fluid.dt_limit()).both() {
             fluid.publish(&[], &mut record);
             fluid.own_sums();
-            fluid.advance(step, stage, dt, &[]).unwrap();
+            fluid.advance(&half_step, &[]).unwrap();
         }
         largest = largest.max(fluid.audit()[audit::KINETIC_ENERGY]);
     }
@@ -109,11 +109,11 @@ fn divergence_names_the_particle() {
     let mut record = Vec::new();
     let mut failure = None;
     for step in 0..50 {
-        for stage in 0..2 {
+        // A hundred times the stable step.
+        for half_step in HalfStep::begin(step, 0.0).lasting(0.02).both() {
             fluid.publish(&[], &mut record);
             fluid.own_sums();
-            // A hundred times the stable step.
-            if let Err(diverged) = fluid.advance(step, stage, 0.02, &[]) {
+            if let Err(diverged) = fluid.advance(&half_step, &[]) {
                 failure = Some(diverged);
             }
         }

@@ -7,6 +7,7 @@ use halfstep_scene::bounds::Bounds;
 use halfstep_sph::lane::LANES;
 use halfstep_sph::neighbours::PADDING;
 use halfstep_sph::state_equation::StateEquation;
+use halfstep_wire::half_step::{HalfStep, Stage};
 
 /// Slots that one task walks over; a whole number of clusters.
 const TASK: usize = 1024;
@@ -37,23 +38,25 @@ impl Extremes {
 
 /// What holds for all particles during a stage.
 #[derive(Clone, Copy)]
-pub struct Stage<'a, const D: usize> {
+pub struct Conditions<'a, const D: usize> {
     state: &'a StateEquation,
     gravity: [f64; D],
-    dt: f64,
+    /// Time from n, s.
+    span: f64,
     density: (f64, f64),
     fastest: f64,
     mass: f64,
     first: bool,
 }
 
-impl<'a, const D: usize> Stage<'a, D> {
-    /// Stage 0 or 1 of a step; `dt` is the time from n, s.
-    pub fn new(stage: u32, dt: f64, gravity: [f64; D], state: &'a StateEquation, bounds: &Bounds) -> Self {
+impl<'a, const D: usize> Conditions<'a, D> {
+    /// For one half-step.
+    pub fn new(half_step: &HalfStep, gravity: [f64; D], state: &'a StateEquation, bounds: &Bounds) -> Self {
         let change = bounds.density_change;
         let density = (bounds.density * (1.0 - change), bounds.density * (1.0 + change));
         let fastest = bounds.speed * bounds.speed;
-        Self { state, gravity, dt, density, fastest, mass: 0.0, first: stage == 0 }
+        let first = half_step.stage == Stage::First;
+        Self { state, gravity, span: half_step.span(), density, fastest, mass: 0.0, first }
     }
 }
 
@@ -61,10 +64,10 @@ impl<'a, const D: usize> Stage<'a, D> {
 pub fn advance<const D: usize>(
     columns: &mut Columns<D>,
     sums: &[RateSum<D>],
-    mut stage: Stage<'_, D>,
+    mut conditions: Conditions<'_, D>,
 ) -> Extremes {
-    stage.mass = columns.now.mass;
-    if stage.first {
+    conditions.mass = columns.now.mass;
+    if conditions.first {
         // The present state becomes that at n; what it takes the place of is overwritten.
         std::mem::swap(&mut columns.position_n, &mut columns.now.position);
     }
@@ -78,7 +81,7 @@ pub fn advance<const D: usize>(
         position: columns.now.position.each_mut().map(Vec::as_mut_slice),
         sources: &mut columns.now.sources,
     };
-    walk(part, &stage)
+    walk(part, &conditions)
 }
 
 /// The columns of consecutive slots.
@@ -135,18 +138,18 @@ impl<const D: usize> Part<'_, D> {
     }
 }
 
-fn walk<const D: usize>(part: Part<'_, D>, stage: &Stage<'_, D>) -> Extremes {
+fn walk<const D: usize>(part: Part<'_, D>, conditions: &Conditions<'_, D>) -> Extremes {
     let slots = part.id.len();
     if slots <= TASK {
-        return update(part, stage);
+        return update(part, conditions);
     }
     let (a, b) = part.split_at((slots / 2).next_multiple_of(TASK));
-    let (a, b) = rayon::join(|| walk(a, stage), || walk(b, stage));
+    let (a, b) = rayon::join(|| walk(a, conditions), || walk(b, conditions));
     a.join(b)
 }
 
-fn update<const D: usize>(part: Part<'_, D>, stage: &Stage<'_, D>) -> Extremes {
-    let Stage { state, gravity, dt, density: (low, high), fastest, mass, first } = *stage;
+fn update<const D: usize>(part: Part<'_, D>, conditions: &Conditions<'_, D>) -> Extremes {
+    let Conditions { state, gravity, span, density: (low, high), fastest, mass, first } = *conditions;
     let mut extremes = Extremes::default();
     for slot in 0..part.id.len() {
         let sum = &part.sums[slot / LANES];
@@ -162,15 +165,15 @@ fn update<const D: usize>(part: Part<'_, D>, stage: &Stage<'_, D>) -> Extremes {
         let (mut moved, mut speed, mut pushed) = (0.0, 0.0, 0.0);
         for d in 0..D {
             let a = gravity[d] + sum.acceleration[d].0[k];
-            x[d] = part.position_n[d][slot] + dt * present.velocity[d];
-            v[d] = part.velocity_n[d][slot] + dt * a;
+            x[d] = part.position_n[d][slot] + span * present.velocity[d];
+            v[d] = part.velocity_n[d][slot] + span * a;
             part.position[d][slot] = x[d];
             let dx = x[d] - part.reference[d][slot];
             moved += dx * dx;
             speed += v[d] * v[d];
             pushed += a * a;
         }
-        let rho = part.density_n[slot] + dt * sum.density_rate.0[k];
+        let rho = part.density_n[slot] + span * sum.density_rate.0[k];
         *present = Source::new(x, v, rho, state.pressure(rho), mass);
         // Padding repeats particles without the solid's forces; what becomes of it must not steer the run.
         if part.id[slot] != PADDING {

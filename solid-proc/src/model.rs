@@ -3,6 +3,7 @@
 use halfstep_role::role::Costs;
 use halfstep_sph::quantity::Quantity;
 use halfstep_wire::frame::{Frame, FramePoint};
+use halfstep_wire::half_step::HalfStep;
 use halfstep_wire::protocol::StateRecord;
 
 /// What the fluid does to the solid during one stage. One entry for each of the model's particles, by particle number;
@@ -39,8 +40,8 @@ pub struct OutOfBounds {
 
 /// A deformable solid made of particles.
 ///
-/// Particle numbers run from 0 to `particles()` - 1 and never change. A step from n to n + 1 is `advance` with stage 0
-/// (to n + 1/2, under the load of n) and then with stage 1 (from n to n + 1, under the load of n + 1/2).
+/// Particle numbers run from 0 to `particles()` - 1 and never change. A step from n to n + 1 is `advance` with its
+/// first stage (to n + 1/2, under the load of n) and then with its second (from n to n + 1, under the load of n + 1/2).
 pub trait SolidModel<const D: usize>: Send {
     /// Number of particles.
     fn particles(&self) -> usize;
@@ -61,11 +62,11 @@ pub trait SolidModel<const D: usize>: Send {
     fn velocity(&self, particle: u32) -> [f64; D];
     /// Largest stable time step of one sub-step, s.
     fn sub_step_limit(&self) -> f64;
-    /// Goes to n + 1/2 (stage 0) or from n to n + 1 (stage 1). The load is the force of the stage's own state.
+    /// Goes from n over the half-step's span, to n + 1/2 or to n + 1. The load is the force of the stage's own state.
     ///
     /// # Errors
     /// The particle that is farthest out of bounds.
-    fn advance(&mut self, stage: u32, dt: f64, sub_steps: u32, load: &Load<D>) -> Result<(), OutOfBounds>;
+    fn advance(&mut self, half_step: &HalfStep, sub_steps: u32, load: &Load<D>) -> Result<(), OutOfBounds>;
     /// Position in the reference configuration, m.
     fn reference(&self, particle: u32) -> [f64; D];
     /// Mass of a particle, kg (2D: kg/m).

@@ -10,6 +10,7 @@
 
 use crate::model::{Load, SolidModel};
 use halfstep_scene::{Scene, Solid};
+use halfstep_wire::half_step::{HalfStep, Stage};
 
 /// Largest displacement of a solid at rest, over the spacing.
 pub(crate) const TOLERANCE: f64 = 0.01;
@@ -51,21 +52,20 @@ impl Sleep {
     /// What this stage asks of the solid.
     pub(crate) fn decide<const D: usize>(
         &mut self,
-        stage: u32,
-        dt: f64,
+        half_step: &HalfStep,
         load: &Load<D>,
         model: &dyn SolidModel<D>,
     ) -> Rest {
         if !is_zero(load) {
             self.quiet = 0.0;
             let slept = std::mem::take(&mut self.asleep);
-            return if slept && stage == 1 { Rest::Woken } else { Rest::Awake };
+            return if slept && half_step.stage == Stage::Second { Rest::Woken } else { Rest::Awake };
         }
         if self.asleep {
             return Rest::Asleep;
         }
-        if stage == 0 {
-            self.quiet = if is_still(model, self.tolerance) { self.quiet + dt } else { 0.0 };
+        if half_step.stage == Stage::First {
+            self.quiet = if is_still(model, self.tolerance) { self.quiet + half_step.dt } else { 0.0 };
             self.asleep = self.quiet > self.window;
         }
         if self.asleep { Rest::Asleep } else { Rest::Awake }
@@ -79,7 +79,7 @@ pub(crate) enum Rest {
     Awake,
     /// Nothing.
     Asleep,
-    /// To be computed, stage 0 first: that was slept through.
+    /// To be computed from the step's first stage on, which was slept through.
     Woken,
 }
 
@@ -133,14 +133,15 @@ mod tests {
         let model = Hypoelastic::<2>::new(&scene, Isa::detect()).unwrap();
         let mut sleep = Sleep::new(&scene, &solid, &model);
         let window = 0.5 * slowest_period(&solid, 0.08, 0.01);
+        let [first, second] = HalfStep::begin(0, 0.0).lasting(0.6 * window).both();
         let mut load = Load::<2>::none(model.particles());
-        assert_eq!(sleep.decide(0, 0.6 * window, &load, &model), Rest::Awake);
-        assert_eq!(sleep.decide(1, 0.6 * window, &load, &model), Rest::Awake);
-        assert_eq!(sleep.decide(0, 0.6 * window, &load, &model), Rest::Asleep);
+        assert_eq!(sleep.decide(&first, &load, &model), Rest::Awake);
+        assert_eq!(sleep.decide(&second, &load, &model), Rest::Awake);
+        assert_eq!(sleep.decide(&first, &load, &model), Rest::Asleep);
         load.force[7] = [1e-9, 0.0];
-        assert_eq!(sleep.decide(1, 0.6 * window, &load, &model), Rest::Woken);
-        assert_eq!(sleep.decide(0, 0.6 * window, &load, &model), Rest::Awake);
+        assert_eq!(sleep.decide(&second, &load, &model), Rest::Woken);
+        assert_eq!(sleep.decide(&first, &load, &model), Rest::Awake);
         load.force[7] = [0.0, 0.0];
-        assert_eq!(sleep.decide(0, 0.6 * window, &load, &model), Rest::Awake, "the window begins anew");
+        assert_eq!(sleep.decide(&first, &load, &model), Rest::Awake, "the window begins anew");
     }
 }

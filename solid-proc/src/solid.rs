@@ -13,6 +13,7 @@ use halfstep_scene::{EffectName, Phase, ProbeKind, Scene, SolidModelName, Treatm
 use halfstep_sph::lane::Isa;
 use halfstep_wire::failure::{Diverged, RoleName};
 use halfstep_wire::frame::Frame;
+use halfstep_wire::half_step::{HalfStep, Stage};
 use halfstep_wire::protocol::{ForceRecord, MAX_PROBE_VALUES, StateRecord};
 use xxhash_rust::xxh3::Xxh3;
 
@@ -148,26 +149,27 @@ impl<const D: usize> Role for Solid<D> {
         Ok(())
     }
 
-    fn advance(&mut self, step: u64, stage: u32, dt: f64, forces: &[ForceRecord]) -> Result<(), Diverged> {
+    fn advance(&mut self, half_step: &HalfStep, forces: &[ForceRecord]) -> Result<(), Diverged> {
         for force in forces {
             let whole = force.force(self.model.mass(force.id));
             self.load.force[force.id as usize] = std::array::from_fn(|d| whole[d]);
         }
-        if stage == 0 {
-            self.taken = self.sub_steps.choose(dt, self.limit);
+        if half_step.stage == Stage::First {
+            self.taken = self.sub_steps.choose(half_step.dt, self.limit);
         }
         let rest = match &mut self.sleep {
-            Some(sleep) => sleep.decide(stage, dt, &self.load, self.model.as_ref()),
+            Some(sleep) => sleep.decide(half_step, &self.load, self.model.as_ref()),
             None => Rest::Awake,
         };
         let outcome = match rest {
             Rest::Asleep => return Ok(()),
-            Rest::Awake => self.model.advance(stage, dt, self.taken, &self.load),
+            Rest::Awake => self.model.advance(half_step, self.taken, &self.load),
             Rest::Woken => {
                 let none = Load::none(self.model.particles());
+                let [first, second] = half_step.both();
                 self.model
-                    .advance(0, dt, self.taken, &none)
-                    .and_then(|()| self.model.advance(1, dt, self.taken, &self.load))
+                    .advance(&first, self.taken, &none)
+                    .and_then(|()| self.model.advance(&second, self.taken, &self.load))
             }
         };
         outcome.map_err(|o| Diverged {
@@ -175,8 +177,8 @@ impl<const D: usize> Role for Solid<D> {
             particle: o.particle,
             quantity: o.quantity,
             value: o.value,
-            step,
-            stage,
+            step: half_step.step,
+            stage: half_step.stage,
             position: o.position,
         })?;
         self.limit = self.model.sub_step_limit();

@@ -8,6 +8,7 @@ use halfstep_scene::{self as scene, Scene};
 use halfstep_sph::lane::Isa;
 use halfstep_tests::run::repository;
 use halfstep_wire::failure::RoleName;
+use halfstep_wire::half_step::{HalfStep, Stage};
 use halfstep_wire::protocol::{ForceRecord, StateRecord};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::backtrace::Backtrace;
@@ -75,17 +76,18 @@ fn alone(name: RoleName, scene: &Scene) -> u64 {
     let mut time = 0.0;
     allocations(|n| {
         let role = role.get_or_insert_with(|| roles::build(name, scene).expect("the phase"));
-        let mut dt = 0.0;
-        for stage in 0..2 {
-            role.set_time(time + 0.5 * dt);
+        let mut half_step = HalfStep::begin(n, time);
+        while half_step.step == n {
+            role.set_time(half_step.before());
             role.publish(&[], &mut records);
-            if stage == 0 {
-                dt = role.dt_limit();
+            if half_step.stage == Stage::First {
+                half_step = half_step.lasting(role.dt_limit());
             }
             role.own_sums();
-            role.advance(n, stage, dt, &[]).unwrap();
+            role.advance(&half_step, &[]).unwrap();
+            half_step = half_step.next();
         }
-        time += dt;
+        time = half_step.time;
     })
 }
 
@@ -100,12 +102,12 @@ fn coupled(scene: &Scene) -> u64 {
         let [fluid, solid] = state.get_or_insert_with(|| {
             [RoleName::Fluid, RoleName::Solid].map(|name| roles::build(name, scene).expect("the phase"))
         });
-        let mut dt = 0.0;
-        for stage in 0..2 {
+        let mut half_step = HalfStep::begin(n, 0.0);
+        while half_step.step == n {
             solid.publish(&of_fluid, &mut of_solid);
             let epoch = fluid.publish(&of_solid, &mut of_fluid);
-            if stage == 0 {
-                dt = fluid.dt_limit().min(solid.dt_limit());
+            if half_step.stage == Stage::First {
+                half_step = half_step.lasting(fluid.dt_limit().min(solid.dt_limit()));
             }
             fluid.own_sums();
             solid.own_sums();
@@ -117,8 +119,9 @@ fn coupled(scene: &Scene) -> u64 {
             }
             interface.update(&of_fluid, &of_solid, epoch);
             interface.act_on_solid(|record, [x, y]| forces[1][record].stress_force = [x, y, 0.0]);
-            fluid.advance(n, stage, dt, &forces[0]).unwrap();
-            solid.advance(n, stage, dt, &forces[1]).unwrap();
+            fluid.advance(&half_step, &forces[0]).unwrap();
+            solid.advance(&half_step, &forces[1]).unwrap();
+            half_step = half_step.next();
         }
     })
 }

@@ -5,6 +5,7 @@ use halfstep_link::{Claim, Expect, LinkConfig, LinkError, PhaseLink, Processes, 
 use halfstep_tests::conformance::link::suite::with_links;
 use halfstep_tests::conformance::link::{Run, eventually};
 use halfstep_wire::failure::RoleName::{self, Coupler, Fluid, Solid};
+use halfstep_wire::half_step::Stage::First;
 use std::os::unix::fs::MetadataExt;
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
@@ -67,8 +68,8 @@ fn memory_is_reserved() {
     with_links::<Processes>(
         &run,
         None,
-        |mut fluid| drop(fluid.receive_forces(&Expect::new(0, 0))),
-        |mut solid| drop(solid.receive_forces(&Expect::new(0, 0))),
+        |mut fluid| drop(fluid.receive_forces(&Expect::new(0, First))),
+        |mut solid| drop(solid.receive_forces(&Expect::new(0, First))),
         |link| {
             eventually(5.0, "the others' reservations", || {
                 let objects = run.leftovers().into_iter().filter(|name| !name.starts_with('/'));

@@ -5,6 +5,7 @@ use halfstep_output::Frame;
 use halfstep_role::role::{Role, audit};
 use halfstep_scene as scene;
 use halfstep_sph::lane::Isa;
+use halfstep_wire::half_step::{HalfStep, Stage};
 use std::path::Path;
 
 const TANK: &str = "resolution = 0.01\nend_time = 2.0\ngravity = [0.0, -9.81]\n[fluid]\ndensity = 1000.0\n\
@@ -20,13 +21,13 @@ fn run(text: &str, until: f64) -> (Fluid<2>, Frame) {
         fluid.set_time(t);
         fluid.publish(&[], &mut record);
         let dt = fluid.dt_limit().min(until - t);
-        for stage in 0..2 {
-            if stage == 1 {
-                fluid.set_time(t + 0.5 * dt);
+        for half_step in HalfStep::begin(step, t).lasting(dt).both() {
+            if half_step.stage == Stage::Second {
+                fluid.set_time(half_step.before());
                 fluid.publish(&[], &mut record);
             }
             fluid.own_sums();
-            fluid.advance(step, stage, dt, &[]).unwrap();
+            fluid.advance(&half_step, &[]).unwrap();
         }
         t += dt;
         step += 1;

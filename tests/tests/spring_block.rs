@@ -5,7 +5,10 @@ use halfstep_link::{Claim, CouplerLink, Expect, LinkConfig, PhaseLink, Processes
 use halfstep_scene::{Block, Geometry};
 use halfstep_tests::conformance::link::Run;
 use halfstep_wire::failure::RoleName::{Fluid, Solid};
-use halfstep_wire::protocol::{ForceHeader, ForceRecord, StateHeader, StateRecord, order, status};
+use halfstep_wire::half_step::{HalfStep, Stage};
+use halfstep_wire::protocol::{
+    ForceHeader, ForceRecord, LAST_STAGE, StateHeader, StateRecord, order, status,
+};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
@@ -55,20 +58,20 @@ fn hydrostatic(record: &StateRecord) -> ForceRecord {
 /// A fluid that says nothing of interest, on time.
 fn fluid(config: &LinkConfig) {
     let mut link = PhaseLink::<Processes>::open(config, Fluid, None).unwrap();
-    let (mut time, mut dt) = (0.0, 0.0);
-    for half_step in 0.. {
-        let (step, stage) = (half_step / 2, (half_step % 2) as u32);
-        let told = if stage == 0 { 0.0 } else { dt };
-        drop(link.receive_peer(&Expect::new(step, stage).time(time).dt(told)).unwrap());
-        let header = StateHeader { step, stage, time, dt: told, dt_limit: 1.0, ..StateHeader::default() };
+    let mut half_step = HalfStep::begin(0, 0.0);
+    loop {
+        let (expect, header) = (Expect::of(&half_step), half_step.state_header());
+        drop(link.receive_peer(&expect.dt(header.dt)).unwrap());
+        let header = StateHeader { dt_limit: 1.0, ..header };
         link.send_state(&header, &[]).unwrap();
-        let answer = link.receive_forces(&Expect::new(step, stage).time(time)).unwrap();
-        if answer.header().order & order::STOP != 0 {
-            link.send_state(&StateHeader { stage: 2, status: status::FINISHED, ..header }, &[]).unwrap();
+        let forces = link.receive_forces(&expect).unwrap();
+        let answer = forces.header();
+        if answer.order & order::STOP != 0 {
+            link.send_state(&StateHeader { stage: LAST_STAGE, status: status::FINISHED, ..header }, &[])
+                .unwrap();
             return;
         }
-        dt = answer.header().dt;
-        time = if stage == 0 { time } else { answer.header().next_time };
+        half_step = half_step.told(answer.dt, answer.next_time).next();
     }
 }
 
@@ -78,18 +81,17 @@ fn coupler(config: &LinkConfig, steps: u64, dt: f64) -> Vec<(f64, f64)> {
     let mut curve = Vec::new();
     let mut time = 0.0;
     for step in 0.. {
-        let next_time = time + dt;
         let stops = step == steps;
-        for stage in 0..2 {
-            let expect = Expect::new(step, stage).time(time).dt(if stage == 0 { 0.0 } else { dt });
+        for half_step in HalfStep::begin(step, time).lasting(dt).both() {
+            let expect = Expect::of(&half_step).dt(half_step.state_header().dt);
             let order = if stops { order::STOP } else { order::GO };
-            let header = ForceHeader { order, step, stage, time, dt, next_time, ..ForceHeader::default() };
+            let header = ForceHeader { order, ..half_step.force_header() };
             drop(link.receive_state(Fluid, &expect).unwrap());
             link.send_forces(Fluid, &header, &[]).unwrap();
             let solid = link.receive_state(Solid, &expect).unwrap();
             let records = solid.records();
             assert_eq!(records.len(), 50);
-            if stage == 0 {
+            if half_step.stage == Stage::First {
                 curve.push((time, records[0].position[0] - 0.205));
             }
             let answer = |record: &StateRecord| hydrostatic(record);
@@ -98,13 +100,13 @@ fn coupler(config: &LinkConfig, steps: u64, dt: f64) -> Vec<(f64, f64)> {
             link.send_forces(Solid, &header, &forces).unwrap();
             if stops {
                 for role in [Fluid, Solid] {
-                    let last = link.receive_state(role, &Expect::new(step, 2)).unwrap();
+                    let last = link.receive_state(role, &Expect::last(step)).unwrap();
                     assert_eq!(last.header().status, status::FINISHED);
                 }
                 return curve;
             }
         }
-        time = next_time;
+        time += dt;
     }
     unreachable!("it stops")
 }

@@ -4,6 +4,7 @@
 use halfstep_coupling::supervise::Children;
 use halfstep_link::{Claim, CouplerLink, Expect, LinkConfig, PhaseLink, Processes, Threads, Transport};
 use halfstep_wire::failure::RoleName::{self, Coupler, Fluid, Solid};
+use halfstep_wire::half_step::HalfStep;
 use halfstep_wire::protocol::{ForceHeader, ForceRecord, StateHeader, StateRecord, order};
 use std::error::Error;
 use std::process::Command;
@@ -72,19 +73,18 @@ fn phase<S: Transport>(config: &LinkConfig, role: RoleName) -> Outcome<Vec<Durat
     let mut link = PhaseLink::<S>::open(config, role, None)?;
     let count = config.capacity(role) as usize;
     let mut times = Vec::with_capacity(2 * STEPS as usize);
-    for (step, stage) in half_steps() {
-        let (time, dt) = (step as f64 * DT, f64::from(stage) * DT);
-        let header = StateHeader { step, stage, time, dt, dt_limit: 1.0, ..StateHeader::default() };
+    for half_step in half_steps() {
+        let header = StateHeader { dt_limit: 1.0, ..half_step.state_header() };
         let start = Instant::now();
         link.send_state_from(&header, count, |slot| StateRecord {
             id: slot as u32,
-            position: [slot as f64, time, 0.0],
+            position: [slot as f64, half_step.time, 0.0],
             density: 1000.0,
             mass: 1.0,
             ..StateRecord::default()
         })?;
-        let expect = Expect::new(step, stage).time(time);
-        drop(link.receive_peer(&expect.dt(dt))?);
+        let expect = Expect::of(&half_step);
+        drop(link.receive_peer(&expect.dt(header.dt))?);
         drop(link.receive_forces(&expect.dt(DT))?);
         times.push(start.elapsed());
     }
@@ -96,29 +96,20 @@ fn coupler<S: Transport>(config: &LinkConfig) -> Outcome<()> {
     let zero = ForceRecord::default();
     let mut forces: Vec<ForceRecord> =
         (0..config.fluid_capacity).map(|id| ForceRecord { id, ..zero }).collect();
-    for (step, stage) in half_steps() {
-        let (time, dt) = (step as f64 * DT, f64::from(stage) * DT);
-        let expect = Expect::new(step, stage).time(time).dt(dt);
+    for half_step in half_steps() {
+        let expect = Expect::of(&half_step).dt(half_step.state_header().dt);
         let fluid = link.receive_state(Fluid, &expect)?;
         let solid = link.receive_state(Solid, &expect)?;
         for (force, (a, b)) in forces.iter_mut().zip(fluid.records().iter().zip(solid.records())) {
             force.cross_viscosity = [a.position[0] - b.position[0], a.position[1] - b.position[1], 0.0];
         }
-        let header = ForceHeader {
-            order: order::GO,
-            step,
-            stage,
-            time,
-            dt: DT,
-            next_time: time + DT,
-            ..ForceHeader::default()
-        };
+        let header = ForceHeader { order: order::GO, ..half_step.force_header() };
         link.send_forces(Fluid, &header, &forces)?;
         link.send_forces(Solid, &header, &forces)?;
     }
     Ok(())
 }
 
-fn half_steps() -> impl Iterator<Item = (u64, u32)> {
-    (0..STEPS).flat_map(|step| [(step, 0), (step, 1)])
+fn half_steps() -> impl Iterator<Item = HalfStep> {
+    (0..STEPS).flat_map(|step| HalfStep::begin(step, step as f64 * DT).lasting(DT).both())
 }

@@ -2,6 +2,7 @@
 
 use halfstep_scene::{Scene, TimeStep};
 use halfstep_wire::failure::{Diverged, Quantity, RoleName};
+use halfstep_wire::half_step::{HalfStep, Stage};
 
 /// Growth of the time step from one step to the next.
 const GROWTH: f64 = 1.1;
@@ -66,6 +67,13 @@ pub struct Tick {
     pub row: bool,
     /// The step is the scene's and, for the first time, above this limit.
     pub exceeded: Option<Limit>,
+}
+
+impl Tick {
+    /// The first half of the step to n + 1; its time step is zero where the end is reached.
+    pub fn half_step(&self) -> HalfStep {
+        HalfStep::begin(self.step, self.time).told(self.dt.unwrap_or(0.0), self.next_time)
+    }
 }
 
 impl Clock {
@@ -135,7 +143,7 @@ impl Clock {
                 quantity: Quantity::TimeStep,
                 value: dt,
                 step: self.step,
-                stage: 0,
+                stage: Stage::First,
                 position: [0.0; 3],
             });
         }

@@ -11,6 +11,7 @@ use halfstep_output::run_json::RoleSeconds;
 use halfstep_scene::Scene;
 use halfstep_sph::lane::Isa;
 use halfstep_wire::failure::{Diverged, RoleName};
+use halfstep_wire::half_step::{HalfStep, Stage};
 use halfstep_wire::protocol::{ForceHeader, ForceRecord, StateHeader, StateRecord, order, status};
 use halfstep_wire::wide;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -90,10 +91,10 @@ impl<S: Transport, const D: usize> Coupler<S, D> {
         recorder: &mut Recorder,
         stop: &AtomicBool,
     ) -> Result<CoupledOutcome, RunError> {
-        let (mut step, mut time) = (0, 0.0);
+        let mut half_step = HalfStep::begin(0, 0.0);
         loop {
-            let expect = Expect::new(step, 0).time(time);
-            let (fluid, solid) = self.receive(&expect)?;
+            let (step, time) = (half_step.step, half_step.time);
+            let (fluid, solid) = self.receive(&Expect::of(&half_step))?;
             let stopped = stop.load(Ordering::Relaxed);
             let limit = |role, header: &StateHeader| Limit { role, dt: header.dt_limit };
             let limits = [limit(RoleName::Fluid, fluid.header()), limit(RoleName::Solid, solid.header())];
@@ -102,7 +103,8 @@ impl<S: Transport, const D: usize> Coupler<S, D> {
             let grown = recorder.judge(step, time, Some(&fluid.header().audit), of_solid, work);
             // Energy from nowhere ends the run in order, with its last state on disk.
             let tick = clock.tick(&limits, stopped || grown.is_some())?;
-            self.answer(&tick, 0, &fluid, &solid)?;
+            let first = tick.half_step();
+            self.answer(&tick, &first, &fluid, &solid)?;
             let mut of_solid = Measured::of(solid.header());
             if let Some(foreign) = &mut self.foreign {
                 if tick.frame {
@@ -115,9 +117,8 @@ impl<S: Transport, const D: usize> Coupler<S, D> {
             }
             recorder.note(&tick, Some(Measured::of(fluid.header())), Some(of_solid))?;
             drop((fluid, solid));
-            let Some(dt) = tick.dt else {
-                let last = Expect::new(step, 2).time(time);
-                let (fluid, solid) = self.receive(&last)?;
+            if tick.dt.is_none() {
+                let (fluid, solid) = self.receive(&Expect::last(step).time(time))?;
                 if let Some(foreign) = self.foreign.take() {
                     foreign.finish()?;
                 }
@@ -125,11 +126,12 @@ impl<S: Transport, const D: usize> Coupler<S, D> {
                     return Err(diverged.into());
                 }
                 return Ok(self.outcome(stopped, *fluid.header(), *solid.header()));
-            };
-            let (fluid, solid) = self.receive(&Expect::new(step, 1).time(time).dt(dt))?;
-            self.answer(&tick, 1, &fluid, &solid)?;
+            }
+            let second = first.next();
+            let (fluid, solid) = self.receive(&Expect::of(&second))?;
+            self.answer(&tick, &second, &fluid, &solid)?;
             clock.advance(&tick);
-            (step, time) = (step + 1, tick.next_time);
+            half_step = second.next();
         }
     }
 
@@ -140,7 +142,7 @@ impl<S: Transport, const D: usize> Coupler<S, D> {
         reject_failure(RoleName::Solid, solid.header())?;
         let fluid = self.link.receive_state(RoleName::Fluid, expect)?;
         reject_failure(RoleName::Fluid, fluid.header())?;
-        if expect.stage < 2 {
+        if !expect.is_last() {
             let count = *self.solid_count.get_or_insert(solid.records().len());
             if count != solid.records().len() {
                 return Err(RunError::SolidCount {
@@ -171,22 +173,14 @@ impl<S: Transport, const D: usize> Coupler<S, D> {
     fn answer(
         &mut self,
         tick: &Tick,
-        stage: u32,
+        half_step: &HalfStep,
         fluid: &StateSample<S>,
         solid: &StateSample<S>,
     ) -> Result<(), RunError> {
         let start = Instant::now();
         let mut orders = if tick.dt.is_some() { order::GO } else { order::STOP };
-        let mut header = ForceHeader {
-            step: tick.step,
-            stage,
-            epoch: fluid.header().epoch,
-            time: tick.time,
-            dt: tick.dt.unwrap_or(0.0),
-            next_time: tick.next_time,
-            ..ForceHeader::default()
-        };
-        if stage == 0 && tick.frame {
+        let mut header = ForceHeader { epoch: fluid.header().epoch, ..half_step.force_header() };
+        if half_step.stage == Stage::First && tick.frame {
             orders |= order::WRITE_FRAME;
             header.frame = self.frame;
             self.frame += 1;

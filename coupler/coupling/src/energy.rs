@@ -18,6 +18,7 @@ use halfstep_role::role::audit;
 use halfstep_scene::bounds::flow_speed;
 use halfstep_scene::{Phase, Scene, Treatment};
 use halfstep_wire::failure::{Diverged, Quantity, RoleName};
+use halfstep_wire::half_step::Stage;
 
 /// Largest growth of the fluid: a tenth of the energy in play.
 pub const LIMIT: f64 = 0.1;
@@ -141,7 +142,15 @@ impl EnergyBalance {
 
 /// How the run says so.
 pub(crate) fn diverged((role, value): (RoleName, f64), step: u64) -> Diverged {
-    Diverged { role, particle: 0, quantity: Quantity::Energy, value, step, stage: 0, position: [0.0; 3] }
+    Diverged {
+        role,
+        particle: 0,
+        quantity: Quantity::Energy,
+        value,
+        step,
+        stage: Stage::First,
+        position: [0.0; 3],
+    }
 }
 
 #[cfg(test)]

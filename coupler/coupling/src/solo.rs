@@ -7,6 +7,7 @@ use halfstep_output::FrameWriter;
 use halfstep_output::run_json::RoleSeconds;
 use halfstep_role::role::{Costs, Role};
 use halfstep_wire::failure::RoleName;
+use halfstep_wire::half_step::Stage;
 use halfstep_wire::protocol::MAX_PROBE_VALUES;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -79,7 +80,7 @@ pub fn run_solo(
         if let Some(diverged) = grown {
             return Err(diverged.into());
         }
-        let Some(dt) = tick.dt else {
+        if tick.dt.is_none() {
             return Ok(SoloOutcome {
                 stopped,
                 state_hash: role.state_hash(),
@@ -87,18 +88,17 @@ pub fn run_solo(
                 costs: role.costs().of(in_sums, seconds.compute),
                 pair_evaluations: role.pair_evaluations(),
             });
-        };
-        for stage in 0..2 {
-            if stage == 1 {
-                role.set_time(tick.time + 0.5 * dt);
+        }
+        for half_step in tick.half_step().both() {
+            if half_step.stage == Stage::Second {
+                role.set_time(half_step.before());
                 role.publish(&[], &mut scratch);
                 let start = Instant::now();
                 role.own_sums();
                 in_sums += start.elapsed().as_secs_f64();
             }
-            if let Err(diverged) = role.advance(tick.step, stage, dt, &[]) {
-                let time = tick.time + if stage == 0 { 0.5 * dt } else { dt };
-                if let Err(error) = writer.submit(frame, |f| role.fill_frame(time, f)) {
+            if let Err(diverged) = role.advance(&half_step, &[]) {
+                if let Err(error) = writer.submit(frame, |f| role.fill_frame(half_step.after(), f)) {
                     tracing::warn!("the last frame could not be written: {error}");
                 }
                 return Err(diverged.into());

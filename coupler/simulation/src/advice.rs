@@ -56,6 +56,7 @@ mod tests {
     use super::*;
     use halfstep_coupling::clock::Limit;
     use halfstep_scene as scene;
+    use halfstep_wire::half_step::Stage;
     use std::path::Path;
 
     const DIVERGED: Diverged = Diverged {
@@ -64,7 +65,7 @@ mod tests {
         quantity: Quantity::Speed,
         value: 300.0,
         step: 7,
-        stage: 0,
+        stage: Stage::First,
         position: [0.0; 3],
     };
 

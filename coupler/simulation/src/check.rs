@@ -9,6 +9,7 @@ use halfstep_scene::{self as scene, Scene, TimeStep};
 use halfstep_solid::SubStepping;
 use halfstep_sph::lane::Isa;
 use halfstep_wire::failure::RoleName;
+use halfstep_wire::half_step::HalfStep;
 use std::fmt::Write;
 use std::time::Instant;
 
@@ -87,10 +88,10 @@ fn step_cost(role: &mut dyn Role, dt: f64) -> Option<f64> {
     let mut best = f64::INFINITY;
     for step in 0..4 {
         let start = Instant::now();
-        for stage in 0..2 {
+        for half_step in HalfStep::begin(step, 0.0).lasting(dt).both() {
             role.publish(&[], &mut record);
             role.own_sums();
-            role.advance(step, stage, dt, &[]).ok()?;
+            role.advance(&half_step, &[]).ok()?;
         }
         best = best.min(start.elapsed().as_secs_f64());
     }

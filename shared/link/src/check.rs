@@ -2,8 +2,10 @@
 
 use super::{LinkConfig, LinkError};
 use halfstep_wire::failure::RoleName;
+use halfstep_wire::half_step::{HalfStep, Stage};
 use halfstep_wire::protocol::{
-    ForceHeader, ForceRecord, MAX_PROBE_VALUES, PROTOCOL, SCHEMA, StateHeader, StateRecord, order, status,
+    ForceHeader, ForceRecord, LAST_STAGE, MAX_PROBE_VALUES, PROTOCOL, SCHEMA, StateHeader, StateRecord,
+    order, status,
 };
 use std::fmt::Display;
 
@@ -12,8 +14,8 @@ use std::fmt::Display;
 pub struct Expect {
     /// Step n.
     pub step: u64,
-    /// Stage of the step.
-    pub stage: u32,
+    /// Stage of the step as its number on the wire.
+    stage: u32,
     /// Time of step n, s, bit for bit; `None` where the receiver does not know it.
     pub time: Option<f64>,
     /// Time step, s, bit for bit; `None` where the receiver does not know it.
@@ -22,8 +24,27 @@ pub struct Expect {
 
 impl Expect {
     /// The message of this step and stage, at any time.
-    pub fn new(step: u64, stage: u32) -> Self {
-        Self { step, stage, time: None, dt: None }
+    pub fn new(step: u64, stage: Stage) -> Self {
+        Self { step, stage: stage.number(), time: None, dt: None }
+    }
+
+    /// The message of this half-step at its time; from the second stage on with its time step.
+    pub fn of(half_step: &HalfStep) -> Self {
+        let expect = Self::new(half_step.step, half_step.stage).time(half_step.time);
+        match half_step.stage {
+            Stage::First => expect,
+            Stage::Second => expect.dt(half_step.dt),
+        }
+    }
+
+    /// The last message of a run that ends with the state of step n, at any time.
+    pub fn last(step: u64) -> Self {
+        Self { step, stage: LAST_STAGE, time: None, dt: None }
+    }
+
+    /// Whether it is the last message.
+    pub fn is_last(&self) -> bool {
+        self.stage == LAST_STAGE
     }
 
     /// With this time of step n, s.
@@ -171,13 +192,13 @@ impl StateCheck {
         match header.status {
             status::OK => {}
             status::DIVERGED | status::FAILED => return Ok(()),
-            status::FINISHED => return check.equal("stage", 2, header.stage),
+            status::FINISHED => return check.equal("stage", LAST_STAGE, header.stage),
             unknown => return Err(check.mismatch("status", "0 to 3", unknown)),
         }
         check.position(header.step, header.stage, header.time, header.dt)?;
         check.finite("dt_limit", header.dt_limit)?;
         check.finite("displacement", header.displacement)?;
-        if header.stage == 0 && header.dt_limit <= 0.0 {
+        if header.stage == Stage::First.number() && header.dt_limit <= 0.0 {
             return Err(check.mismatch("dt_limit", "a positive number", header.dt_limit));
         }
         if header.probe_count > MAX_PROBE_VALUES as u64 {
@@ -250,7 +271,7 @@ pub(super) fn verify_forces(
         return Err(check.mismatch("order", "one of go and stop", header.order));
     }
     if stops {
-        return check.equal("stage", 0, header.stage);
+        return check.equal("stage", Stage::First.number(), header.stage);
     }
     if header.dt <= 0.0 {
         return Err(check.mismatch("dt", "a positive number", header.dt));

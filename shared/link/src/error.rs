@@ -18,7 +18,7 @@ pub enum LinkError {
         found: String,
         /// The step that the receiver is at.
         step: u64,
-        /// The stage that the receiver is at.
+        /// The stage that the receiver is at, as its number on the wire.
         stage: u32,
     },
     /// A message carries an infinity or a NaN without saying that its sender failed.
@@ -37,7 +37,7 @@ pub enum LinkError {
         value: f64,
         /// The step that the receiver is at.
         step: u64,
-        /// The stage that the receiver is at.
+        /// The stage that the receiver is at, as its number on the wire.
         stage: u32,
     },
     /// A peer ended or was killed while a message of it was due.

@@ -7,7 +7,8 @@ use halfstep_link::{Expect, LinkConfig, LinkError, PhaseLink, Processes, Transpo
 use halfstep_scene::Scene;
 use halfstep_wire::failure::{Diverged, Quantity, RoleName};
 use halfstep_wire::frame::{FrameSink, SinkError};
-use halfstep_wire::protocol::{MAX_PROBE_VALUES, StateHeader, StateRecord, order, status};
+use halfstep_wire::half_step::{HalfStep, Stage};
+use halfstep_wire::protocol::{LAST_STAGE, MAX_PROBE_VALUES, StateHeader, StateRecord, order, status};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -32,7 +33,7 @@ pub enum RoleError {
         peer: RoleName,
         /// Step n.
         step: u64,
-        /// Stage.
+        /// Stage of its message, as the number on the wire.
         stage: u32,
     },
     /// The process was not started as a role.
@@ -56,6 +57,7 @@ pub fn serve<S: Transport>(
         own: Vec::new(),
         peer: Vec::new(),
         peer_epoch: 0,
+        half_step: HalfStep::begin(0, 0.0),
         header: StateHeader::default(),
         frames: 0,
         at: 0.0,
@@ -95,6 +97,7 @@ struct Server<S: Transport> {
     own: Vec<StateRecord>,
     peer: Vec<StateRecord>,
     peer_epoch: u64,
+    half_step: HalfStep,
     header: StateHeader,
     /// Number of the next frame.
     frames: u32,
@@ -115,67 +118,59 @@ impl<S: Transport> Server<S> {
         role: &mut dyn Role,
         writer: &mut Option<Box<dyn FrameSink>>,
     ) -> Result<StateHeader, RoleError> {
-        let (mut step, mut time, mut dt) = (0, 0.0, 0.0);
         // The fluid needs the solid's first state to choose what it publishes.
         let mut have_peer = false;
         if role.name() == RoleName::Fluid {
-            self.receive_peer(&Expect::new(0, 0).time(0.0))?;
+            self.receive_peer(&Expect::of(&self.half_step))?;
             have_peer = true;
         }
         loop {
-            for stage in 0..2 {
-                let mut expect = Expect::new(step, stage).time(time);
-                if stage == 1 {
-                    expect = expect.dt(dt);
-                }
-                let start = Instant::now();
-                role.set_time(if stage == 0 { time } else { time + 0.5 * dt });
-                let epoch = role.publish(&self.peer, &mut self.own);
-                self.describe(role, writer.as_deref(), step, stage, epoch, time, dt);
-                self.compute += start.elapsed();
-                let sent = Instant::now();
-                self.link.send_state(&self.header, &self.own)?;
-                let start = Instant::now();
-                role.own_sums();
-                self.sums += start.elapsed();
-                self.compute += start.elapsed();
-                if !std::mem::take(&mut have_peer) {
-                    self.receive_peer(&expect)?;
-                }
-                let fluid_epoch = if role.name() == RoleName::Fluid { epoch } else { self.peer_epoch };
-                let start = Instant::now();
-                role.cross_sums(&self.own, &self.peer, fluid_epoch)
-                    .map_err(|lost| self.fastest(role.name(), &lost, step, stage))?;
-                self.cross += start.elapsed();
-                self.compute += start.elapsed();
-
-                // At stage 0 the answer brings the time step.
-                let forces = self.link.receive_forces(&expect)?;
-                self.latency.add(sent.elapsed());
-                let answer = *forces.header();
-                dt = answer.dt;
-                self.at = if stage == 0 { time + 0.5 * dt } else { answer.next_time };
-                if answer.order & order::WRITE_FRAME != 0
-                    && let Some(writer) = writer
-                {
-                    let start = Instant::now();
-                    let submitted =
-                        writer.submit(answer.frame as u32, &mut |frame| role.fill_frame(time, frame));
-                    submitted.map_err(RoleError::Frames)?;
-                    self.frames = answer.frame as u32 + 1;
-                    self.output += start.elapsed();
-                }
-                if answer.order & order::STOP != 0 {
-                    return Ok(self.header);
-                }
-                let start = Instant::now();
-                role.advance(step, stage, dt, forces.records())?;
-                self.compute += start.elapsed();
-                if stage == 1 {
-                    time = answer.next_time;
-                }
+            let half_step = self.half_step;
+            let expect = Expect::of(&half_step);
+            let start = Instant::now();
+            role.set_time(half_step.before());
+            let epoch = role.publish(&self.peer, &mut self.own);
+            self.describe(role, writer.as_deref(), epoch);
+            self.compute += start.elapsed();
+            let sent = Instant::now();
+            self.link.send_state(&self.header, &self.own)?;
+            let start = Instant::now();
+            role.own_sums();
+            self.sums += start.elapsed();
+            self.compute += start.elapsed();
+            if !std::mem::take(&mut have_peer) {
+                self.receive_peer(&expect)?;
             }
-            step += 1;
+            let fluid_epoch = if role.name() == RoleName::Fluid { epoch } else { self.peer_epoch };
+            let start = Instant::now();
+            role.cross_sums(&self.own, &self.peer, fluid_epoch)
+                .map_err(|lost| self.fastest(role.name(), &lost))?;
+            self.cross += start.elapsed();
+            self.compute += start.elapsed();
+
+            // At the first stage the answer brings the time step.
+            let forces = self.link.receive_forces(&expect)?;
+            self.latency.add(sent.elapsed());
+            let answer = *forces.header();
+            let half_step = half_step.told(answer.dt, answer.next_time);
+            self.at = half_step.after();
+            if answer.order & order::WRITE_FRAME != 0
+                && let Some(writer) = writer
+            {
+                let start = Instant::now();
+                let submitted =
+                    writer.submit(answer.frame as u32, &mut |frame| role.fill_frame(half_step.time, frame));
+                submitted.map_err(RoleError::Frames)?;
+                self.frames = answer.frame as u32 + 1;
+                self.output += start.elapsed();
+            }
+            if answer.order & order::STOP != 0 {
+                return Ok(self.header);
+            }
+            let start = Instant::now();
+            role.advance(&half_step, forces.records())?;
+            self.compute += start.elapsed();
+            self.half_step = half_step.next();
         }
     }
 
@@ -192,43 +187,28 @@ impl<S: Transport> Server<S> {
         Ok(())
     }
 
-    #[allow(clippy::too_many_arguments)]
-    fn describe(
-        &mut self,
-        role: &dyn Role,
-        writer: Option<&dyn FrameSink>,
-        step: u64,
-        stage: u32,
-        epoch: u64,
-        time: f64,
-        dt: f64,
-    ) {
+    fn describe(&mut self, role: &dyn Role, writer: Option<&dyn FrameSink>, epoch: u64) {
         let mut header = StateHeader {
             status: status::OK,
-            step,
-            stage,
             epoch,
-            time,
             displacement: role.displacement(),
             sub_steps: role.sub_steps(),
             frames_safe: writer.map_or(0, |w| w.safe()),
             particles: role.particles(),
-            ..StateHeader::default()
+            ..self.half_step.state_header()
         };
-        if stage == 0 {
+        if self.half_step.stage == Stage::First {
             header.dt_limit = role.dt_limit();
             let mut probes = [0.0; MAX_PROBE_VALUES];
             header.probe_count = role.probes(&mut probes) as u64;
             header.probes = probes;
             header.audit = role.audit();
-        } else {
-            header.dt = dt;
         }
         self.header = header;
     }
 
     /// Coverage is lost when a particle moves half a smoothing length in one half-step: it is the one to name.
-    fn fastest(&self, own: RoleName, lost: &CoverageError, step: u64, stage: u32) -> Diverged {
+    fn fastest(&self, own: RoleName, lost: &CoverageError) -> Diverged {
         tracing::error!("{lost}");
         let role = if lost.fluid > lost.solid { RoleName::Fluid } else { RoleName::Solid };
         let records = if role == own { &self.own } else { &self.peer };
@@ -240,8 +220,8 @@ impl<S: Transport> Server<S> {
             particle: record.id,
             quantity: Quantity::Speed,
             value: speed(&record),
-            step,
-            stage,
+            step: self.half_step.step,
+            stage: self.half_step.stage,
             position: record.position,
         }
     }
@@ -250,7 +230,7 @@ impl<S: Transport> Server<S> {
         let times = self.link.times();
         let mut header = StateHeader {
             status: status::FINISHED,
-            stage: 2,
+            stage: LAST_STAGE,
             frames_safe,
             state_hash: role.state_hash(),
             seconds: [self.compute, times.wait, times.exchange, self.output].map(|d| d.as_secs_f64()),
@@ -269,9 +249,9 @@ impl<S: Transport> Server<S> {
     }
 
     fn report_failure(&mut self, error: &RoleError) {
-        let mut header = StateHeader { status: status::FAILED, ..self.header };
         // It takes the place of the next state.
-        (header.step, header.stage) = if header.stage == 0 { (header.step, 1) } else { (header.step + 1, 0) };
+        let (step, stage) = self.half_step.stage.following(self.half_step.step);
+        let mut header = StateHeader { status: status::FAILED, step, stage: stage.number(), ..self.header };
         match error {
             RoleError::Diverged(diverged) => diverged.tell(self.link.role(), &mut header),
             // The exchange itself is broken, or the other side knows already.

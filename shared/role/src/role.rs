@@ -3,6 +3,7 @@
 use halfstep_scene::EffectName;
 use halfstep_wire::failure::{Diverged, RoleName};
 use halfstep_wire::frame::Frame;
+use halfstep_wire::half_step::HalfStep;
 use halfstep_wire::protocol::{ForceRecord, MAX_PROBE_VALUES, StateRecord};
 use std::time::Instant;
 
@@ -81,11 +82,11 @@ pub trait Role: Send {
         peer: &[StateRecord],
         epoch: u64,
     ) -> Result<(), CoverageError>;
-    /// Advances to n + 1/2 (`stage` 0) or to n + 1 (`stage` 1). `forces` answer the record last published.
+    /// Goes from n over the half-step's span, to n + 1/2 or to n + 1. `forces` answer the record last published.
     ///
     /// # Errors
     /// A quantity left its bounds.
-    fn advance(&mut self, step: u64, stage: u32, dt: f64, forces: &[ForceRecord]) -> Result<(), Diverged>;
+    fn advance(&mut self, half_step: &HalfStep, forces: &[ForceRecord]) -> Result<(), Diverged>;
     /// Sub-steps of the last full step.
     fn sub_steps(&self) -> u32 {
         1

@@ -1,5 +1,6 @@
 //! A simulation that left its bounds: who, where, which quantity.
 
+use crate::half_step::Stage;
 use crate::protocol::{StateHeader, status};
 pub use halfstep_sph::quantity::Quantity;
 
@@ -48,8 +49,8 @@ pub struct Diverged {
     pub value: f64,
     /// Step n.
     pub step: u64,
-    /// 0 or 1.
-    pub stage: u32,
+    /// Stage of the step.
+    pub stage: Stage,
     /// Where, m.
     pub position: [f64; 3],
 }
@@ -93,13 +94,14 @@ impl Diverged {
         let number = header.failure_quantity;
         let (role, number) =
             if number > OF_PEER { (sender.peer(), number - OF_PEER) } else { (sender, number) };
+        let (step, stage) = Stage::try_from(header.stage).unwrap_or(Stage::First).preceding(header.step);
         Self {
             role,
             particle: header.failure_particle,
             quantity: Quantity::from_wire(number).unwrap_or(Quantity::Position),
             value: header.failure_value,
-            step: if header.stage == 1 { header.step } else { header.step.saturating_sub(1) },
-            stage: 1 - header.stage.min(1),
+            step,
+            stage,
             position: header.failure_position,
         }
     }
@@ -117,7 +119,7 @@ mod tests {
             quantity: Quantity::Energy,
             value: 12.5,
             step: 7,
-            stage: 0,
+            stage: Stage::First,
             position: [0.0; 3],
         };
         let text = diverged.to_string();
@@ -141,7 +143,7 @@ mod tests {
                 quantity: Quantity::Speed,
                 value: 250.0,
                 step: 41,
-                stage: 1,
+                stage: Stage::Second,
                 position: [1.0, 2.0, 0.0],
             };
             // The state of step 41, stage 1 was the last one: the message stands for step 42, stage 0.

@@ -2,6 +2,7 @@
 
 pub mod failure;
 pub mod frame;
+pub mod half_step;
 pub mod protocol;
 
 /// A vector of the scene's dimension as the three components of the wire and of files.

@@ -79,6 +79,9 @@ pub mod order {
     pub const STOP: u32 = 8;
 }
 
+/// [`StateHeader::stage`] of a last message.
+pub const LAST_STAGE: u32 = 2;
+
 /// Heads every state message.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

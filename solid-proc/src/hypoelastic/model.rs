@@ -14,7 +14,8 @@ use halfstep_scene::{EffectName, KernelName, Scene, Solid};
 use halfstep_sph::columns::{copy, fit, moved_farther};
 use halfstep_sph::lane::Isa;
 use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
-use halfstep_sph::quantity::Quantity;
+use halfstep_wire::failure::Quantity;
+use halfstep_wire::half_step::{HalfStep, Stage};
 use halfstep_wire::protocol::StateRecord;
 use halfstep_wire::wide;
 use halfstep_wire::wire_component;
@@ -276,21 +277,22 @@ impl<const D: usize> SolidModel<D> for Hypoelastic<D> {
         self.courant * self.resolution / self.material.pressure_wave_speed()
     }
 
-    fn advance(&mut self, stage: u32, dt: f64, sub_steps: u32, load: &Load<D>) -> Result<(), OutOfBounds> {
+    fn advance(&mut self, half_step: &HalfStep, sub_steps: u32, load: &Load<D>) -> Result<(), OutOfBounds> {
+        let first = half_step.stage == Stage::First;
         if sub_steps == 1 {
-            if stage == 0 {
+            if first {
                 self.at_n.copy_from(&self.now);
             }
             self.compute_rates(load);
-            self.integrate(if stage == 0 { 0.5 * dt } else { dt });
+            self.integrate(half_step.span());
             self.show_own_velocity();
-        } else if stage == 0 {
+        } else if first {
             self.step_start.copy_from(&self.now);
-            self.sub_step(sub_steps / 2, 0.5 * dt, load);
+            self.sub_step(sub_steps / 2, half_step.span(), load);
         } else {
             self.now.copy_from(&self.step_start);
             self.apply_state_equation();
-            self.sub_step(sub_steps, dt, load);
+            self.sub_step(sub_steps, half_step.span(), load);
         }
         self.check()
     }

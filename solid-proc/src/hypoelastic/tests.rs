@@ -4,6 +4,7 @@ use crate::hypoelastic::Hypoelastic;
 use crate::model::{Load, SolidModel};
 use halfstep_scene::{self as scene, Scene};
 use halfstep_sph::lane::Isa;
+use halfstep_wire::half_step::HalfStep;
 use proptest::prelude::*;
 use std::path::Path;
 
@@ -125,8 +126,9 @@ proptest! {
         let speed: f64 = (0..solid.particles() as u32).map(|p| solid.velocity(p)[0].hypot(solid.velocity(p)[1])).sum();
         let before = momentum(&solid);
         for _ in 0..5 {
-            solid.advance(0, dt, 1, &load).unwrap();
-            solid.advance(1, dt, 1, &load).unwrap();
+            for half_step in HalfStep::begin(0, 0.0).lasting(dt).both() {
+                solid.advance(&half_step, 1, &load).unwrap();
+            }
         }
         let after = momentum(&solid);
         for d in 0..2 {

@@ -20,6 +20,7 @@ use halfstep_sph::lane::{Isa, LANES};
 use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_sph::pair::FixedPairs;
 use halfstep_sph::with_kernel;
+use halfstep_wire::half_step::{HalfStep, Stage};
 use halfstep_wire::protocol::StateRecord;
 use halfstep_wire::wide;
 use halfstep_wire::wire_component;
@@ -340,17 +341,20 @@ impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {
         self.courant * self.resolution / speed
     }
 
-    fn advance(&mut self, stage: u32, dt: f64, sub_steps: u32, load: &Load<D>) -> Result<(), OutOfBounds> {
+    fn advance(&mut self, half_step: &HalfStep, sub_steps: u32, load: &Load<D>) -> Result<(), OutOfBounds> {
         self.take_load(load);
-        if stage == 0 {
-            self.at_n.copy_from(&self.now);
-            self.sub_step((sub_steps / 2).max(1), 0.5 * dt);
-            self.show(sub_steps, 0.5 * dt);
-        } else {
-            self.now.copy_from(&self.at_n);
-            self.sub_step(sub_steps, dt);
-            self.show(sub_steps, dt);
+        let span = half_step.span();
+        match half_step.stage {
+            Stage::First => {
+                self.at_n.copy_from(&self.now);
+                self.sub_step((sub_steps / 2).max(1), span);
+            }
+            Stage::Second => {
+                self.now.copy_from(&self.at_n);
+                self.sub_step(sub_steps, span);
+            }
         }
+        self.show(sub_steps, span);
         self.check()
     }
 

@@ -5,6 +5,7 @@ use crate::model::{Load, SolidModel};
 use crate::total_lagrangian::TotalLagrangian;
 use halfstep_scene::{self as scene, Scene};
 use halfstep_sph::lane::Isa;
+use halfstep_wire::half_step::HalfStep;
 use nalgebra::Rotation2;
 use proptest::prelude::*;
 use std::path::Path;
@@ -225,8 +226,8 @@ fn energy_is_kept_without_viscosity() {
     let (start, dt) = (energy(&body).0, body.sub_step_limit());
     let mut stored = 0.0_f64;
     for _ in 0..(0.04 / dt) as usize {
-        for stage in 0..2 {
-            body.advance(stage, dt, 1, &load).unwrap();
+        for half_step in HalfStep::begin(0, 0.0).lasting(dt).both() {
+            body.advance(&half_step, 1, &load).unwrap();
         }
         let (total, strain) = energy(&body);
         stored = stored.max(strain / start);
@@ -243,8 +244,8 @@ fn viscosity_takes_energy_away() {
         let load = Load::none(body.particles());
         let dt = 0.5 * body.sub_step_limit();
         for _ in 0..300 {
-            for stage in 0..2 {
-                body.advance(stage, dt, 1, &load).unwrap();
+            for half_step in HalfStep::begin(0, 0.0).lasting(dt).both() {
+                body.advance(&half_step, 1, &load).unwrap();
             }
         }
         let v2 = (0..body.particles() as u32).map(|p| body.velocity(p).iter().map(|v| v * v).sum::<f64>());

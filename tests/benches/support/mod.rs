@@ -16,6 +16,7 @@ use halfstep_sph::lane::{Isa, LANES};
 use halfstep_sph::neighbours::PADDING;
 use halfstep_sph::pair;
 use halfstep_tests::patch;
+use halfstep_wire::half_step::HalfStep;
 use std::path::Path;
 use std::time::Instant;
 
@@ -85,10 +86,10 @@ impl Running {
     /// One step of two stages; returns its length, s.
     pub(crate) fn step(&mut self) -> f64 {
         let dt = self.role.dt_limit();
-        for stage in 0..2 {
+        for half_step in HalfStep::begin(self.step, 0.0).lasting(dt).both() {
             self.role.publish(&[], &mut Vec::new());
             self.role.own_sums();
-            self.role.advance(self.step, stage, dt, &[]).expect("a stable step");
+            self.role.advance(&half_step, &[]).expect("a stable step");
         }
         self.step += 1;
         dt

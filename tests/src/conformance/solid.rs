@@ -5,7 +5,8 @@ use halfstep_scene::geometry;
 use halfstep_scene::{self as scene, Scene};
 use halfstep_solid::{Load, SolidModel};
 use halfstep_sph::lane::Isa;
-use halfstep_sph::quantity::Quantity;
+use halfstep_wire::failure::Quantity;
+use halfstep_wire::half_step::HalfStep;
 use std::path::Path;
 
 /// A model under test.
@@ -64,10 +65,15 @@ fn all(model: &Model) -> impl Iterator<Item = u32> + use<> {
     0..model.particles() as u32
 }
 
+/// The stages of a step of this length, s, whenever it is.
+fn both(dt: f64) -> [HalfStep; 2] {
+    HalfStep::begin(0, 0.0).lasting(dt).both()
+}
+
 /// One step of the lock-step under one load.
 fn step(model: &mut Model, dt: f64, sub_steps: u32, load: &Load<2>) {
-    for stage in 0..2 {
-        model.advance(stage, dt, sub_steps, load).expect("within bounds");
+    for half_step in both(dt) {
+        model.advance(&half_step, sub_steps, load).expect("within bounds");
     }
 }
 
@@ -160,12 +166,12 @@ pub fn stage_0_is_forgotten(make: Make) {
         let ends = [&loads[1], &loads[2]].map(|first| {
             let mut model = model(make, &[BLOCK], &[]);
             assert_eq!(model.particles(), 300);
-            let dt = f64::from(sub_steps) * model.sub_step_limit();
+            let [stage_0, stage_1] = both(f64::from(sub_steps) * model.sub_step_limit());
             let start = model.record(7).position;
             for _ in 0..5 {
-                model.advance(0, dt, sub_steps, first).unwrap();
+                model.advance(&stage_0, sub_steps, first).unwrap();
                 let middle = model.record(7).position;
-                model.advance(1, dt, sub_steps, &loads[1]).unwrap();
+                model.advance(&stage_1, sub_steps, &loads[1]).unwrap();
                 assert_ne!(middle, model.record(7).position);
             }
             assert_ne!(start, model.record(7).position);
@@ -303,9 +309,9 @@ pub fn bounds(make: Make) {
     let swing = ["shape.block.cantilever_mode={fraction=0.01,root=0.0,length=0.2}"];
     let mut unstable = model(make, &[BLOCK], &swing);
     let load = Load::none(unstable.particles());
-    let dt = 4.0 * unstable.sub_step_limit();
+    let stages = both(4.0 * unstable.sub_step_limit());
     let failure = (0..100)
-        .find_map(|_| (0..2).find_map(|stage| unstable.advance(stage, dt, 1, &load).err()))
+        .find_map(|_| stages.iter().find_map(|stage| unstable.advance(stage, 1, &load).err()))
         .expect("unstable");
     assert!([Quantity::Density, Quantity::Speed].contains(&failure.quantity), "{failure:?}");
     assert!((failure.particle as usize) < unstable.particles());
@@ -313,8 +319,8 @@ pub fn bounds(make: Make) {
     let mut poisoned = model(make, &[BLOCK], &[]);
     let mut load = Load::none(poisoned.particles());
     load.force[17] = [f64::NAN, 0.0];
-    let dt = poisoned.sub_step_limit();
-    let failure = poisoned.advance(0, dt, 1, &load).expect_err("no number");
+    let [stage_0, _] = both(poisoned.sub_step_limit());
+    let failure = poisoned.advance(&stage_0, 1, &load).expect_err("no number");
     assert_eq!(failure.quantity, Quantity::Speed);
     let (named, cause) = (poisoned.reference(failure.particle), poisoned.reference(17));
     // In one evaluation it spreads to whatever is listed together with a neighbour.

@@ -5,6 +5,7 @@ use super::play;
 use super::raw::{RawCoupler, RawPhase, identified, identified_force};
 use halfstep_link::{CouplerLink, Expect, LinkError, PhaseLink, Transport};
 use halfstep_wire::failure::RoleName::{self, Coupler, Fluid, Solid};
+use halfstep_wire::half_step::Stage::{First, Second};
 use halfstep_wire::protocol::{ForceHeader, ForceRecord, StateHeader, StateRecord, order};
 use std::thread::scope;
 
@@ -80,10 +81,16 @@ const STEP: u64 = 370;
 fn is_about(error: &LinkError, sender: RoleName, wrong: &str) -> bool {
     match error {
         LinkError::Mismatch { peer, field, expected, found, step, stage } => {
-            *peer == sender && *field == wrong && expected != found && (*step, *stage) == (STEP, 1)
+            *peer == sender
+                && *field == wrong
+                && expected != found
+                && (*step, *stage) == (STEP, Second.number())
         }
         LinkError::NotFinite { peer, field, value, step, stage, .. } => {
-            *peer == sender && *field == wrong && !value.is_finite() && (*step, *stage) == (STEP, 1)
+            *peer == sender
+                && *field == wrong
+                && !value.is_finite()
+                && (*step, *stage) == (STEP, Second.number())
         }
         _ => false,
     }
@@ -96,8 +103,8 @@ pub fn wrong_states<S: Transport>() {
         let run = Run::new(100, 100);
         let run = &*run;
         let (time, dt) = play::clock(STEP);
-        let first = Expect::new(STEP, 0).time(time).dt(0.0);
-        let second = Expect::new(STEP, 1).time(time).dt(dt);
+        let first = Expect::new(STEP, First).time(time).dt(0.0);
+        let second = Expect::new(STEP, Second).time(time).dt(dt);
         let verdict = |receiver: &str, result: Result<(), LinkError>| match result {
             Ok(()) => assert!(field.is_empty(), "{receiver} accepted a wrong {field}"),
             Err(error) => assert!(is_about(&error, Fluid, field), "{receiver}: {error} instead of {field}"),
@@ -108,11 +115,11 @@ pub fn wrong_states<S: Transport>() {
                 let records = |stage| -> Vec<_> {
                     (0..play::count(Fluid, STEP)).map(|slot| play::state(Fluid, STEP, stage, slot)).collect()
                 };
-                let mut records_0 = records(0);
+                let mut records_0 = records(First);
                 let header = |stage, count| identified(run, play::state_header(Fluid, STEP, stage), count);
-                fluid.send(header(0, records_0.len()), &records_0);
-                let mut header_1 = header(1, records_0.len());
-                records_0 = records(1);
+                fluid.send(header(First, records_0.len()), &records_0);
+                let mut header_1 = header(Second, records_0.len());
+                records_0 = records(Second);
                 spoil(&mut header_1, &mut records_0);
                 fluid.send(header_1, &records_0);
                 linger(|| fluid.peer.receive().unwrap().is_some());
@@ -121,12 +128,12 @@ pub fn wrong_states<S: Transport>() {
                 let mut solid = PhaseLink::<S>::open(run, Solid, None).unwrap();
                 drop(solid.receive_peer(&first).unwrap());
                 verdict("the solid", solid.receive_peer(&second).map(drop));
-                solid.send_state(&play::state_header(Solid, STEP, 0), &[]).unwrap();
+                solid.send_state(&play::state_header(Solid, STEP, First), &[]).unwrap();
             });
             let mut coupler = CouplerLink::<S>::open(run, None).unwrap();
             drop(coupler.receive_state(Fluid, &first).unwrap());
             verdict("the coupler", coupler.receive_state(Fluid, &second).map(drop));
-            drop(coupler.receive_state(Solid, &Expect::new(STEP, 0)).unwrap());
+            drop(coupler.receive_state(Solid, &Expect::new(STEP, First)).unwrap());
         });
     }
 }
@@ -141,20 +148,21 @@ pub fn wrong_forces<S: Transport>() {
         scope(|threads| {
             threads.spawn(move || {
                 let mut fluid = PhaseLink::<S>::open(run, Fluid, None).unwrap();
-                let records: Vec<_> =
-                    (0..play::count(Fluid, STEP)).map(|slot| play::state(Fluid, STEP, 1, slot)).collect();
-                fluid.send_state(&play::state_header(Fluid, STEP, 1), &records).unwrap();
-                match fluid.receive_forces(&Expect::new(STEP, 1).time(time).dt(dt)).map(drop) {
+                let records: Vec<_> = (0..play::count(Fluid, STEP))
+                    .map(|slot| play::state(Fluid, STEP, Second, slot))
+                    .collect();
+                fluid.send_state(&play::state_header(Fluid, STEP, Second), &records).unwrap();
+                match fluid.receive_forces(&Expect::new(STEP, Second).time(time).dt(dt)).map(drop) {
                     Ok(()) => assert!(field.is_empty(), "accepted a wrong {field}"),
                     Err(error) => assert!(is_about(&error, Coupler, field), "{error} instead of {field}"),
                 }
-                fluid.send_state(&play::state_header(Fluid, STEP, 1), &records).unwrap();
+                fluid.send_state(&play::state_header(Fluid, STEP, Second), &records).unwrap();
             });
             threads.spawn(move || {
                 let mut solid = PhaseLink::<S>::open(run, Solid, None).unwrap();
-                drop(solid.receive_peer(&Expect::new(STEP, 1)).unwrap());
-                drop(solid.receive_peer(&Expect::new(STEP, 1)).unwrap());
-                solid.send_state(&play::state_header(Solid, STEP, 1), &[]).unwrap();
+                drop(solid.receive_peer(&Expect::new(STEP, Second)).unwrap());
+                drop(solid.receive_peer(&Expect::new(STEP, Second)).unwrap());
+                solid.send_state(&play::state_header(Solid, STEP, Second), &[]).unwrap();
             });
             let coupler = RawCoupler::<S>::enter(run);
             let mut state = None;
@@ -165,7 +173,7 @@ pub fn wrong_forces<S: Transport>() {
             let zero = StateRecord::default();
             let mut forces: Vec<_> =
                 state.take().unwrap().payload().iter().map(|slot| play::force(&slot.0, &zero)).collect();
-            let mut header = identified_force(run, play::force_header(Fluid, STEP, 1), forces.len());
+            let mut header = identified_force(run, play::force_header(Fluid, STEP, Second), forces.len());
             spoil(&mut header, &mut forces);
             coupler.role.send(&coupler.forces[0], header, &forces);
             linger(|| coupler.states[0].receive().unwrap().is_some());

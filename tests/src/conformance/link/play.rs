@@ -2,7 +2,10 @@
 
 use halfstep_link::{CouplerLink, Expect, LinkConfig, LinkError, LinkTimes, PhaseLink, Transport};
 use halfstep_wire::failure::RoleName;
-use halfstep_wire::protocol::{ForceHeader, ForceRecord, StateHeader, StateRecord, order, status};
+use halfstep_wire::half_step::{HalfStep, Stage};
+use halfstep_wire::protocol::{
+    ForceHeader, ForceRecord, LAST_STAGE, StateHeader, StateRecord, order, status,
+};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -23,13 +26,13 @@ pub fn epoch(role: RoleName, step: u64) -> u64 {
 }
 
 /// A number that belongs to this place alone.
-fn value(role: RoleName, step: u64, stage: u32, slot: usize, component: usize) -> f64 {
-    let key = ((step * 2 + u64::from(stage)) * 100 + slot as u64) * 16 + component as u64;
+fn value(role: RoleName, step: u64, stage: Stage, slot: usize, component: usize) -> f64 {
+    let key = ((step * 2 + u64::from(stage.number())) * 100 + slot as u64) * 16 + component as u64;
     (key as f64 + if role == RoleName::Fluid { 0.25 } else { 0.5 }) / 3.0
 }
 
 /// The record in a slot.
-pub fn state(role: RoleName, step: u64, stage: u32, slot: usize) -> StateRecord {
+pub fn state(role: RoleName, step: u64, stage: Stage, slot: usize) -> StateRecord {
     let v = |component| value(role, step, stage, slot, component);
     StateRecord {
         id: (slot * 3) as u32 + epoch(role, step) as u32,
@@ -61,33 +64,23 @@ fn step_size(step: u64) -> f64 {
     1e-5 * (1.0 + (step % 7) as f64 / 9.0)
 }
 
-/// The header of a state.
-pub fn state_header(role: RoleName, step: u64, stage: u32) -> StateHeader {
+fn half_step(step: u64, stage: Stage) -> HalfStep {
     let (time, dt) = clock(step);
-    StateHeader {
-        step,
-        stage,
-        epoch: epoch(role, step),
-        time,
-        dt: if stage == 0 { 0.0 } else { dt },
-        dt_limit: 1.0,
-        ..StateHeader::default()
-    }
+    HalfStep { stage, ..HalfStep::begin(step, time).lasting(dt) }
+}
+
+/// The header of a state.
+pub fn state_header(role: RoleName, step: u64, stage: Stage) -> StateHeader {
+    header_of(role, &half_step(step, stage))
+}
+
+fn header_of(role: RoleName, half_step: &HalfStep) -> StateHeader {
+    StateHeader { epoch: epoch(role, half_step.step), dt_limit: 1.0, ..half_step.state_header() }
 }
 
 /// The header of the answer to a state.
-pub fn force_header(role: RoleName, step: u64, stage: u32) -> ForceHeader {
-    let (time, dt) = clock(step);
-    ForceHeader {
-        order: order::GO,
-        step,
-        stage,
-        epoch: epoch(role, step),
-        time,
-        dt,
-        next_time: time + dt,
-        ..ForceHeader::default()
-    }
+pub fn force_header(role: RoleName, step: u64, stage: Stage) -> ForceHeader {
+    ForceHeader { order: order::GO, epoch: epoch(role, step), ..half_step(step, stage).force_header() }
 }
 
 /// Plays a phase until it is told to stop. Panics where a value is wrong.
@@ -97,39 +90,34 @@ pub fn phase<S: Transport>(
     abort: Option<Arc<AtomicBool>>,
 ) -> Result<LinkTimes, LinkError> {
     let mut link = PhaseLink::<S>::open(config, role, abort)?;
-    let mut time = 0.0;
-    for step in 0.. {
-        let mut dt = 0.0;
-        for stage in 0..2 {
-            let records: Vec<StateRecord> =
-                (0..count(role, step)).map(|slot| state(role, step, stage, slot)).collect();
-            let header = StateHeader { time, dt, ..state_header(role, step, stage) };
-            if step % 2 == 0 {
-                link.send_state(&header, &records)?;
-            } else {
-                link.send_state_from(&header, records.len(), |slot| records[slot])?;
-            }
-            let peer = link.receive_peer(&Expect::new(step, stage).time(time).dt(dt))?;
-            check_states(role.peer(), step, stage, peer.records());
-            let expect = Expect::new(step, stage).time(time);
-            let forces = link.receive_forces(&if stage == 0 { expect } else { expect.dt(dt) })?;
-            if forces.header().order & order::STOP != 0 {
-                let last = StateHeader { stage: 2, status: status::FINISHED, ..header };
-                link.send_state(&last, &[])?;
-                return Ok(link.times());
-            }
-            for (slot, record) in forces.records().iter().enumerate() {
-                let other = &peer.records()[slot % peer.records().len()];
-                assert_eq!(*record, force(&records[slot], other), "{role} {step} {stage} {slot}");
-            }
-            assert_eq!(forces.records().len(), records.len());
-            dt = forces.header().dt;
-            if stage == 1 {
-                time = forces.header().next_time;
-            }
+    let mut half_step = HalfStep::begin(0, 0.0);
+    loop {
+        let HalfStep { step, stage, .. } = half_step;
+        let records: Vec<StateRecord> =
+            (0..count(role, step)).map(|slot| state(role, step, stage, slot)).collect();
+        let header = header_of(role, &half_step);
+        if step % 2 == 0 {
+            link.send_state(&header, &records)?;
+        } else {
+            link.send_state_from(&header, records.len(), |slot| records[slot])?;
         }
+        let expect = Expect::of(&half_step);
+        let peer = link.receive_peer(&expect.dt(header.dt))?;
+        check_states(role.peer(), step, stage, peer.records());
+        let forces = link.receive_forces(&expect)?;
+        let answer = forces.header();
+        if answer.order & order::STOP != 0 {
+            let last = StateHeader { stage: LAST_STAGE, status: status::FINISHED, ..header };
+            link.send_state(&last, &[])?;
+            return Ok(link.times());
+        }
+        for (slot, record) in forces.records().iter().enumerate() {
+            let other = &peer.records()[slot % peer.records().len()];
+            assert_eq!(*record, force(&records[slot], other), "{role} {step} {stage} {slot}");
+        }
+        assert_eq!(forces.records().len(), records.len());
+        half_step = half_step.told(answer.dt, answer.next_time).next();
     }
-    unreachable!("the coupler stops every run")
 }
 
 /// Plays the coupler for this many steps. Panics where a value is wrong.
@@ -143,9 +131,9 @@ pub fn coupler<S: Transport>(
     let mut time = 0.0;
     for step in 0..=steps {
         let dt = step_size(step);
-        let next_time = time + dt;
-        for stage in 0..2 {
-            let expect = Expect::new(step, stage).time(time).dt(if stage == 0 { 0.0 } else { dt });
+        for half_step in HalfStep::begin(step, time).lasting(dt).both() {
+            let stage = half_step.stage;
+            let expect = Expect::of(&half_step).dt(half_step.state_header().dt);
             let fluid = link.receive_state(RoleName::Fluid, &expect)?;
             let solid = link.receive_state(RoleName::Solid, &expect)?;
             check_states(RoleName::Fluid, step, stage, fluid.records());
@@ -155,7 +143,7 @@ pub fn coupler<S: Transport>(
                     RoleName::Fluid => (fluid.records(), solid.records()),
                     _ => (solid.records(), fluid.records()),
                 };
-                let mut header = ForceHeader { time, dt, next_time, ..force_header(role, step, stage) };
+                let mut header = force_header(role, step, stage);
                 if step == steps {
                     header.order = order::STOP;
                     link.send_forces(role, &header, &[])?;
@@ -170,18 +158,18 @@ pub fn coupler<S: Transport>(
             }
             if step == steps {
                 for role in roles {
-                    let last = link.receive_state(role, &Expect::new(step, 2))?;
+                    let last = link.receive_state(role, &Expect::last(step))?;
                     assert_eq!((last.header().status, last.records().len()), (status::FINISHED, 0));
                 }
                 return Ok(link.times());
             }
         }
-        time = next_time;
+        time += dt;
     }
     unreachable!("the last step returns")
 }
 
-fn check_states(role: RoleName, step: u64, stage: u32, records: &[StateRecord]) {
+fn check_states(role: RoleName, step: u64, stage: Stage, records: &[StateRecord]) {
     assert_eq!(records.len(), count(role, step), "{role} {step} {stage}");
     for (slot, record) in records.iter().enumerate() {
         assert_eq!(*record, state(role, step, stage, slot), "{role} {step} {stage} {slot}");

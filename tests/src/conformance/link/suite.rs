@@ -5,6 +5,7 @@ use super::raw::{RawPhase, RawRole, identified};
 use super::{Run, eventually};
 use halfstep_link::{Claim, CouplerLink, Expect, LinkConfig, LinkError, PhaseLink, Transport};
 use halfstep_wire::failure::RoleName::{self, Coupler, Fluid, Solid};
+use halfstep_wire::half_step::Stage::{First, Second};
 use halfstep_wire::protocol::{StateHeader, StateRecord, status};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -118,7 +119,7 @@ pub fn with_links<S: Transport>(
 /// A peer that leaves without a word is reported to both others, soon.
 pub fn peer_leaves<S: Transport>() {
     let run = Run::new(100, 100);
-    let expect = Expect::new(0, 0);
+    let expect = Expect::new(0, First);
     let soon = |start: Instant| assert!(start.elapsed() < SOON, "{:?}", start.elapsed());
     with_links::<S>(
         &run,
@@ -156,8 +157,8 @@ pub fn last_words<S: Transport>() {
         None,
         |mut fluid| {
             sleep(Duration::from_millis(150));
-            read(fluid.receive_peer(&Expect::new(4, 1)).unwrap().header());
-            let error = fluid.receive_peer(&Expect::new(4, 1)).map(drop);
+            read(fluid.receive_peer(&Expect::new(4, Second)).unwrap().header());
+            let error = fluid.receive_peer(&Expect::new(4, Second)).map(drop);
             assert_eq!(error, Err(LinkError::PeerDied { peer: Solid }));
         },
         |mut solid| {
@@ -172,7 +173,7 @@ pub fn last_words<S: Transport>() {
         },
         |mut coupler| {
             sleep(Duration::from_millis(150));
-            read(coupler.receive_state(Solid, &Expect::new(4, 1)).unwrap().header());
+            read(coupler.receive_state(Solid, &Expect::new(4, Second)).unwrap().header());
         },
     );
 }
@@ -187,10 +188,10 @@ pub fn silence<S: Transport>() {
         &config,
         None,
         |mut fluid| {
-            let error = fluid.receive_peer(&Expect::new(0, 0)).map(drop);
+            let error = fluid.receive_peer(&Expect::new(0, First)).map(drop);
             assert_eq!(error, Err(LinkError::Timeout { peer: Solid, seconds: 0.4 }));
             let results: Vec<_> =
-                (0..3).map(|step| fluid.send_state(&play::state_header(Fluid, step, 0), &[])).collect();
+                (0..3).map(|step| fluid.send_state(&play::state_header(Fluid, step, First), &[])).collect();
             assert_eq!(results[..2], [Ok(()), Ok(())]);
             assert!(matches!(results[2], Err(LinkError::Timeout { seconds: 0.4, .. })), "{results:?}");
             done.store(true, Ordering::Relaxed);
@@ -214,12 +215,12 @@ pub fn abort<S: Transport>() {
         Some(Arc::clone(&flag)),
         |mut fluid| {
             let start = Instant::now();
-            is_aborted(fluid.receive_peer(&Expect::new(0, 0)).map(drop));
+            is_aborted(fluid.receive_peer(&Expect::new(0, First)).map(drop));
             ended(start);
             eventually(5.0, "the flag", || set.load(Ordering::Relaxed));
         },
         |mut solid| {
-            is_aborted(solid.receive_forces(&Expect::new(0, 0)).map(drop));
+            is_aborted(solid.receive_forces(&Expect::new(0, First)).map(drop));
             eventually(5.0, "the flag", || set.load(Ordering::Relaxed));
         },
         |mut coupler| {
@@ -228,7 +229,7 @@ pub fn abort<S: Transport>() {
                     sleep(Duration::from_millis(150));
                     flag.store(true, Ordering::Relaxed);
                 });
-                is_aborted(coupler.receive_state(Fluid, &Expect::new(0, 0)).map(drop));
+                is_aborted(coupler.receive_state(Fluid, &Expect::new(0, First)).map(drop));
             });
             set.store(true, Ordering::Relaxed);
         },
@@ -239,13 +240,13 @@ pub fn abort<S: Transport>() {
 /// More particles than there is room for: refused where they are sent, and where they come from a stranger.
 pub fn capacity<S: Transport>() {
     let run = Run::new(10, 10);
-    let records: Vec<StateRecord> = (0..11).map(|slot| play::state(Fluid, 0, 0, slot)).collect();
+    let records: Vec<StateRecord> = (0..11).map(|slot| play::state(Fluid, 0, First, slot)).collect();
     let too_many =
         |peer| LinkError::Capacity { peer, needed: 11, capacity: 10, key: LinkError::CAPACITY_KEY };
     scope(|threads| {
         threads.spawn(|| {
             let fluid = RawPhase::<S>::enter(&run, "fluid", 11);
-            fluid.send(identified(&run, play::state_header(Fluid, 0, 0), 11), &records);
+            fluid.send(identified(&run, play::state_header(Fluid, 0, First), 11), &records);
             eventually(20.0, "the solid's end", || {
                 fluid
                     .peer
@@ -256,16 +257,16 @@ pub fn capacity<S: Transport>() {
         });
         threads.spawn(|| {
             let mut solid = PhaseLink::<S>::open(&run, Solid, None).unwrap();
-            let header = play::state_header(Solid, 0, 0);
+            let header = play::state_header(Solid, 0, First);
             assert_eq!(solid.send_state(&header, &records), Err(too_many(Solid)));
-            let error = solid.receive_peer(&Expect::new(0, 0)).map(drop);
+            let error = solid.receive_peer(&Expect::new(0, First)).map(drop);
             assert_eq!(error, Err(too_many(Fluid)));
             solid.send_state(&StateHeader { status: status::FAILED, ..header }, &[]).unwrap();
         });
         let mut coupler = CouplerLink::<S>::open(&run, None).unwrap();
-        let error = coupler.receive_state(Fluid, &Expect::new(0, 0)).map(drop);
+        let error = coupler.receive_state(Fluid, &Expect::new(0, First)).map(drop);
         assert_eq!(error, Err(too_many(Fluid)));
-        let last = coupler.receive_state(Solid, &Expect::new(0, 0)).unwrap();
+        let last = coupler.receive_state(Solid, &Expect::new(0, First)).unwrap();
         assert_eq!(last.header().status, status::FAILED);
     });
 }
