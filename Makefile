@@ -1,6 +1,6 @@
 # What people run. Every target first installs what is missing (setup.sh) and then calls cargo.
 
-.PHONY: gate test validate stability bench prices docs setup
+.PHONY: gate test validate stability baselines bench prices docs setup
 
 # Where rustup puts cargo, for shells that were open before.
 export PATH := $(PATH):$(HOME)/.cargo/bin
@@ -19,6 +19,11 @@ test: setup
 # The benchmarks of the literature at full resolution: long.
 validate: setup
 	cargo test --release -p halfstep-tests -- --ignored --nocapture
+
+# Stores the bits of the coarse runs in validation/CASE/baseline.toml anew, at each instruction set level of this
+# processor, and prints which changed. Say in CHANGELOG.md why they did.
+baselines: setup
+	HALFSTEP_RENEW=1 cargo test --release -p halfstep-tests --test baselines every_run -- --nocapture
 
 # Hard cases with and without their remedies, at all resolutions: renews the table of docs/stability.md. Minutes.
 stability: setup

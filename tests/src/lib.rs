@@ -1,5 +1,6 @@
 //! Suites that every implementation of a seam must pass, and what tests need that run whole scenes.
 
+pub mod baseline;
 pub mod beam;
 pub mod cluster;
 pub mod conformance;

@@ -44,7 +44,7 @@ pub fn scene(name: &str) -> RunBuilder {
 pub fn scene_at(path: &Path) -> RunBuilder {
     let coupled = std::fs::read_to_string(path)
         .is_ok_and(|text| ["[fluid]", "[solid]"].iter().all(|section| text.contains(section)));
-    RunBuilder { scene: path.into(), arguments: Vec::new(), out: None, coupled }
+    RunBuilder { scene: path.into(), arguments: Vec::new(), variables: Vec::new(), out: None, coupled }
 }
 
 /// How to run a scene.
@@ -52,6 +52,7 @@ pub fn scene_at(path: &Path) -> RunBuilder {
 pub struct RunBuilder {
     scene: PathBuf,
     arguments: Vec<OsString>,
+    variables: Vec<(OsString, OsString)>,
     out: Option<PathBuf>,
     coupled: bool,
 }
@@ -88,6 +89,13 @@ impl RunBuilder {
         self
     }
 
+    /// An environment variable of the program.
+    #[must_use]
+    pub fn variable(mut self, name: &str, value: impl Into<OsString>) -> Self {
+        self.variables.push((name.into(), value.into()));
+        self
+    }
+
     /// The folder of the run; without it a temporary one that goes with the result.
     #[must_use]
     pub fn out(mut self, dir: &Path) -> Self {
@@ -105,6 +113,7 @@ impl RunBuilder {
         };
         let mut command = Command::new(program());
         command.arg("run").arg(&self.scene).arg("--quiet").arg("--out").arg(&dir).args(&self.arguments);
+        command.envs(self.variables);
         command.stdin(Stdio::null()).stdout(stream("stdout")).stderr(stream("stderr"));
         let child = command.spawn().expect("halfstep starts");
         Running { child, dir, temporary: Some(temporary), started: Instant::now() }

@@ -75,7 +75,7 @@ fn alone(name: RoleName, scene: &Scene) -> u64 {
     let mut records = Vec::new();
     let mut time = 0.0;
     allocations(|n| {
-        let role = role.get_or_insert_with(|| roles::build(name, scene).expect("the phase"));
+        let role = role.get_or_insert_with(|| roles::build(name, scene, Isa::detect()).expect("the phase"));
         let mut half_step = HalfStep::begin(n, time);
         while half_step.step == n {
             role.set_time(half_step.before());
@@ -100,7 +100,8 @@ fn coupled(scene: &Scene) -> u64 {
     let mut forces = [Vec::new(), Vec::new()];
     allocations(|n| {
         let [fluid, solid] = state.get_or_insert_with(|| {
-            [RoleName::Fluid, RoleName::Solid].map(|name| roles::build(name, scene).expect("the phase"))
+            [RoleName::Fluid, RoleName::Solid]
+                .map(|name| roles::build(name, scene, Isa::detect()).expect("the phase"))
         });
         let mut half_step = HalfStep::begin(n, 0.0);
         while half_step.step == n {

@@ -17,7 +17,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("coupling", &["sph", "scene", "wire", "link", "interface", "role", "output", "fluid", "solid"]),
     ("halfstep", &["sph", "scene", "wire", "link", "role", "output", "fluid", "solid", "coupling"]),
     ("study", &["scene", "output", "coupling", "halfstep"]),
-    ("cli", &["scene", "wire", "role", "output", "coupling", "halfstep", "study"]),
+    ("cli", &["sph", "scene", "wire", "role", "output", "coupling", "halfstep", "study"]),
 ];
 
 /// Libraries that only one crate (of the program; the test crates aside) may name.

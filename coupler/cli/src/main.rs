@@ -2,13 +2,14 @@
 
 use clap::{Parser, Subcommand};
 use halfstep::options::{RunOptions, SolidSource};
-use halfstep::run;
+use halfstep::{isa, run};
 use halfstep_coupling::roles;
 use halfstep_coupling::supervise::abort_flag;
 use halfstep_output::FrameWriter;
 use halfstep_output::run_json::RunStatus;
 use halfstep_role::lockstep::{self, RoleError};
 use halfstep_scene as scene;
+use halfstep_sph::lane::Isa;
 use halfstep_study::command::{StudyArguments, study};
 use halfstep_wire::failure::RoleName;
 use std::os::unix::process::parent_id;
@@ -104,18 +105,25 @@ fn main() -> ExitCode {
             return ExitCode::from(u8::from(error.use_stderr()));
         }
     };
+    let isa = match isa::of_environment() {
+        Ok(isa) => isa,
+        Err(error) => {
+            eprintln!("error: {error}");
+            return ExitCode::from(1);
+        }
+    };
     match arguments.command {
-        Command::Run(arguments) => run_scene(arguments),
+        Command::Run(arguments) => run_scene(arguments, isa),
         Command::Check(arguments) => match load(&arguments) {
             Ok(scene) => {
-                print!("{}", halfstep::check::describe(&scene));
+                print!("{}", halfstep::check::describe(&scene, isa));
                 ExitCode::SUCCESS
             }
             Err(code) => code,
         },
-        Command::Explain { scene, json } => explain_scene(&scene, json),
+        Command::Explain { scene, json } => explain_scene(&scene, json, isa),
         Command::Study(arguments) => study(arguments),
-        Command::Role { name } => serve_role(&name),
+        Command::Role { name } => serve_role(&name, isa),
     }
 }
 
@@ -128,12 +136,12 @@ fn load(arguments: &SceneArguments) -> Result<scene::Scene, ExitCode> {
     })
 }
 
-fn explain_scene(arguments: &SceneArguments, json: bool) -> ExitCode {
+fn explain_scene(arguments: &SceneArguments, json: bool, isa: Isa) -> ExitCode {
     let scene = match load(arguments) {
         Ok(scene) => scene,
         Err(code) => return code,
     };
-    match halfstep::explain::explain(&scene) {
+    match halfstep::explain::explain(&scene, isa) {
         Ok(explanation) if json => match serde_json::to_string_pretty(&explanation) {
             Ok(text) => {
                 println!("{text}");
@@ -155,7 +163,7 @@ fn explain_scene(arguments: &SceneArguments, json: bool) -> ExitCode {
     }
 }
 
-fn run_scene(arguments: RunArguments) -> ExitCode {
+fn run_scene(arguments: RunArguments, isa: Isa) -> ExitCode {
     let scene = match load(&arguments.scene) {
         Ok(scene) => scene,
         Err(code) => return code,
@@ -173,6 +181,7 @@ fn run_scene(arguments: RunArguments) -> ExitCode {
             Some(line) => SolidSource::Command(line),
         },
         solid_wait: arguments.solid_wait,
+        isa,
     };
     match run::run(&scene, &options) {
         Err(error) => {
@@ -200,7 +209,7 @@ fn run_scene(arguments: RunArguments) -> ExitCode {
     }
 }
 
-fn serve_role(name: &str) -> ExitCode {
+fn serve_role(name: &str, isa: Isa) -> ExitCode {
     tracing_subscriber::fmt().with_writer(std::io::stderr).with_ansi(false).init();
     let role = match name {
         "fluid" => RoleName::Fluid,
@@ -217,7 +226,7 @@ fn serve_role(name: &str) -> ExitCode {
             lockstep::serve_process(
                 roles::stem(role),
                 abort,
-                |scene| roles::build(role, scene),
+                |scene| roles::build(role, scene, isa),
                 |folder| Ok(Box::new(FrameWriter::start(folder, roles::stem(role))?)),
             )
         });

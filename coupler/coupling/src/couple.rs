@@ -61,11 +61,11 @@ pub struct Coupler<S: Transport, const D: usize> {
 impl<S: Transport, const D: usize> Coupler<S, D> {
     /// For a scene with both phases, on a link whose partners are connected.
     ///
-    /// `foreign` stands in for what a solid of somebody else's does not do itself.
-    pub fn new(link: CouplerLink<S>, scene: &Scene, foreign: Option<ForeignSolid>) -> Option<Self> {
+    /// `isa` is the level of its sums; `foreign` stands in for what a solid of somebody else's does not do itself.
+    pub fn new(link: CouplerLink<S>, scene: &Scene, isa: Isa, foreign: Option<ForeignSolid>) -> Option<Self> {
         Some(Self {
             link,
-            interface: Interface::new(Parameters::new(scene, Isa::detect())?),
+            interface: Interface::new(Parameters::new(scene, isa)?),
             cross: CrossViscosity::default(),
             fluid_forces: Vec::new(),
             solid_forces: Vec::new(),

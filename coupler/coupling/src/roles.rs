@@ -7,9 +7,8 @@ use halfstep_solid::Solid;
 use halfstep_sph::lane::Isa;
 use halfstep_wire::failure::RoleName;
 
-/// The role of a phase, where the scene has it.
-pub fn build(role: RoleName, scene: &Scene) -> Option<Box<dyn Role>> {
-    let isa = Isa::detect();
+/// The role of a phase, where the scene has it, computing with an instruction set that the processor has.
+pub fn build(role: RoleName, scene: &Scene, isa: Isa) -> Option<Box<dyn Role>> {
     match role {
         RoleName::Fluid => Fluid::<2>::new(scene, isa).map(|f| Box::new(f) as Box<dyn Role>),
         RoleName::Solid => Solid::<2>::new(scene, isa).map(|s| Box::new(s) as Box<dyn Role>),

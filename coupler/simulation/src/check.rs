@@ -17,7 +17,7 @@ use std::time::Instant;
 ///
 /// The estimate times the sums of a few half-steps of each phase on one thread; a run whose particles spread out takes
 /// longer.
-pub fn describe(scene: &Scene) -> String {
+pub fn describe(scene: &Scene, isa: Isa) -> String {
     let layout = geometry::layout::<2>(scene);
     let counts = geometry::Counts {
         fluid: layout.fluid.len() as u64,
@@ -35,7 +35,7 @@ pub fn describe(scene: &Scene) -> String {
     let mut solid_limit = None;
     let mut built = Vec::new();
     for name in [RoleName::Fluid, RoleName::Solid] {
-        let Some(role) = roles::build(name, scene) else { continue };
+        let Some(role) = roles::build(name, scene, isa) else { continue };
         let own = role.dt_limit();
         line(&format!("{name} dt limit"), format!("{own:.3e} s"));
         limit = limit.min(own);
@@ -69,7 +69,7 @@ pub fn describe(scene: &Scene) -> String {
         "expected time",
         match seconds {
             Some(seconds) => {
-                format!("about {seconds:.0} s, one thread a role ({})", Isa::detect().bits_name())
+                format!("about {seconds:.0} s, one thread a role ({})", isa.bits_name())
             }
             None => "unknown: the first steps leave their bounds".into(),
         },

@@ -1,11 +1,12 @@
 //! What takes part in a scene, why, and what it costs.
 
-use crate::options::RunOptions;
+use crate::options::{RunOptions, SolidSource};
 use crate::run::run;
 use halfstep_coupling::error::RunError;
 use halfstep_coupling::roles;
 use halfstep_output::run_json::EffectReport;
 use halfstep_scene::{Scene, TimeStep};
+use halfstep_sph::lane::Isa;
 use halfstep_wire::failure::RoleName;
 use serde::Serialize;
 use std::fmt;
@@ -30,11 +31,11 @@ pub struct Explanation {
 ///
 /// # Errors
 /// The moment could not be run.
-pub fn explain(scene: &Scene) -> Result<Explanation, RunError> {
+pub fn explain(scene: &Scene, isa: Isa) -> Result<Explanation, RunError> {
     let mut limit = f64::INFINITY;
     let (mut bytes, mut composition) = (None, None);
     for name in [RoleName::Fluid, RoleName::Solid] {
-        let Some(mut role) = roles::build(name, scene) else { continue };
+        let Some(mut role) = roles::build(name, scene, isa) else { continue };
         limit = limit.min(role.dt_limit());
         role.own_sums();
         bytes = bytes.or(role.bytes().map(|b| b as f64 / role.particles().max(1) as f64));
@@ -49,8 +50,16 @@ pub fn explain(scene: &Scene) -> Result<Explanation, RunError> {
     moment.output.frame_interval = moment.end_time;
     moment.output.probe_interval = moment.end_time;
     let folder = tempfile::tempdir().map_err(|e| RunError::System(format!("no temporary folder: {e}")))?;
-    let options =
-        RunOptions { out: folder.path().join("run"), in_process: true, quiet: true, ..RunOptions::default() };
+    let options = RunOptions {
+        out: folder.path().join("run"),
+        threads: None,
+        in_process: true,
+        quiet: true,
+        force: false,
+        solid: SolidSource::BuiltIn,
+        solid_wait: 0.0,
+        isa,
+    };
     let (report, error) = run(&moment, &options)?;
     if let Some(error) = error {
         return Err(error);

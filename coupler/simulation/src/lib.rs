@@ -4,6 +4,7 @@ mod advice;
 pub mod check;
 mod effects;
 pub mod explain;
+pub mod isa;
 pub mod options;
 pub mod run;
 mod session;

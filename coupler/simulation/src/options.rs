@@ -1,5 +1,6 @@
 //! How a scene is run.
 
+use halfstep_sph::lane::Isa;
 use std::path::PathBuf;
 
 /// Where the solid process comes from.
@@ -15,7 +16,7 @@ pub enum SolidSource {
 }
 
 /// How to run.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct RunOptions {
     /// Folder of the run.
     pub out: PathBuf,
@@ -31,4 +32,6 @@ pub struct RunOptions {
     pub solid: SolidSource,
     /// How long to wait for a solid started by hand, s.
     pub solid_wait: f64,
+    /// Instruction set of every role; one that the processor has.
+    pub isa: Isa,
 }

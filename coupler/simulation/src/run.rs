@@ -15,7 +15,6 @@ use halfstep_output::{self as output, FrameWriter, RunDirectory, RunReport};
 use halfstep_role::lockstep;
 use halfstep_scene::Scene;
 use halfstep_scene::geometry;
-use halfstep_sph::lane::Isa;
 use halfstep_wire::failure::RoleName;
 use std::sync::atomic::AtomicBool;
 
@@ -38,7 +37,7 @@ pub fn run(scene: &Scene, options: &RunOptions) -> Result<(RunReport, Option<Run
     };
     report.effects = effects::ledger(scene, &counts);
     start_log(&directory)?;
-    report.audit.isa = Some(Isa::detect().bits_name().into());
+    report.audit.isa = Some(options.isa.bits_name().into());
     report.write(&directory.file("run.json"))?;
     let mut recorder = Recorder::new(scene, &directory.file("probes.csv"), options.quiet)?;
     let mut clock = Clock::new(scene);
@@ -119,7 +118,7 @@ fn solo(
     let threads = options.threads.unwrap_or(if name == RoleName::Fluid { own.fluid } else { own.solid });
     let mut writer = FrameWriter::start(directory.path(), stem)?;
     let result = lockstep::on_threads(threads, || -> Result<_, RunError> {
-        let mut role = roles::build(name, scene)
+        let mut role = roles::build(name, scene, options.isa)
             .ok_or_else(|| RunError::System("the scene has neither fluid nor solid".into()))?;
         run_solo(role.as_mut(), clock, &mut writer, recorder, stop)
     })?;

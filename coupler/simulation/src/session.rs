@@ -1,6 +1,7 @@
 //! A coupled run: starts its roles as processes or as threads, couples them, and finds out why one of them ended.
 
 use crate::effects;
+use crate::isa::{self, ISA_VARIABLE};
 use crate::options::{RunOptions, SolidSource};
 use halfstep_coupling::clock::Clock;
 use halfstep_coupling::couple::{CoupledOutcome, Coupler};
@@ -128,6 +129,7 @@ impl Session<'_> {
                 .envs(config.to_env())
                 .env(SCENE_VARIABLE, &scene_file)
                 .env(FOLDER_VARIABLE, &folder)
+                .env(ISA_VARIABLE, isa::name(self.options.isa))
                 .env(THREADS_VARIABLE, self.threads(role).to_string());
             children.spawn(role, command)?;
         }
@@ -215,7 +217,7 @@ impl Session<'_> {
             SolidSource::BuiltIn => None,
             _ => Some(ForeignSolid::new(self.scene, self.directory.path())?),
         };
-        let mut coupler = Coupler::<S, 2>::new(link, self.scene, foreign)
+        let mut coupler = Coupler::<S, 2>::new(link, self.scene, self.options.isa, foreign)
             .ok_or_else(|| RunError::System("a coupled scene needs [fluid] and [solid]".into()))?;
         coupler.run(clock, recorder, self.stop)
     }
@@ -270,7 +272,7 @@ impl Session<'_> {
             .map_err(|error| RoleError::Frames(error.into()))
             .and_then(|writer| {
                 lockstep::on_threads(self.threads(name), move || {
-                    let mut role = roles::build(name, self.scene)
+                    let mut role = roles::build(name, self.scene, self.options.isa)
                         .ok_or_else(|| RoleError::Start(format!("the scene has no {name}")))?;
                     lockstep::serve::<Threads>(role.as_mut(), config, Some(Box::new(writer)), abort)
                 })?

@@ -74,7 +74,7 @@ impl Bounds {
             j if j.is_nan() => 0.0,
             j if j <= 0.0 => f64::INFINITY,
             j if (1.0 / VOLUME_CHANGE..=VOLUME_CHANGE).contains(&j) => 0.0,
-            j => j.ln().abs() / VOLUME_CHANGE.ln(),
+            j => (libm::log(j) / libm::log(VOLUME_CHANGE)).abs(),
         };
         let of_speed = worst_if_nan(speed / self.speed);
         let (quantity, value, ratio) = if of_volume > of_speed {

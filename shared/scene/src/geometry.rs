@@ -240,11 +240,12 @@ const FIRST_MODE: f64 = 1.875_104_068_711_961_2;
 
 /// Velocity across a cantilever in its first bending mode (Landau and Lifshitz, Theory of Elasticity, section 25):
 /// fraction c_0 F(x) / F(L) with F(x) = (cos kL + cosh kL)(cosh kx - cos kx) + (sin kL - sinh kL)(sinh kx - sin kx).
-/// Zero behind the root.
+/// Zero behind the root. The crate libm's functions: the same bits on every machine.
 pub fn cantilever_velocity(mode: &CantileverMode, sound_speed: f64, x: f64) -> f64 {
+    use libm::{cos, cosh, sin, sinh};
     let end = FIRST_MODE;
     let shape = |kx: f64| {
-        (end.cos() + end.cosh()) * (kx.cosh() - kx.cos()) + (end.sin() - end.sinh()) * (kx.sinh() - kx.sin())
+        (cos(end) + cosh(end)) * (cosh(kx) - cos(kx)) + (sin(end) - sinh(end)) * (sinh(kx) - sin(kx))
     };
     let along = ((x - mode.root) / mode.length * end).max(0.0);
     mode.fraction * sound_speed * shape(along) / shape(end)

@@ -1,5 +1,8 @@
 //! Initial velocity fields of a fluid with a known solution.
+//!
+//! Their functions come from the crate libm: a system's own differ in the last bit from machine to machine.
 
+use libm::{cos, exp, sin, tanh};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
@@ -40,16 +43,16 @@ impl VelocityField {
         match *self {
             Self::TaylorGreen { speed, origin, half_wave } => {
                 let [x, y] = phases(position, origin, half_wave);
-                [speed * x.sin() * y.cos(), -speed * x.cos() * y.sin()]
+                [speed * sin(x) * cos(y), -speed * cos(x) * sin(y)]
             }
             Self::StandingWave { amplitude, origin, half_wave, depth } => {
                 let k = PI / half_wave;
-                let speed = amplitude * (gravity * k * (k * depth).tanh()).sqrt();
+                let speed = amplitude * (gravity * k * tanh(k * depth)).sqrt();
                 let [x, y] = phases(position, origin, half_wave);
                 // sinh(ky) / sinh(kH) and cosh(ky) / sinh(kH), which do not overflow where the water is deep.
-                let rise = (y - k * depth).exp() / (1.0 - (-2.0 * k * depth).exp());
-                let (sinh, cosh) = (rise * (1.0 - (-2.0 * y).exp()), rise * (1.0 + (-2.0 * y).exp()));
-                [-speed * x.sin() * cosh, speed * x.cos() * sinh]
+                let rise = exp(y - k * depth) / (1.0 - exp(-2.0 * k * depth));
+                let (sinh, cosh) = (rise * (1.0 - exp(-2.0 * y)), rise * (1.0 + exp(-2.0 * y)));
+                [-speed * sin(x) * cosh, speed * cos(x) * sinh]
             }
         }
     }
@@ -59,7 +62,7 @@ impl VelocityField {
         match *self {
             Self::TaylorGreen { speed, origin, half_wave } => {
                 let [x, y] = phases(position, origin, half_wave);
-                0.25 * density * speed * speed * ((2.0 * x).cos() + (2.0 * y).cos())
+                0.25 * density * speed * speed * (cos(2.0 * x) + cos(2.0 * y))
             }
             // The wave's own pressure is largest at the crest and zero as it passes through the flat surface.
             Self::StandingWave { .. } => 0.0,
