@@ -2,10 +2,11 @@
 
 use super::hub::{Hub, Presence, Watch, attributes, port_error, service_name};
 use super::memory::SAMPLES;
-use super::{LinkConfig, LinkError, Transport};
+use super::config::FLUID;
+use super::{LinkConfig, LinkError, Participant, Transport};
 use crate::slot::Slot;
-use halfstep_wire::failure::RoleName;
-use halfstep_wire::protocol::{ForceHeader, ForceRecord, Plain, StateHeader, StateRecord};
+use halfstep_wire::Name;
+use halfstep_wire::protocol::{ForceHeader, ForceRecord, Plain, ProbeHeader, StateHeader, StateRecord};
 use iceoryx2::identifiers::UniqueNodeId;
 use iceoryx2::port::SendError;
 use iceoryx2::port::publisher::Publisher;
@@ -24,36 +25,48 @@ type Message<S, R, H> = Sample<S, [Slot<R>], Slot<H>>;
 #[derive(Debug)]
 pub(super) struct Channel<S: Transport, R: Plain, H: Plain> {
     factory: publish_subscribe::PortFactory<S, [Slot<R>], Slot<H>>,
-    phase: RoleName,
+    owner: Name,
     capacity: usize,
 }
 
 pub(super) type StateChannel<S> = Channel<S, StateRecord, StateHeader>;
 pub(super) type ForceChannel<S> = Channel<S, ForceRecord, ForceHeader>;
+pub(super) type ProbeChannel<S> = Channel<S, f64, ProbeHeader>;
 
 impl<S: Transport> StateChannel<S> {
-    /// The states of a phase: read by the other phase and the coupler.
-    pub(super) fn state(hub: &Hub<S>, config: &LinkConfig, phase: RoleName) -> Result<Self, LinkError> {
-        Self::open(hub, config, phase, "state", 2)
+    /// The states of a participant: the fluid's read by all solids, a solid's by the fluid, and both by the coupler.
+    pub(super) fn state(hub: &Hub<S>, config: &LinkConfig, place: usize) -> Result<Self, LinkError> {
+        let Participant { name, capacity, .. } = config.participants[place];
+        let readers = if place == FLUID { config.participants.len() } else { 2 };
+        Self::open(hub, name, "state", capacity, readers)
     }
 }
 
 impl<S: Transport> ForceChannel<S> {
-    /// The coupler's answers to a phase.
-    pub(super) fn forces(hub: &Hub<S>, config: &LinkConfig, phase: RoleName) -> Result<Self, LinkError> {
-        Self::open(hub, config, phase, "force", 1)
+    /// The coupler's answers to a participant.
+    pub(super) fn forces(hub: &Hub<S>, config: &LinkConfig, place: usize) -> Result<Self, LinkError> {
+        let Participant { name, capacity, .. } = config.participants[place];
+        Self::open(hub, name, "force", capacity, 1)
+    }
+}
+
+impl<S: Transport> ProbeChannel<S> {
+    /// The probe values of a participant, read by the coupler.
+    pub(super) fn probes(hub: &Hub<S>, config: &LinkConfig, place: usize) -> Result<Self, LinkError> {
+        let Participant { name, probes, .. } = config.participants[place];
+        Self::open(hub, name, "probes", probes, 1)
     }
 }
 
 impl<S: Transport, R: Plain, H: Plain> Channel<S, R, H> {
     fn open(
         hub: &Hub<S>,
-        config: &LinkConfig,
-        phase: RoleName,
+        owner: Name,
         kind: &str,
+        capacity: u32,
         readers: usize,
     ) -> Result<Self, LinkError> {
-        let service = format!("halfstep/{phase}/{kind}");
+        let service = format!("halfstep/{owner}/{kind}");
         let (name, attributes) = (service_name(&service)?, attributes()?);
         let factory = hub.open_service(&service, || {
             hub.node
@@ -69,13 +82,19 @@ impl<S: Transport, R: Plain, H: Plain> Channel<S, R, H> {
                 .max_nodes(readers + 1)
                 .open_or_create_with_attributes(&attributes)
         })?;
-        Ok(Self { factory, phase, capacity: config.capacity(phase) as usize })
+        Ok(Self { factory, owner, capacity: capacity as usize })
     }
 
-    pub(super) fn reader(self, hub: &Hub<S>, sender: RoleName) -> Result<Incoming<S, R, H>, LinkError> {
+    /// `process` is the one that the sender runs in.
+    pub(super) fn reader(
+        self,
+        hub: &Hub<S>,
+        sender: Name,
+        process: Name,
+    ) -> Result<Incoming<S, R, H>, LinkError> {
         let subscriber =
-            self.factory.subscriber_builder().create().map_err(|e| port_error(hub.role, "subscribing", e))?;
-        Ok(Incoming { subscriber, channel: self, sender })
+            self.factory.subscriber_builder().create().map_err(|e| port_error(hub.process, "subscribing", e))?;
+        Ok(Incoming { subscriber, channel: self, sender, process, met: false })
     }
 
     pub(super) fn writer(self, hub: &Hub<S>) -> Result<Outgoing<S, R, H>, LinkError> {
@@ -90,7 +109,7 @@ impl<S: Transport, R: Plain, H: Plain> Channel<S, R, H> {
             .backpressure_strategy(BackpressureStrategy::RetryUntilDelivered)
             .set_backpressure_handler(move |info| watch.on_full_queue(info))
             .create()
-            .map_err(|e| port_error(hub.role, "publishing", e))?;
+            .map_err(|e| port_error(hub.process, "publishing", e))?;
         Ok(Outgoing { publisher, channel: self })
     }
 
@@ -110,28 +129,32 @@ impl<S: Transport, R: Plain, H: Plain> Channel<S, R, H> {
 pub(super) struct Incoming<S: Transport, R: Plain, H: Plain> {
     subscriber: Subscriber<S, [Slot<R>], Slot<H>>,
     channel: Channel<S, R, H>,
-    pub(super) sender: RoleName,
+    pub(super) sender: Name,
+    pub(super) process: Name,
+    /// The sender has come.
+    met: bool,
 }
 
 impl<S: Transport, R: Plain, H: Plain> Incoming<S, R, H> {
     /// Looks whether the sender has come; if so, connects and remembers its node. From then on whatever it sends is
     /// kept, even if it ends at once.
-    pub(super) fn meet_sender(&self, watch: &Watch<S>) -> Result<Presence, LinkError> {
+    pub(super) fn meet_sender(&mut self, watch: &Watch<S>) -> Result<Presence, LinkError> {
         match self.channel.writer_node() {
-            Some(_) if watch.has_met(self.sender) => Ok(Presence::Here),
+            Some(_) if self.met => Ok(Presence::Here),
             Some(node) => {
                 self.subscriber.update_connections().map_err(|e| LinkError::transport("connecting", e))?;
-                watch.met(self.sender, node);
+                watch.met(self.process, node);
+                self.met = true;
                 Ok(Presence::Here)
             }
-            None if watch.has_met(self.sender) => Ok(Presence::Left),
+            None if self.met => Ok(Presence::Left),
             None => Ok(Presence::NotYet),
         }
     }
 
     pub(super) fn receive(&mut self, hub: &mut Hub<S>) -> Result<Message<S, R, H>, LinkError> {
         let subscriber = &self.subscriber;
-        hub.wait(self.sender, || subscriber.receive().map_err(|e| LinkError::transport("receiving", e)))
+        hub.wait(self.sender, self.process, || subscriber.receive().map_err(|e| LinkError::transport("receiving", e)))
     }
 }
 
@@ -149,10 +172,10 @@ impl<S: Transport, R: Plain, H: Plain> Outgoing<S, R, H> {
 
     /// Fails if a message of `count` records does not fit.
     pub(super) fn check_capacity(&self, count: usize) -> Result<(), LinkError> {
-        let Channel { capacity, phase, .. } = self.channel;
+        let Channel { capacity, owner, .. } = self.channel;
         if count > capacity {
             let key = LinkError::CAPACITY_KEY;
-            return Err(LinkError::Capacity { peer: phase, needed: count, capacity, key });
+            return Err(LinkError::Capacity { peer: owner, needed: count, capacity, key });
         }
         Ok(())
     }
@@ -202,6 +225,22 @@ impl<S: Transport> StateSample<S> {
 
     /// The interface particles, by ascending number.
     pub fn records(&self) -> &[StateRecord] {
+        Slot::values(self.0.payload())
+    }
+}
+
+/// Received probe values. At most two of a channel can be held.
+#[derive(Debug)]
+pub struct ProbeSample<S: Transport>(pub(super) Message<S, f64, ProbeHeader>);
+
+impl<S: Transport> ProbeSample<S> {
+    /// What heads the message.
+    pub fn header(&self) -> &ProbeHeader {
+        &self.0.user_header().0
+    }
+
+    /// The values.
+    pub fn values(&self) -> &[f64] {
         Slot::values(self.0.payload())
     }
 }

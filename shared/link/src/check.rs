@@ -1,10 +1,11 @@
 //! What every received message must satisfy before anybody uses it.
 
-use super::{LinkConfig, LinkError};
-use halfstep_wire::failure::RoleName;
+use super::config::FLUID;
+use super::{LinkConfig, LinkError, Participant};
+use halfstep_wire::Name;
 use halfstep_wire::half_step::{HalfStep, Stage};
 use halfstep_wire::protocol::{
-    ForceHeader, ForceRecord, LAST_STAGE, MAX_PROBE_VALUES, PROTOCOL, SCHEMA, StateHeader, StateRecord,
+    ForceHeader, ForceRecord, LAST_STAGE, PROTOCOL, ProbeHeader, SCHEMA, StateHeader, StateRecord,
     order, status,
 };
 use std::fmt::Display;
@@ -60,7 +61,7 @@ impl Expect {
 
 /// Who sent a message to whom waits for what.
 struct Check<'a> {
-    peer: RoleName,
+    peer: Name,
     expect: &'a Expect,
 }
 
@@ -157,16 +158,19 @@ impl Identities {
 #[derive(Debug)]
 pub(super) struct StateCheck {
     run_id: u64,
-    peer: RoleName,
+    peer: Name,
+    is_fluid: bool,
     capacity: usize,
     known: Identities,
 }
 
 impl StateCheck {
-    pub(super) fn new(config: &LinkConfig, peer: RoleName) -> Self {
-        let capacity = config.capacity(peer);
+    /// Of the participant at this place.
+    pub(super) fn new(config: &LinkConfig, place: usize) -> Self {
+        let Participant { name, capacity, .. } = config.participants[place];
         let known = Identities::new(capacity);
-        Self { run_id: config.run_id, peer, capacity: capacity as usize, known }
+        let run_id = config.run_id;
+        Self { run_id, peer: name, is_fluid: place == FLUID, capacity: capacity as usize, known }
     }
 
     /// Whether this is the message that is due. A message that says that its sender failed or finished is: it must only
@@ -201,13 +205,6 @@ impl StateCheck {
         if header.stage == Stage::First.number() && header.dt_limit <= 0.0 {
             return Err(check.mismatch("dt_limit", "a positive number", header.dt_limit));
         }
-        if header.probe_count > MAX_PROBE_VALUES as u64 {
-            return Err(check.mismatch(
-                "probe_count",
-                format!("at most {MAX_PROBE_VALUES}"),
-                header.probe_count,
-            ));
-        }
         if self.known.match_at_once(header.epoch, records) {
             return Ok(());
         }
@@ -227,7 +224,7 @@ impl StateCheck {
         header: &StateHeader,
         records: &[StateRecord],
     ) -> Result<(), LinkError> {
-        if self.peer == RoleName::Solid {
+        if !self.is_fluid {
             check.equal("epoch", 0, header.epoch)?;
         }
         let known = &mut self.known;
@@ -261,7 +258,7 @@ pub(super) fn verify_forces(
     records: &[ForceRecord],
     expect: &Expect,
 ) -> Result<(), LinkError> {
-    let check = Check { peer: RoleName::Coupler, expect };
+    let check = Check { peer: Name::COUPLER, expect };
     check.identity(run_id, header.run_id, header.protocol, header.schema)?;
     check.equal("count", records.len(), header.count as usize)?;
     check.position(header.step, header.stage, header.time, header.dt)?;
@@ -286,6 +283,22 @@ pub(super) fn verify_forces(
         }
     }
     Ok(())
+}
+
+/// Checks the probe values of a participant on the state of a step.
+pub(super) fn verify_probes(
+    run_id: u64,
+    participant: &Participant,
+    header: &ProbeHeader,
+    values: &[f64],
+    step: u64,
+) -> Result<(), LinkError> {
+    let expect = Expect::new(step, Stage::First);
+    let check = Check { peer: participant.name, expect: &expect };
+    check.identity(run_id, header.run_id, header.protocol, header.schema)?;
+    check.equal("count", participant.probes as usize, header.count as usize)?;
+    check.equal("count", participant.probes as usize, values.len())?;
+    check.equal("step", step, header.step)
 }
 
 /// All exponent bits set: neither finite nor the end of a sum that hides it.

@@ -161,7 +161,7 @@ mod tests {
 
     #[test]
     fn the_last_one_removes_the_files() {
-        let config = LinkConfig::new(1, 1);
+        let config = LinkConfig::of_two(1, 1);
         let object = Path::new(SHM).join(format!("{}object", config.prefix));
         let (first, second) = (Claim::new(&config).unwrap(), Claim::new(&config).unwrap());
         std::fs::write(&object, "x").unwrap();
@@ -175,7 +175,7 @@ mod tests {
 
     #[test]
     fn only_abandoned_runs_are_stale() {
-        let (alive, abandoned) = (LinkConfig::new(1, 1), LinkConfig::new(1, 1));
+        let (alive, abandoned) = (LinkConfig::of_two(1, 1), LinkConfig::of_two(1, 1));
         let _claim = Claim::new(&alive).unwrap();
         let claim = Claim::new(&abandoned).unwrap();
         let object = Path::new(SHM).join(format!("{}object", abandoned.prefix));

@@ -1,30 +1,47 @@
 //! The coupler's end of the exchange.
 
-use super::channel::{Channel, Incoming, Outgoing, StateSample};
-use super::check::{Expect, StateCheck};
-use super::hub::Hub;
-use super::{Claim, LinkConfig, LinkError, LinkTimes, Transport, memory};
-use halfstep_wire::failure::RoleName;
-use halfstep_wire::protocol::{ForceHeader, ForceRecord, PROTOCOL, SCHEMA, StateHeader, StateRecord};
+use super::channel::{Channel, Incoming, Outgoing, ProbeSample, StateSample};
+use super::check::{Expect, StateCheck, verify_probes};
+use super::hub::{Hub, Presence};
+use super::{Claim, LinkConfig, LinkError, LinkTimes, Participant, Transport, memory};
+use halfstep_wire::Name;
+use halfstep_wire::protocol::{
+    ForceHeader, ForceRecord, PROTOCOL, ProbeHeader, SCHEMA, StateHeader, StateRecord,
+};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-/// What the coupler holds toward one phase.
+/// What the coupler holds toward one participant.
 #[derive(Debug)]
 struct Side<S: Transport> {
+    participant: Participant,
     forces: Outgoing<S, ForceRecord, ForceHeader>,
     state: Incoming<S, StateRecord, StateHeader>,
+    probes: Option<Incoming<S, f64, ProbeHeader>>,
     check: StateCheck,
 }
 
-/// Reads both phases' states and answers them.
+impl<S: Transport> Side<S> {
+    fn open(hub: &Hub<S>, config: &LinkConfig, place: usize) -> Result<Self, LinkError> {
+        let participant = config.participants[place];
+        let Participant { name, process, .. } = participant;
+        let state = Channel::state(hub, config, place)?.reader(hub, name, process)?;
+        let probes = match participant.probes {
+            0 => None,
+            _ => Some(Channel::probes(hub, config, place)?.reader(hub, name, process)?),
+        };
+        let forces = Channel::forces(hub, config, place)?.writer(hub)?;
+        Ok(Self { participant, forces, state, probes, check: StateCheck::new(config, place) })
+    }
+}
+
+/// Reads the states of all participants and answers them. Participants are named by their place in the run.
 ///
 /// Use it in the thread that opened it. Start child processes before: a process must not fork once it has a link.
 #[derive(Debug)]
 pub struct CouplerLink<S: Transport> {
-    fluid: Side<S>,
-    solid: Side<S>,
+    sides: Vec<Side<S>>,
     run_id: u64,
     times: LinkTimes,
     hub: Hub<S>,
@@ -33,40 +50,49 @@ pub struct CouplerLink<S: Transport> {
 }
 
 impl<S: Transport> CouplerLink<S> {
-    /// Creates the coupler's ports and waits until both phases are connected.
+    /// Creates the coupler's ports and waits until all participants are connected.
     ///
     /// Setting `abort` ends this and every later wait with [`LinkError::Aborted`] within 50 ms.
     pub fn open(config: &LinkConfig, abort: Option<Arc<AtomicBool>>) -> Result<Self, LinkError> {
         let claim = Claim::new(config)?;
-        memory::check_room::<S>(config, RoleName::Coupler)?;
-        let mut hub = Hub::<S>::open(config, RoleName::Coupler, abort)?;
-        let [fluid_state, solid_state] = [RoleName::Fluid, RoleName::Solid]
-            .map(|phase| Channel::state(&hub, config, phase)?.reader(&hub, phase));
-        let (fluid_state, solid_state) = (fluid_state?, solid_state?);
-        let [fluid_forces, solid_forces] = [RoleName::Fluid, RoleName::Solid]
-            .map(|phase| Channel::forces(&hub, config, phase)?.writer(&hub));
-        let side = |state: Incoming<S, _, _>, forces| Side {
-            check: StateCheck::new(config, state.sender),
-            state,
-            forces,
-        };
-        let (fluid, solid) = (side(fluid_state, fluid_forces?), side(solid_state, solid_forces?));
-        hub.gather(|other, watch| match other {
-            RoleName::Solid => solid.state.meet_sender(watch),
-            _ => fluid.state.meet_sender(watch),
+        memory::check_room::<S>(config, Name::COUPLER)?;
+        let mut hub = Hub::<S>::open(config, Name::COUPLER, abort)?;
+        let sides = (0..config.participants.len()).map(|place| Side::open(&hub, config, place));
+        let mut sides = sides.collect::<Result<Vec<_>, LinkError>>()?;
+        hub.gather(|other, watch| {
+            let mut all = Presence::Here;
+            for side in sides.iter_mut().filter(|side| side.participant.process == other) {
+                all = all.and(side.state.meet_sender(watch)?);
+                // The probes' channel is made before the state's: one that is not there never comes.
+                if let Some(probes) = &mut side.probes {
+                    probes.meet_sender(watch)?;
+                }
+            }
+            Ok(all)
         })?;
-        fluid.forces.connect()?;
-        solid.forces.connect()?;
+        for side in &sides {
+            side.forces.connect()?;
+        }
         memory::reserve::<S>(config)?;
-        Ok(Self { fluid, solid, run_id: config.run_id, times: LinkTimes::default(), hub, _claim: claim })
+        Ok(Self { sides, run_id: config.run_id, times: LinkTimes::default(), hub, _claim: claim })
     }
 
-    /// The state of a phase (fluid or solid) of this step and stage; sleeps until it is there.
+    /// Number of participants.
+    pub fn participants(&self) -> usize {
+        self.sides.len()
+    }
+
+    /// Name of a participant.
+    pub fn name(&self, place: usize) -> Name {
+        self.sides[place].participant.name
+    }
+
+    /// The state of a participant of this step and stage; sleeps until it is there.
     ///
     /// A message with another status than ok is returned as it is: look at the status first.
-    pub fn receive_state(&mut self, role: RoleName, expect: &Expect) -> Result<StateSample<S>, LinkError> {
+    pub fn receive_state(&mut self, place: usize, expect: &Expect) -> Result<StateSample<S>, LinkError> {
         let start = Instant::now();
-        let side = side(&mut self.fluid, &mut self.solid, role)?;
+        let side = &mut self.sides[place];
         let sample = side.state.receive(&mut self.hub);
         let arrival = Instant::now();
         self.times.wait += arrival - start;
@@ -76,10 +102,25 @@ impl<S: Transport> CouplerLink<S> {
         Ok(sample)
     }
 
-    /// Answers a phase's state. Run id, protocol, schema and count of the header are filled in here.
+    /// The probe values of a participant on the state of this step; sleeps until they are there. `None` where it has no
+    /// probes.
+    pub fn receive_probes(&mut self, place: usize, step: u64) -> Result<Option<ProbeSample<S>>, LinkError> {
+        let start = Instant::now();
+        let Side { participant, probes, .. } = &mut self.sides[place];
+        let Some(probes) = probes else { return Ok(None) };
+        let sample = probes.receive(&mut self.hub);
+        let arrival = Instant::now();
+        self.times.wait += arrival - start;
+        let sample = ProbeSample(sample?);
+        verify_probes(self.run_id, participant, sample.header(), sample.values(), step)?;
+        self.times.exchange += arrival.elapsed();
+        Ok(Some(sample))
+    }
+
+    /// Answers a participant's state. Run id, protocol, schema and count of the header are filled in here.
     pub fn send_forces(
         &mut self,
-        role: RoleName,
+        place: usize,
         header: &ForceHeader,
         records: &[ForceRecord],
     ) -> Result<(), LinkError> {
@@ -91,9 +132,9 @@ impl<S: Transport> CouplerLink<S> {
             count: records.len() as u32,
             ..*header
         };
-        let side = side(&mut self.fluid, &mut self.solid, role)?;
+        let side = &mut self.sides[place];
         side.forces.send(&self.hub, &header, records.len(), |slot| records[slot])?;
-        self.hub.notify(Some(role));
+        self.hub.notify(Some(side.participant.process));
         self.times.exchange += start.elapsed();
         Ok(())
     }
@@ -101,17 +142,5 @@ impl<S: Transport> CouplerLink<S> {
     /// Where the time went since the link was opened.
     pub fn times(&self) -> LinkTimes {
         self.times
-    }
-}
-
-fn side<'a, S: Transport>(
-    fluid: &'a mut Side<S>,
-    solid: &'a mut Side<S>,
-    role: RoleName,
-) -> Result<&'a mut Side<S>, LinkError> {
-    match role {
-        RoleName::Fluid => Ok(fluid),
-        RoleName::Solid => Ok(solid),
-        RoleName::Coupler => Err(LinkError::Config { key: "role", reason: "the coupler is no phase".into() }),
     }
 }

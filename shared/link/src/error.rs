@@ -1,6 +1,6 @@
 //! What can go wrong on a link, and whose doing it is.
 
-use halfstep_wire::failure::RoleName;
+use halfstep_wire::Name;
 
 /// Why a link could not be opened, or a message not be sent or accepted.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -9,7 +9,7 @@ pub enum LinkError {
     #[error("message of the {peer} at step {step}, stage {stage}: {field} is {found}, expected {expected}")]
     Mismatch {
         /// Who sent it.
-        peer: RoleName,
+        peer: Name,
         /// The field that differs.
         field: &'static str,
         /// What it should be.
@@ -28,7 +28,7 @@ pub enum LinkError {
     )]
     NotFinite {
         /// Who sent it.
-        peer: RoleName,
+        peer: Name,
         /// The field.
         field: &'static str,
         /// The particle; `None`: a field of the header.
@@ -44,26 +44,26 @@ pub enum LinkError {
     #[error("the {peer} is gone: it ended without a last message")]
     PeerDied {
         /// Who.
-        peer: RoleName,
+        peer: Name,
     },
     /// A peer lives but has been silent for too long.
     #[error("no message of the {peer} for {seconds} s although it lives")]
     Timeout {
         /// Who.
-        peer: RoleName,
+        peer: Name,
         /// How long was waited.
         seconds: f64,
     },
     /// Not all roles came.
     #[error(
         "the {role} waited {seconds} s for the start of: {}",
-        missing.iter().map(RoleName::to_string).collect::<Vec<_>>().join(", ")
+        missing.iter().map(Name::to_string).collect::<Vec<_>>().join(", ")
     )]
     HandshakeTimeout {
         /// Who waited.
-        role: RoleName,
+        role: Name,
         /// Who did not come.
-        missing: Vec<RoleName>,
+        missing: Vec<Name>,
         /// How long was waited.
         seconds: f64,
     },
@@ -79,13 +79,13 @@ pub enum LinkError {
     #[error("another process of this run already is the {role}")]
     RoleTaken {
         /// The role.
-        role: RoleName,
+        role: Name,
     },
     /// More interface particles than the run has room for.
     #[error("the {peer} has {needed} interface particles, room is for {capacity}: raise `{key}`")]
     Capacity {
         /// Whose particles.
-        peer: RoleName,
+        peer: Name,
         /// How many there are.
         needed: usize,
         /// How many fit.

@@ -1,7 +1,8 @@
-//! A role's place in the run: its node, its wake-up calls, and who else is there.
+//! A process's place in the run: its node, its wake-up calls, and who else is there.
 
+use super::verdict::{OpenError, PortError, Verdict};
 use super::{LinkConfig, LinkError, Transport};
-use halfstep_wire::failure::RoleName;
+use halfstep_wire::Name;
 use halfstep_wire::protocol::{PROTOCOL, SCHEMA};
 use iceoryx2::identifiers::UniqueNodeId;
 use iceoryx2::node::NodeListFailure;
@@ -13,20 +14,19 @@ use iceoryx2::service::port_factory::event;
 use std::fmt::Debug;
 use std::marker::PhantomData;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Longest sleep: after this the abort flag is looked at and the peer asked for.
 const TICK: Duration = Duration::from_millis(50);
 /// Pause between two looks at who has come.
 const HANDSHAKE_TICK: Duration = Duration::from_millis(1);
-const ROLES: [RoleName; 3] = [RoleName::Fluid, RoleName::Solid, RoleName::Coupler];
 
-/// What is known about the other roles. Shared with the handlers of full queues.
+/// What is known about the other processes. Shared with the handlers of full queues.
 #[derive(Debug)]
 pub(super) struct Watch<S> {
     config: Config,
-    nodes: Mutex<Vec<(RoleName, UniqueNodeId)>>,
+    nodes: Mutex<Vec<(Name, UniqueNodeId)>>,
     stuck: Mutex<Option<u128>>,
     abort: Option<Arc<AtomicBool>>,
     patience: Duration,
@@ -38,40 +38,42 @@ impl<S: Transport> Watch<S> {
         self.abort.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed))
     }
 
-    /// Remembers the node of a role.
-    pub(super) fn met(&self, role: RoleName, node: UniqueNodeId) {
-        self.nodes.lock().expect("no panic inside").push((role, node));
+    /// Remembers the node of a process.
+    pub(super) fn met(&self, process: Name, node: UniqueNodeId) {
+        let mut nodes = self.nodes();
+        if !nodes.iter().any(|(p, _)| *p == process) {
+            nodes.push((process, node));
+        }
     }
 
-    /// Whether the role has come.
-    pub(super) fn has_met(&self, role: RoleName) -> bool {
-        self.nodes.lock().expect("no panic inside").iter().any(|(r, _)| *r == role)
+    fn nodes(&self) -> MutexGuard<'_, Vec<(Name, UniqueNodeId)>> {
+        self.nodes.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The role that owns a node.
-    pub(super) fn role_of(&self, node: UniqueNodeId) -> Option<RoleName> {
-        self.nodes.lock().expect("no panic inside").iter().find(|(_, n)| *n == node).map(|(r, _)| *r)
+    /// The process that owns a node.
+    pub(super) fn process_of(&self, node: UniqueNodeId) -> Option<Name> {
+        self.nodes().iter().find(|(_, n)| *n == node).map(|(process, _)| *process)
     }
 
-    /// Whether a role that had come has ended.
-    pub(super) fn is_gone(&self, role: RoleName) -> bool {
-        matches!(self.state_of(role), Some(Ok(None | Some(NodeState::Dead(_)))))
+    /// Whether a process that had come has ended.
+    pub(super) fn is_gone(&self, process: Name) -> bool {
+        matches!(self.state_of(process), Some(Ok(None | Some(NodeState::Dead(_)))))
     }
 
-    /// Whether a role that had come has ended without leaving.
-    fn was_killed(&self, role: RoleName) -> bool {
-        matches!(self.state_of(role), Some(Ok(Some(NodeState::Dead(_)))))
+    /// Whether a process that had come has ended without leaving.
+    fn was_killed(&self, process: Name) -> bool {
+        matches!(self.state_of(process), Some(Ok(Some(NodeState::Dead(_)))))
     }
 
-    fn state_of(&self, role: RoleName) -> Option<Result<Option<NodeState<S>>, NodeListFailure>> {
-        let node =
-            self.nodes.lock().expect("no panic inside").iter().find(|(r, _)| *r == role).map(|(_, n)| *n);
+    fn state_of(&self, process: Name) -> Option<Result<Option<NodeState<S>>, NodeListFailure>> {
+        let node = self.nodes().iter().find(|(p, _)| *p == process).map(|(_, node)| *node);
         node.map(|node| Node::<S>::state_of(&self.config, node))
     }
 
-    /// The first of the other roles that has ended.
-    fn first_gone(&self) -> Option<RoleName> {
-        ROLES.into_iter().find(|role| self.is_gone(*role))
+    /// The first of the other processes that has ended.
+    fn first_gone(&self) -> Option<Name> {
+        let known: Vec<Name> = self.nodes().iter().map(|(process, _)| *process).collect();
+        known.into_iter().find(|process| self.is_gone(*process))
     }
 
     /// What a publisher does when a reader's queue is full, which lock-step does not let happen unless that reader has
@@ -82,7 +84,7 @@ impl<S: Transport> Watch<S> {
             || info.elapsed_time > self.patience
             || (info.retries % 50 == 49 && self.first_gone().is_some());
         if give_up {
-            *self.stuck.lock().expect("no panic inside") = Some(info.receiver_port_id);
+            *self.stuck.lock().unwrap_or_else(PoisonError::into_inner) = Some(info.receiver_port_id);
             BackpressureAction::DiscardDataAndFail
         } else {
             BackpressureAction::Retry
@@ -97,15 +99,15 @@ impl<S: Transport> Watch<S> {
         if let Some(peer) = self.first_gone() {
             return LinkError::PeerDied { peer };
         }
-        let port = self.stuck.lock().expect("no panic inside").take();
-        match port.and_then(owner).and_then(|node| self.role_of(node)) {
+        let port = self.stuck.lock().unwrap_or_else(PoisonError::into_inner).take();
+        match port.and_then(owner).and_then(|node| self.process_of(node)) {
             Some(peer) => LinkError::Timeout { peer, seconds: self.patience.as_secs_f64() },
             None => LinkError::transport("sending", "a reader's queue is full"),
         }
     }
 }
 
-/// Whether a role has come.
+/// Whether a participant has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Presence {
     /// It has not been seen.
@@ -116,13 +118,25 @@ pub(super) enum Presence {
     Left,
 }
 
-/// Node, listener and notifiers of a role.
+impl Presence {
+    /// Of two in one process.
+    pub(super) fn and(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::NotYet, _) | (_, Self::NotYet) => Self::NotYet,
+            (Self::Left, _) | (_, Self::Left) => Self::Left,
+            (Self::Here, Self::Here) => Self::Here,
+        }
+    }
+}
+
+/// Node, listener and notifiers of a process.
 #[derive(Debug)]
 pub(super) struct Hub<S: Transport> {
-    pub(super) role: RoleName,
+    pub(super) process: Name,
     listener: Listener<S>,
-    notifiers: Vec<(RoleName, Notifier<S>)>,
-    events: Vec<(RoleName, event::PortFactory<S>)>,
+    notifiers: Vec<(Name, Notifier<S>)>,
+    /// Wake-up services of the own process and of its partners.
+    events: Vec<(Name, event::PortFactory<S>)>,
     pub(super) watch: Arc<Watch<S>>,
     pub(super) node: Node<S>,
     /// A wake-up call reached nobody: look after the peers before the next sleep.
@@ -135,15 +149,15 @@ impl<S: Transport> Hub<S> {
     /// Enters the run: creates the node and the listener. Notifiers follow in [`Self::gather`].
     pub(super) fn open(
         config: &LinkConfig,
-        role: RoleName,
+        process: Name,
         abort: Option<Arc<AtomicBool>>,
     ) -> Result<Self, LinkError> {
         // Every failure comes back as an error; the transport's own words only on request (IOX2_LOG_LEVEL).
         set_log_level_from_env_or(LogLevel::Fatal);
         let transport = config.transport()?;
-        let name = role.to_string();
+        let name = NodeName::new(process.as_str()).map_err(|e| LinkError::transport("naming a node", e))?;
         let node = NodeBuilder::new()
-            .name(&NodeName::new(&name).map_err(|e| LinkError::transport("naming a node", e))?)
+            .name(&name)
             .signal_handling_mode(SignalHandlingMode::Disabled)
             .config(&transport)
             .create::<S>()
@@ -158,25 +172,26 @@ impl<S: Transport> Hub<S> {
         });
         let deadline = Instant::now() + Duration::from_secs_f64(config.handshake_seconds);
         let mut events = Vec::new();
-        for owner in ROLES {
+        for owner in std::iter::once(process).chain(config.partners(process)) {
             let service = format!("halfstep/{owner}/wake");
             let name = service_name(&service)?;
             let attributes = attributes()?;
-            let factory = open_until(deadline, &watch, role, &service, || {
+            let callers = config.partners(owner).len();
+            let factory = open_until(deadline, &watch, process, &service, || {
                 node.service_builder(&name)
                     .event()
                     .max_listeners(1)
-                    .max_notifiers(2)
-                    .max_nodes(3)
+                    .max_notifiers(callers)
+                    .max_nodes(callers + 1)
                     .open_or_create_with_attributes(&attributes)
             })?;
             events.push((owner, factory));
         }
-        let own = &events.iter().find(|(owner, _)| *owner == role).expect("all roles are there").1;
-        let listener = own.listener_builder().create().map_err(|e| port_error(role, "listening", e))?;
+        let own = &events[0].1;
+        let listener = own.listener_builder().create().map_err(|e| port_error(process, "listening", e))?;
         let handshake = config.handshake_seconds;
         Ok(Self {
-            role,
+            process,
             listener,
             notifiers: Vec::new(),
             events,
@@ -189,35 +204,38 @@ impl<S: Transport> Hub<S> {
     }
 
     /// Opens a channel, whoever comes first, or says why not.
-    pub(super) fn open_service<T, E: Debug>(
+    pub(super) fn open_service<T, E: OpenError>(
         &self,
         service: &str,
         open: impl FnMut() -> Result<T, E>,
     ) -> Result<T, LinkError> {
-        open_until(self.deadline, &self.watch, self.role, service, open)
+        open_until(self.deadline, &self.watch, self.process, service, open)
     }
 
-    /// Waits until everybody is there and connected to everybody; `look` connects to a role once it has come.
+    /// Waits until everybody is there and connected to everybody; `look` connects to what a partner publishes once that
+    /// is there.
     ///
-    /// A role makes its notifier for another when it has connected to all that the other publishes. So a role that
-    /// finds the notifiers of both others knows that no message of its own can be lost, even if it sends one and ends
-    /// at once. A role that has come and gone was connected before it went.
+    /// A process makes its notifier for another when it has connected to all that the other publishes. So a process
+    /// that finds the notifiers of all partners knows that no message of its own can be lost, even if it sends one and
+    /// ends at once. A process that has come and gone was connected before it went.
     pub(super) fn gather(
         &mut self,
-        mut look: impl FnMut(RoleName, &Watch<S>) -> Result<Presence, LinkError>,
+        mut look: impl FnMut(Name, &Watch<S>) -> Result<Presence, LinkError>,
     ) -> Result<(), LinkError> {
-        let others: Vec<RoleName> = ROLES.into_iter().filter(|role| *role != self.role).collect();
+        let partners: Vec<Name> = self.events[1..].iter().map(|(owner, _)| *owner).collect();
         let mut looked = Instant::now();
         loop {
             let mut missing = Vec::new();
-            for role in others.iter().copied() {
-                let presence = look(role, &self.watch)?;
-                if presence != Presence::NotYet && !self.notifiers.iter().any(|(owner, _)| *owner == role) {
-                    self.create_notifier(role)?;
+            for process in partners.iter().copied() {
+                let presence = look(process, &self.watch)?;
+                let notified = self.notifiers.iter().any(|(owner, _)| *owner == process);
+                if presence != Presence::NotYet && !notified {
+                    self.create_notifier(process)?;
                 }
-                if presence == Presence::NotYet || (presence == Presence::Here && !self.is_notified_by(role))
+                if presence == Presence::NotYet
+                    || (presence == Presence::Here && !self.is_notified_by(process))
                 {
-                    missing.push(role);
+                    missing.push(process);
                 }
             }
             if missing.is_empty() {
@@ -228,52 +246,53 @@ impl<S: Transport> Hub<S> {
             }
             if looked.elapsed() > TICK {
                 // One that left on its own has left a message that says why.
-                if let Some(peer) = others.iter().copied().find(|role| self.watch.was_killed(*role)) {
+                if let Some(peer) = partners.iter().copied().find(|p| self.watch.was_killed(*p)) {
                     return Err(LinkError::PeerDied { peer });
                 }
                 looked = Instant::now();
             }
             if Instant::now() > self.deadline {
                 let seconds = self.handshake;
-                return Err(LinkError::HandshakeTimeout { role: self.role, missing, seconds });
+                return Err(LinkError::HandshakeTimeout { role: self.process, missing, seconds });
             }
             std::thread::sleep(HANDSHAKE_TICK);
         }
     }
 
-    fn wake_service(&self, owner: RoleName) -> &event::PortFactory<S> {
-        &self.events.iter().find(|(role, _)| *role == owner).expect("all roles are there").1
-    }
-
-    fn create_notifier(&mut self, owner: RoleName) -> Result<(), LinkError> {
-        let builder = self.wake_service(owner).notifier_builder();
-        let notifier = builder.create().map_err(|e| port_error(self.role, "notifying", e))?;
+    fn create_notifier(&mut self, owner: Name) -> Result<(), LinkError> {
+        let service = self.events.iter().find(|(name, _)| *name == owner);
+        let Some((_, factory)) = service else {
+            return Err(LinkError::Config { key: "process", reason: format!("`{owner}` is no partner") });
+        };
+        let notifier =
+            factory.notifier_builder().create().map_err(|e| port_error(self.process, "notifying", e))?;
         self.notifiers.push((owner, notifier));
         Ok(())
     }
 
-    fn is_notified_by(&self, role: RoleName) -> bool {
+    fn is_notified_by(&self, process: Name) -> bool {
         let mut found = false;
-        self.wake_service(self.role).dynamic_config().list_notifiers(|details| {
-            found |= self.watch.role_of(details.node_id) == Some(role);
+        self.events[0].1.dynamic_config().list_notifiers(|details| {
+            found |= self.watch.process_of(details.node_id) == Some(process);
             CallbackProgression::Continue
         });
         found
     }
 
-    /// Wakes a role, or all others.
-    pub(super) fn notify(&mut self, only: Option<RoleName>) {
-        for (role, notifier) in &self.notifiers {
-            if only.is_none_or(|wanted| wanted == *role) && !matches!(notifier.notify(), Ok(1..)) {
+    /// Wakes a process, or all partners.
+    pub(super) fn notify(&mut self, only: Option<Name>) {
+        for (process, notifier) in &self.notifiers {
+            if only.is_none_or(|wanted| wanted == *process) && !matches!(notifier.notify(), Ok(1..)) {
                 self.suspicious = true;
             }
         }
     }
 
-    /// Sleeps until `receive` finds a message of `peer`.
+    /// Sleeps until `receive` finds a message of `peer`, which runs in `process`.
     pub(super) fn wait<T>(
         &mut self,
-        peer: RoleName,
+        peer: Name,
+        process: Name,
         mut receive: impl FnMut() -> Result<Option<T>, LinkError>,
     ) -> Result<T, LinkError> {
         let start = Instant::now();
@@ -286,7 +305,7 @@ impl<S: Transport> Hub<S> {
                 return Ok(message);
             }
             if std::mem::take(&mut self.suspicious) || looked.elapsed() >= TICK {
-                if self.watch.is_gone(peer) {
+                if self.watch.is_gone(process) {
                     // What it sent before it ended is still readable.
                     return receive()?.ok_or(LinkError::PeerDied { peer });
                 }
@@ -322,36 +341,34 @@ pub(super) fn service_name(name: &str) -> Result<ServiceName, LinkError> {
 }
 
 /// A port could not be made: usually somebody else has it.
-pub(super) fn port_error(role: RoleName, action: &'static str, error: impl Debug) -> LinkError {
-    if format!("{error:?}").starts_with("ExceedsMax") {
-        LinkError::RoleTaken { role }
-    } else {
-        LinkError::transport(action, error)
-    }
+pub(super) fn port_error(process: Name, action: &'static str, error: impl PortError) -> LinkError {
+    if error.is_taken() { LinkError::RoleTaken { role: process } } else { LinkError::transport(action, error) }
 }
 
 /// Opening races with others who create, open or remove the same service: what is not final is tried again.
-fn open_until<S: Transport, T, E: Debug>(
+fn open_until<S: Transport, T, E: OpenError>(
     deadline: Instant,
     watch: &Watch<S>,
-    role: RoleName,
+    process: Name,
     service: &str,
     mut open: impl FnMut() -> Result<T, E>,
 ) -> Result<T, LinkError> {
     loop {
         let error = match open() {
             Ok(factory) => return Ok(factory),
-            Err(error) => format!("{error:?}"),
+            Err(error) => error,
         };
-        // The transport has one error enumeration for each kind of service; the names of the variants are common.
-        if ["Incompatible", "DoesNotSupport", "VersionMismatch"].iter().any(|word| error.contains(word)) {
-            return Err(LinkError::Incompatible { service: service.into(), reason: error });
-        }
-        if error.contains("ExceedsMaxNumberOfNodes") {
-            return Err(LinkError::RoleTaken { role });
-        }
-        if error.contains("InsufficientPermissions") || Instant::now() > deadline {
-            return Err(LinkError::Transport { action: "opening a channel", reason: error });
+        let reason = || format!("{error:?}");
+        match error.verdict() {
+            Verdict::Incompatible => {
+                return Err(LinkError::Incompatible { service: service.into(), reason: reason() });
+            }
+            Verdict::Taken => return Err(LinkError::RoleTaken { role: process }),
+            Verdict::Refused => return Err(LinkError::Transport { action: "opening a channel", reason: reason() }),
+            Verdict::Race if Instant::now() > deadline => {
+                return Err(LinkError::Transport { action: "opening a channel", reason: reason() });
+            }
+            Verdict::Race => {}
         }
         if watch.aborted() {
             return Err(LinkError::Aborted);

@@ -1,8 +1,9 @@
 //! Lock-step channels between the roles of a run: the same code between processes and between threads.
 //!
-//! The fluid and the solid each hold a [`PhaseLink`]: they publish their interface state, read the other's published
-//! state where it lies, and receive the cross-phase forces. The coupler holds a [`CouplerLink`]: it reads both states
-//! and answers each with forces, the time step and an order. Nothing is overwritten, dropped or retried on another
+//! A process of participants (the fluid, one solid or several) holds a [`ProcessLink`]: it publishes their interface
+//! states, reads the states of the other phase and receives the cross-phase forces. The coupler holds a
+//! [`CouplerLink`]: it reads all states and answers each with forces, the time step and an order. [`Port`] is what the
+//! half-step loop sees of it. Nothing is overwritten, dropped or retried on another
 //! step: whatever does not fit is a [`LinkError`] that says who sent what and what was expected.
 //!
 //! Waiting sleeps; it wakes when a message arrives, when the peer is gone, when the caller's abort flag is set or when
@@ -17,16 +18,19 @@ mod coupler;
 mod error;
 mod hub;
 mod memory;
-mod phase;
+mod port;
+mod process;
 mod slot;
+mod verdict;
 
-pub use channel::{ForceSample, StateSample};
+pub use channel::{ForceSample, ProbeSample, StateSample};
 pub use check::Expect;
 pub use claim::{Claim, cleanup, cleanup_stale};
-pub use config::LinkConfig;
+pub use config::{FLUID, LinkConfig, Participant};
 pub use coupler::CouplerLink;
 pub use error::LinkError;
-pub use phase::PhaseLink;
+pub use port::Port;
+pub use process::ProcessLink;
 pub use slot::Slot;
 
 use iceoryx2::prelude::{ipc, local};

@@ -3,9 +3,9 @@
 //! Objects in `/dev/shm` are sparse until they are written to, and a write for which there is no room left kills the
 //! process with SIGBUS. So the room is checked before anything is created and then reserved page by page.
 
-use super::{LinkConfig, LinkError, Transport};
-use halfstep_wire::failure::RoleName;
-use halfstep_wire::protocol::{ForceHeader, ForceRecord, StateHeader, StateRecord};
+use super::{LinkConfig, LinkError, Participant, Transport};
+use halfstep_wire::Name;
+use halfstep_wire::protocol::{ForceHeader, ForceRecord, ProbeHeader, StateHeader, StateRecord};
 use std::ffi::CString;
 use std::os::fd::AsRawFd;
 use std::path::Path;
@@ -19,25 +19,29 @@ pub(super) const SAMPLES: usize = 6;
 const MESSAGE_OVERHEAD: usize = 256;
 const CHANNEL_OVERHEAD: u64 = 64 * 1024;
 
-/// Bytes that the messages a role publishes take.
-pub(super) fn publisher_bytes(config: &LinkConfig, role: RoleName) -> u64 {
-    let channel = |phase: RoleName, header: usize, record: usize| {
-        let message = header + MESSAGE_OVERHEAD + config.capacity(phase) as usize * record;
+/// Bytes that the messages take which a process publishes.
+pub(super) fn published_bytes(config: &LinkConfig, process: Name) -> u64 {
+    let channel = |count: u32, header: usize, record: usize| {
+        let message = header + MESSAGE_OVERHEAD + count as usize * record;
         SAMPLES as u64 * message as u64 + CHANNEL_OVERHEAD
     };
-    let forces = |phase| channel(phase, size_of::<ForceHeader>(), size_of::<ForceRecord>());
-    match role {
-        RoleName::Coupler => forces(RoleName::Fluid) + forces(RoleName::Solid),
-        phase => channel(phase, size_of::<StateHeader>(), size_of::<StateRecord>()),
+    let forces = |p: &Participant| channel(p.capacity, size_of::<ForceHeader>(), size_of::<ForceRecord>());
+    let states = |p: &Participant| {
+        let probes = if p.probes == 0 { 0 } else { channel(p.probes, size_of::<ProbeHeader>(), size_of::<f64>()) };
+        probes + channel(p.capacity, size_of::<StateHeader>(), size_of::<StateRecord>())
+    };
+    match process {
+        Name::COUPLER => config.participants.iter().map(forces).sum(),
+        _ => config.members(process).into_iter().map(|k| states(&config.participants[k])).sum(),
     }
 }
 
-/// Fails if what a role publishes does not fit into what is free.
-pub(super) fn check_room<S: Transport>(config: &LinkConfig, role: RoleName) -> Result<(), LinkError> {
+/// Fails if what a process publishes does not fit into what is free.
+pub(super) fn check_room<S: Transport>(config: &LinkConfig, process: Name) -> Result<(), LinkError> {
     if !S::SHARED_MEMORY {
         return Ok(());
     }
-    let needed = publisher_bytes(config, role);
+    let needed = published_bytes(config, process);
     let available = free_bytes()?;
     if needed > available { Err(LinkError::SharedMemoryFull { needed, available }) } else { Ok(()) }
 }

@@ -1,46 +1,15 @@
 //! A simulation that left its bounds: who, where, which quantity.
 
 use crate::half_step::Stage;
-use crate::protocol::{StateHeader, status};
+use crate::Name;
+use crate::protocol::{Failure, StateHeader, status};
 pub use halfstep_sph::quantity::Quantity;
-
-/// The process, by what it owns.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum RoleName {
-    /// Owns the fluid and the walls around it.
-    Fluid,
-    /// Owns the solid.
-    Solid,
-    /// Owns the clock and the cross-phase force.
-    Coupler,
-}
-
-impl RoleName {
-    /// The other phase. The coupler has none and is its own.
-    pub fn peer(self) -> Self {
-        match self {
-            Self::Fluid => Self::Solid,
-            Self::Solid => Self::Fluid,
-            Self::Coupler => Self::Coupler,
-        }
-    }
-}
-
-impl std::fmt::Display for RoleName {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Fluid => "fluid",
-            Self::Solid => "solid",
-            Self::Coupler => "coupler",
-        })
-    }
-}
 
 /// A quantity is out of bounds: the run cannot go on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Diverged {
     /// Whose particle.
-    pub role: RoleName,
+    pub participant: Name,
     /// Its number; 0 where the quantity is no particle's.
     pub particle: u32,
     /// Which quantity.
@@ -57,8 +26,8 @@ pub struct Diverged {
 
 impl std::fmt::Display for Diverged {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { role, particle, quantity, value, step, stage, position: [x, y, z] } = self;
-        write!(f, "the {role} diverged at step {step}, stage {stage}: ")?;
+        let Self { participant, particle, quantity, value, step, stage, position: [x, y, z] } = self;
+        write!(f, "the {participant} diverged at step {step}, stage {stage}: ")?;
         match quantity {
             Quantity::Energy => write!(
                 f,
@@ -76,33 +45,34 @@ impl std::fmt::Display for Diverged {
 
 impl std::error::Error for Diverged {}
 
-/// Added to the quantity's number on the wire where the particle is not the sender's but the other phase's.
-const OF_PEER: u32 = 16;
-
 impl Diverged {
-    /// Makes `header` the message of `sender` that tells of this in the place of its next state.
-    pub fn tell(&self, sender: RoleName, header: &mut StateHeader) {
+    /// Makes `header` the message that tells of this in the place of its sender's next state. `participants` are those of
+    /// the run, in its order.
+    pub fn tell(&self, participants: &[Name], header: &mut StateHeader) {
+        let place = participants.iter().position(|name| *name == self.participant);
         header.status = status::DIVERGED;
-        header.failure_quantity = self.quantity as u32 + if self.role == sender { 0 } else { OF_PEER };
-        header.failure_particle = self.particle;
-        header.failure_value = self.value;
-        header.failure_position = self.position;
+        header.failure = Failure {
+            participant: place.unwrap_or_default() as u32,
+            quantity: self.quantity as u32,
+            particle: self.particle,
+            reserved: 0,
+            value: self.value,
+            position: self.position,
+        };
     }
 
     /// What a message of `sender` tells. It takes the place of the state after the one that diverged.
-    pub fn told(sender: RoleName, header: &StateHeader) -> Self {
-        let number = header.failure_quantity;
-        let (role, number) =
-            if number > OF_PEER { (sender.peer(), number - OF_PEER) } else { (sender, number) };
+    pub fn told(sender: Name, participants: &[Name], header: &StateHeader) -> Self {
+        let failure = &header.failure;
         let (step, stage) = Stage::try_from(header.stage).unwrap_or(Stage::First).preceding(header.step);
         Self {
-            role,
-            particle: header.failure_particle,
-            quantity: Quantity::from_wire(number).unwrap_or(Quantity::Position),
-            value: header.failure_value,
+            participant: participants.get(failure.participant as usize).copied().unwrap_or(sender),
+            particle: failure.particle,
+            quantity: Quantity::from_wire(failure.quantity).unwrap_or(Quantity::Position),
+            value: failure.value,
             step,
             stage,
-            position: header.failure_position,
+            position: failure.position,
         }
     }
 }
@@ -114,7 +84,7 @@ mod tests {
     #[test]
     fn an_energy_is_the_phases_and_no_particles() {
         let diverged = Diverged {
-            role: RoleName::Fluid,
+            participant: Name::FLUID,
             particle: 0,
             quantity: Quantity::Energy,
             value: 12.5,
@@ -132,13 +102,11 @@ mod tests {
 
     #[test]
     fn what_is_told_arrives_whoever_owns_the_particle() {
-        for (role, sender) in [
-            (RoleName::Solid, RoleName::Solid),
-            (RoleName::Solid, RoleName::Fluid),
-            (RoleName::Fluid, RoleName::Fluid),
-        ] {
+        let plate: Name = "plate".parse().unwrap();
+        let participants = [Name::FLUID, plate, Name::SOLID];
+        for (participant, sender) in [(plate, plate), (plate, Name::FLUID), (Name::FLUID, Name::FLUID)] {
             let diverged = Diverged {
-                role,
+                participant,
                 particle: 7,
                 quantity: Quantity::Speed,
                 value: 250.0,
@@ -148,9 +116,13 @@ mod tests {
             };
             // The state of step 41, stage 1 was the last one: the message stands for step 42, stage 0.
             let mut header = StateHeader { step: 42, stage: 0, ..StateHeader::default() };
-            diverged.tell(sender, &mut header);
+            diverged.tell(&participants, &mut header);
             assert_eq!(header.status, status::DIVERGED);
-            assert_eq!(Diverged::told(sender, &header), diverged);
+            assert_eq!(Diverged::told(sender, &participants, &header), diverged);
         }
+        // A number that stands for no participant is the sender's.
+        let mut header = StateHeader { step: 42, ..StateHeader::default() };
+        header.failure.participant = 9;
+        assert_eq!(Diverged::told(plate, &participants, &header).participant, plate);
     }
 }

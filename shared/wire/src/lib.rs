@@ -3,7 +3,10 @@
 pub mod failure;
 pub mod frame;
 pub mod half_step;
+mod name;
 pub mod protocol;
+
+pub use name::{BadName, Name};
 
 /// A vector of the scene's dimension as the three components of the wire and of files.
 pub fn wide<const D: usize>(v: [f64; D]) -> [f64; 3] {

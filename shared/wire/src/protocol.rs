@@ -2,22 +2,21 @@
 //!
 //! All records are dimension-independent (a two-dimensional run leaves z components at zero), little-endian, `repr(C)`
 //! and free of padding, so that a process in any language can read and write them. Message k of a force channel answers
-//! message k of the same phase's state channel.
+//! message k of the same participant's state channel.
 
 use std::fmt::Debug;
 
 /// Version of the protocol; both sides of every channel must agree.
-pub const PROTOCOL: u32 = 1;
-/// Probe values that fit into a state header.
-pub const MAX_PROBE_VALUES: usize = 32;
+pub const PROTOCOL: u32 = 2;
 
 /// State of one interface particle. 128 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StateRecord {
-    /// The owner's particle number: unique in its phase, ascending in a message.
+    /// The owner's particle number: unique within the participant, ascending in a message.
     pub id: u32,
-    /// 1: the velocity is prescribed (a clamped particle); else 0.
+    /// Bit 0: the velocity is prescribed (a clamped particle). Bits 8 to 31: number of the body, 0 where the sender does
+    /// not say. The others are zero.
     pub flags: u32,
     /// Position, m.
     pub position: [f64; 3],
@@ -73,14 +72,62 @@ pub mod order {
     pub const GO: u32 = 1;
     /// Write the state just published as frame `frame`.
     pub const WRITE_FRAME: u32 = 2;
-    /// Write the state just published as a checkpoint.
+    /// Write the state just published as checkpoint `checkpoint`.
     pub const WRITE_CHECKPOINT: u32 = 4;
     /// Do not advance: answer with a last message (stage 2, status finished) and end.
     pub const STOP: u32 = 8;
+    /// Send the probe values of the state just published; for participants with the ability [`super::ability::PROBES`].
+    pub const SEND_PROBES: u32 = 16;
+}
+
+/// Bits of [`StateHeader::abilities`]: what a participant does besides exchanging states.
+pub mod ability {
+    /// It writes checkpoints of its own.
+    pub const CHECKPOINTS: u32 = 1;
+    /// It evaluates its walls and the contacts between its own bodies.
+    pub const WALLS_AND_CONTACTS: u32 = 2;
+    /// It sends the values of its probes where a row is due.
+    pub const PROBES: u32 = 4;
 }
 
 /// [`StateHeader::stage`] of a last message.
 pub const LAST_STAGE: u32 = 2;
+
+/// What diverged: the failure fields of a state message.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Failure {
+    /// Place in the list of participants of the one that diverged, which may be another than the sender.
+    pub participant: u32,
+    /// Which quantity: the number of a [`crate::failure::Quantity`]; 0: none.
+    pub quantity: u32,
+    /// The particle that diverged.
+    pub particle: u32,
+    /// Zero.
+    pub reserved: u32,
+    /// The value that was out of bounds.
+    pub value: f64,
+    /// Where, m.
+    pub position: [f64; 3],
+}
+
+/// Sums over all particles of a participant.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Audit {
+    /// Linear momentum x, y, z, kg m/s (2D: per metre).
+    pub momentum: [f64; 3],
+    /// Kinetic energy, J.
+    pub kinetic_energy: f64,
+    /// Mass, kg.
+    pub mass: f64,
+    /// Largest |rho / rho0 - 1|.
+    pub density_error: f64,
+    /// Smallest distance to the other phase over dx; infinite where none is near.
+    pub gap: f64,
+    /// Energy stored in the material, J: strain energy of a solid, work of compression of a fluid.
+    pub stored_energy: f64,
+}
 
 /// Heads every state message.
 #[repr(C)]
@@ -100,13 +147,13 @@ pub struct StateHeader {
     pub stage: u32,
     /// Number of records that follow.
     pub count: u32,
-    /// Generation of the fluid's interface set: within one, slots keep their particles. The solid repeats 0.
+    /// Generation of the fluid's interface set: within one, slots keep their particles. A solid repeats 0.
     pub epoch: u64,
     /// Time of step n, s, as last told by the coupler.
     pub time: f64,
     /// Stage 0: zero. Stage 1: the time step as told by the coupler.
     pub dt: f64,
-    /// Stage 0: the largest time step this side allows, s.
+    /// Stage 0: the largest time step this participant allows, s.
     pub dt_limit: f64,
     /// Largest displacement of an own interface particle since the epoch began, m.
     pub displacement: f64,
@@ -114,27 +161,18 @@ pub struct StateHeader {
     pub sub_steps: u32,
     /// Frames on disk: all up to, not including, this one.
     pub frames_safe: u32,
-    /// What diverged: see [`crate::failure::Quantity`].
-    pub failure_quantity: u32,
-    /// The particle that diverged.
-    pub failure_particle: u32,
-    /// The value that was out of bounds.
-    pub failure_value: f64,
-    /// Where, m.
-    pub failure_position: [f64; 3],
-    /// Hash over this side's final particle states in id order (last message only).
+    /// What the sender does besides exchanging states, see [`ability`]; read from its first message.
+    pub abilities: u32,
+    /// Zero.
+    pub reserved: u32,
+    /// What diverged (status diverged only).
+    pub failure: Failure,
+    /// Sums over all own particles (stage 0).
+    pub audit: Audit,
+    /// Hash over the participant's final particle states in id order (last message only).
     pub state_hash: u64,
-    /// Seconds spent computing, waiting, exchanging, writing (last message only).
-    pub seconds: [f64; 4],
-    /// Sums over all own particles: linear momentum x, y, z (kg m/s), kinetic energy (J), mass (kg), largest relative
-    /// density error, smallest distance to the other phase over dx, stored energy (J).
-    pub audit: [f64; 8],
     /// Number of own particles.
     pub particles: u64,
-    /// Number of probe values.
-    pub probe_count: u64,
-    /// Probe values of this phase, in the scene's order (stage 0); of a last message, their places are the receiver's.
-    pub probes: [f64; MAX_PROBE_VALUES],
 }
 
 /// Heads every force message.
@@ -165,6 +203,26 @@ pub struct ForceHeader {
     pub next_time: f64,
     /// Number of the frame to write.
     pub frame: u64,
+    /// Number of the checkpoint to write.
+    pub checkpoint: u64,
+}
+
+/// Heads the probe values of a participant: as many numbers follow as its probes have components, in the scene's order.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ProbeHeader {
+    /// The run's number.
+    pub run_id: u64,
+    /// Hash of record and header layouts.
+    pub schema: u64,
+    /// [`PROTOCOL`].
+    pub protocol: u32,
+    /// Number of values that follow.
+    pub count: u32,
+    /// Step n of the state that was measured.
+    pub step: u64,
+    /// Its time, s.
+    pub time: f64,
 }
 
 /// What a message is made of: plain bytes, `repr(C)` and without padding, that mean the same in every process.
@@ -193,12 +251,17 @@ unsafe impl Plain for ForceRecord {
 
 // SAFETY: `repr(C)`, numbers only, and no padding: asserted at the end of this file.
 unsafe impl Plain for StateHeader {
-    const NAME: &'static str = "halfstep.StateHeader.1";
+    const NAME: &'static str = "halfstep.StateHeader.2";
 }
 
 // SAFETY: `repr(C)`, numbers only, and no padding: asserted at the end of this file.
 unsafe impl Plain for ForceHeader {
-    const NAME: &'static str = "halfstep.ForceHeader.1";
+    const NAME: &'static str = "halfstep.ForceHeader.2";
+}
+
+// SAFETY: `repr(C)`, numbers only, and no padding: asserted at the end of this file.
+unsafe impl Plain for ProbeHeader {
+    const NAME: &'static str = "halfstep.ProbeHeader.1";
 }
 
 /// The layout that both ends must share, spelt out; its hash travels in every header and as a service attribute.
@@ -207,11 +270,13 @@ pub const LAYOUT: &str = concat!(
     "deviatoric_stress:f64[6]};",
     "ForceRecord{id:u32,flags:u32,cross_viscosity:f64[3],stress_force:f64[3]};",
     "StateHeader{run_id:u64,schema:u64,protocol:u32,status:u32,step:u64,stage:u32,count:u32,epoch:u64,time:f64,",
-    "dt:f64,dt_limit:f64,displacement:f64,sub_steps:u32,frames_safe:u32,failure_quantity:u32,failure_particle:u32,",
-    "failure_value:f64,failure_position:f64[3],state_hash:u64,seconds:f64[4],audit:f64[8],particles:u64,",
-    "probe_count:u64,probes:f64[32]};",
+    "dt:f64,dt_limit:f64,displacement:f64,sub_steps:u32,frames_safe:u32,abilities:u32,reserved:u32,",
+    "failure:{participant:u32,quantity:u32,particle:u32,reserved:u32,value:f64,position:f64[3]},",
+    "audit:{momentum:f64[3],kinetic_energy:f64,mass:f64,density_error:f64,gap:f64,stored_energy:f64},",
+    "state_hash:u64,particles:u64};",
     "ForceHeader{run_id:u64,schema:u64,protocol:u32,order:u32,step:u64,stage:u32,count:u32,epoch:u64,time:f64,",
-    "dt:f64,next_time:f64,frame:u64}"
+    "dt:f64,next_time:f64,frame:u64,checkpoint:u64};",
+    "ProbeHeader{run_id:u64,schema:u64,protocol:u32,count:u32,step:u64,time:f64}"
 );
 
 /// FNV-1a (64 bit) of [`LAYOUT`].
@@ -230,5 +295,6 @@ const fn fnv1a(bytes: &[u8]) -> u64 {
 // No padding anywhere: sizes are sums of the fields.
 const _: () = assert!(size_of::<StateRecord>() == 128);
 const _: () = assert!(size_of::<ForceRecord>() == 56);
-const _: () = assert!(size_of::<StateHeader>() == 504);
-const _: () = assert!(size_of::<ForceHeader>() == 80);
+const _: () = assert!(size_of::<StateHeader>() == 224);
+const _: () = assert!(size_of::<ForceHeader>() == 88);
+const _: () = assert!(size_of::<ProbeHeader>() == 40);
