@@ -26,7 +26,7 @@ impl Limits {
         if fluid.viscosity > 0.0 {
             limits.fixed = 0.125 * h * h * fluid.density / fluid.viscosity;
         }
-        let Some(solid) = &scene.solid else { return limits };
+        let Some(solid) = scene.solids.first() else { return limits };
         match scene.interface.treatment {
             Treatment::MovingWall => limits.courant /= (fluid.density / solid.density).sqrt().max(1.0),
             Treatment::PhaseBlind => {

@@ -23,7 +23,9 @@ pub(crate) fn takes_part(scene: &Scene, effect: EffectName) -> bool {
 }
 
 fn derive(scene: &Scene, effect: EffectName) -> Derived {
-    let Some(solid) = &scene.solid else { return Derived::Impossible("the scene has no solid".into()) };
+    let Some(solid) = scene.solids.first() else {
+        return Derived::Impossible("the scene has no solid".into());
+    };
     let hypoelastic = solid.model == SolidModelName::Hypoelastic;
     match effect {
         EffectName::ArtificialStress if !hypoelastic => {

@@ -121,7 +121,7 @@ mod tests {
     fn the_slowest_period_by_hand() {
         // Thin cantilever, L = 1 m, H = 0.1 m, rho = 1200, E = 1.2e6, nu = 0: omega = 1.8751² sqrt(E H² / (12 rho)) =
         // 3.516 * 0.9129 = 3.2097, T = 1.9576 s.
-        let mut solid = scene().solid.unwrap();
+        let mut solid = scene().solids.remove(0);
         (solid.density, solid.youngs_modulus, solid.poissons_ratio) = (1200.0, 1.2e6, 0.0);
         assert!((slowest_period(&solid, 1.0, 0.1) - 1.9576).abs() < 1e-3);
     }
@@ -129,7 +129,7 @@ mod tests {
     #[test]
     fn it_falls_asleep_after_half_a_period_and_wakes_at_a_force() {
         let scene = scene();
-        let solid = scene.solid.clone().unwrap();
+        let solid = scene.solids[0].clone();
         let model = Hypoelastic::<2>::new(&scene, Isa::detect()).unwrap();
         let mut sleep = Sleep::new(&scene, &solid, &model);
         let window = 0.5 * slowest_period(&solid, 0.08, 0.01);

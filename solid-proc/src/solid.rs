@@ -44,7 +44,7 @@ enum Measurement {
 impl<const D: usize> Solid<D> {
     /// The solid of a scene that has one, with the model that it names.
     pub fn new(scene: &Scene, isa: Isa) -> Option<Self> {
-        let solid = scene.solid.as_ref()?;
+        let solid = scene.solids.first()?;
         let model: Box<dyn SolidModel<D>> = match solid.model {
             SolidModelName::Hypoelastic => Box::new(Hypoelastic::<D>::new(scene, isa)?),
             SolidModelName::TotalLagrangian => Box::new(TotalLagrangian::<D>::new(scene, isa)?),
@@ -76,7 +76,7 @@ impl<const D: usize> Solid<D> {
             })
             .collect();
         let sleep = takes_part(scene, EffectName::SleepingSolid)
-            .then(|| scene.solid.as_ref().map(|solid| Sleep::new(scene, solid, model.as_ref())))
+            .then(|| scene.solids.first().map(|solid| Sleep::new(scene, solid, model.as_ref())))
             .flatten();
         Self {
             sleep,
@@ -87,7 +87,7 @@ impl<const D: usize> Solid<D> {
             probes,
             sub_steps: SubStepping::of(scene),
             taken: 1,
-            density: scene.solid.as_ref().map_or(1.0, |s| s.density),
+            density: scene.solids.first().map_or(1.0, |s| s.density),
             cross_pairs: 0,
         }
     }

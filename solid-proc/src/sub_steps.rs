@@ -15,7 +15,7 @@ impl SubStepping {
         // Phase-blind, a particle close to the interface is as stiff as the solid; without fluid there is nothing to
         // sub-step under: the solid's own limit is the time step.
         let single = scene.interface.treatment == Treatment::PhaseBlind || scene.fluid.is_none();
-        let wanted = match &scene.solid {
+        let wanted = match scene.solids.first() {
             Some(solid) if !single => solid.sub_steps,
             _ => SubSteps::Fixed(1),
         };

@@ -58,7 +58,7 @@ pub fn describe(scene: &Scene, isa: Isa) -> String {
         line("solid sub-steps", format!("{} (one is stable to {own:.3e} s)", stepping.choose(dt, own)));
     }
     line("memory", format!("about {:.1} MB", scene::memory_needed(&counts) as f64 / 1e6));
-    if scene.fluid.is_some() && scene.solid.is_some() {
+    if scene.fluid.is_some() && !scene.solids.is_empty() {
         let (fluid, solid) = crate::run::capacities(scene, counts.fluid, counts.solid, false);
         let bytes = LinkConfig::new(fluid, solid).shared_memory_bytes();
         line("shared memory", format!("{:.1} MB", bytes as f64 / 1e6));

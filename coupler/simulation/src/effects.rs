@@ -30,7 +30,7 @@ pub(crate) fn ledger(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
         ..EffectReport::default()
     };
     let decided = |d: Decision| row(d.effect.name(), d.on, d.why);
-    let (fluid, solid) = (scene.fluid.is_some(), scene.solid.is_some());
+    let (fluid, solid) = (scene.fluid.is_some(), !scene.solids.is_empty());
     let moving = scene.gravity.iter().any(|&g| g != 0.0);
     let mut list = vec![
         row("gravity", moving, if moving { "gravity is not zero" } else { "gravity is zero" }.into()),

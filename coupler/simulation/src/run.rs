@@ -23,7 +23,7 @@ use std::sync::atomic::AtomicBool;
 /// # Errors
 /// Nothing could be started or written. A run that failed is a report with its error.
 pub fn run(scene: &Scene, options: &RunOptions) -> Result<(RunReport, Option<RunError>), RunError> {
-    if options.solid != SolidSource::BuiltIn && (scene.fluid.is_none() || scene.solid.is_none()) {
+    if options.solid != SolidSource::BuiltIn && (scene.fluid.is_none() || scene.solids.is_empty()) {
         return Err(RunError::System("--solid needs a scene with [fluid] and [solid]".into()));
     }
     let directory = RunDirectory::create(&options.out, options.force)?;
@@ -42,7 +42,7 @@ pub fn run(scene: &Scene, options: &RunOptions) -> Result<(RunReport, Option<Run
     let mut recorder = Recorder::new(scene, &directory.file("probes.csv"), options.quiet)?;
     let mut clock = Clock::new(scene);
     let foreign = options.solid != SolidSource::BuiltIn;
-    let result = if scene.fluid.is_some() && (scene.solid.is_some() || foreign) {
+    let result = if scene.fluid.is_some() && (!scene.solids.is_empty() || foreign) {
         let capacity = capacities(scene, counts.fluid, counts.solid, foreign);
         let session = Session { scene, options, directory: &directory, stop: &stop, capacity };
         session.run(&mut clock, &mut recorder, &mut report)

@@ -60,7 +60,7 @@ pub struct Parameters<const D: usize> {
 pub fn non_negative_pressure(scene: &Scene) -> Decision {
     let derived = match &scene.fluid {
         None => Derived::Impossible("the scene has no fluid".into()),
-        Some(_) if scene.solid.is_none() && scene.shapes.iter().all(|s| s.phase != Phase::Wall) => {
+        Some(_) if scene.solids.is_empty() && scene.shapes.iter().all(|s| s.phase != Phase::Wall) => {
             Derived::Impossible("neither walls nor solid".into())
         }
         Some(_) => Derived::On("walls and solids push and do not pull".into()),
@@ -71,7 +71,7 @@ pub fn non_negative_pressure(scene: &Scene) -> Decision {
 impl<const D: usize> Parameters<D> {
     /// From a scene with fluid and solid.
     pub fn new(scene: &Scene, isa: Isa) -> Option<Self> {
-        let (fluid, solid) = (scene.fluid.as_ref()?, scene.solid.as_ref()?);
+        let (fluid, solid) = (scene.fluid.as_ref()?, scene.solids.first()?);
         Some(Self {
             treatment: scene.interface.treatment,
             kernel: scene.numerics.kernel,

@@ -22,7 +22,7 @@ pub fn thin_plate_screen(scene: &Scene) -> Decision {
 }
 
 fn derive(scene: &Scene) -> Derived {
-    if scene.fluid.is_none() || scene.solid.is_none() {
+    if scene.fluid.is_none() || scene.solids.is_empty() {
         return Derived::Impossible("one phase only".into());
     }
     if scene.interface.treatment == Treatment::PhaseBlind {

@@ -50,7 +50,7 @@ impl Bounds {
 
     /// Of a scene's solid.
     pub fn of_solid(scene: &Scene) -> Option<Self> {
-        let solid = scene.solid.as_ref()?;
+        let solid = scene.solids.first()?;
         let speed = 0.25 * solid.pressure_wave_speed() + 3.0 * flow_speed(scene);
         Some(Self { density: solid.density, density_change: 0.5, speed })
     }
@@ -96,7 +96,7 @@ pub fn flow_speed(scene: &Scene) -> f64 {
     let domain = geometry::domain(scene);
     let fall: f64 = (0..3).map(|a| scene.gravity[a].abs() * (domain.max[a] - domain.min[a])).sum();
     let sound = scene.fluid.as_ref().map_or(0.0, |f| 0.1 * f.sound_speed);
-    let swing = scene.solid.as_ref().map_or(0.0, |solid| {
+    let swing = scene.solids.first().map_or(0.0, |solid| {
         let fractions = scene.shapes.iter().filter_map(|s| s.cantilever_mode).map(|m| m.fraction.abs());
         solid.sound_speed() * fractions.fold(0.0, f64::max)
     });

@@ -62,7 +62,7 @@ impl Check<'_> {
         let shape_of = |phase| self.scene.shapes.iter().position(|s| s.phase == phase);
         for (phase, section, present) in [
             (Phase::Fluid, "fluid", self.scene.fluid.is_some()),
-            (Phase::Solid, "solid", self.scene.solid.is_some()),
+            (Phase::Solid, "solid", !self.scene.solids.is_empty()),
         ] {
             match (shape_of(phase), present) {
                 _ if self.report.has(section) => (),
@@ -75,7 +75,7 @@ impl Check<'_> {
             }
         }
         let moving = [Phase::Fluid, Phase::Solid].into_iter().any(|phase| shape_of(phase).is_some());
-        if !moving && self.scene.fluid.is_none() && self.scene.solid.is_none() {
+        if !moving && self.scene.fluid.is_none() && self.scene.solids.is_empty() {
             self.place("shape", "the scene has no shape of phase \"fluid\" or \"solid\": nothing would move");
         }
     }
@@ -168,7 +168,7 @@ impl Check<'_> {
     }
 
     fn total_lagrangian(&self) -> bool {
-        self.scene.solid.as_ref().is_some_and(|s| s.model == SolidModelName::TotalLagrangian)
+        self.scene.solids.first().is_some_and(|s| s.model == SolidModelName::TotalLagrangian)
     }
 
     fn thinnest(&self, block: &Block) -> f64 {
@@ -185,7 +185,7 @@ impl Check<'_> {
             let reason = format!("cannot be phase-blind with solid.model = \"total-lagrangian\": {why}");
             self.report.among(self.root, "interface.treatment", &["solid.model", "preset"], reason);
         }
-        if let Some(SubSteps::Fixed(n)) = self.scene.solid.as_ref().map(|s| s.sub_steps)
+        if let Some(SubSteps::Fixed(n)) = self.scene.solids.first().map(|s| s.sub_steps)
             && n != 1
         {
             let why = "a particle close to the interface hangs on a spring as stiff as the solid";
@@ -243,7 +243,7 @@ impl Check<'_> {
             self.report.among(self.root, key, &[], "checkpoints cannot be written yet; leave it at 0");
         }
         let key = "solid.artificial_stress.exponent";
-        let exponent = self.scene.solid.as_ref().map_or(1.0, |s| s.artificial_stress.exponent);
+        let exponent = self.scene.solids.first().map_or(1.0, |s| s.artificial_stress.exponent);
         if exponent.fract() != 0.0 && !self.report.has(key) {
             self.report.among(
                 self.root,
@@ -267,7 +267,7 @@ impl Check<'_> {
             }
             let phase = probe.kind.phase();
             let (name, section) = match phase {
-                Phase::Solid => ("solid", self.scene.solid.is_some()),
+                Phase::Solid => ("solid", !self.scene.solids.is_empty()),
                 _ => ("fluid", self.scene.fluid.is_some()),
             };
             // A shape without its section has been noted.
@@ -313,7 +313,7 @@ impl Check<'_> {
                     self.wrong(&format!("{key}.x"), "is outside the domain: no fluid gets there");
                 }
             }
-            ProbeKind::Force { .. } if self.scene.fluid.is_none() || self.scene.solid.is_none() => {
+            ProbeKind::Force { .. } if self.scene.fluid.is_none() || self.scene.solids.is_empty() => {
                 self.wrong(&format!("{key}.kind"), "needs a fluid and a solid");
             }
             ProbeKind::Force { within: Some(within) } => {

@@ -224,7 +224,7 @@ fn solid_point<const D: usize>(
 ) -> SolidPoint<D> {
     let clamped = shape.clamp.iter().any(|block| holds(block, &position, TOLERANCE * scene.resolution));
     let mut velocity = truncated(shape.velocity);
-    if let (Some(mode), Some(solid)) = (&shape.cantilever_mode, &scene.solid) {
+    if let (Some(mode), Some(solid)) = (&shape.cantilever_mode, scene.solids.first()) {
         velocity[1] += cantilever_velocity(mode, solid.sound_speed(), position[0]);
     }
     SolidPoint { position, velocity: if clamped { [0.0; D] } else { velocity }, clamped, body: index as u32 }

@@ -16,6 +16,7 @@ mod metric;
 mod motion;
 mod names;
 mod overrides;
+mod participant;
 mod preset;
 mod probe;
 mod read;
@@ -25,6 +26,7 @@ mod read_shape;
 mod resources;
 mod section;
 mod solid;
+mod solid_json;
 mod velocity_field;
 
 pub use effect::{Decision, Derived, EffectName, Switch};
@@ -34,6 +36,7 @@ pub use halfstep_sph::kernel::KernelName;
 pub use load::{load, parse};
 pub use metric::{Metric, MetricKind, MetricReference};
 pub use motion::{Motion, Placement};
+pub use participant::Participant;
 pub use probe::{MAX_PROBE_VALUES, Probe, ProbeKind, Reference};
 pub use resources::{BYTES_PER_PARTICLE, memory_available, memory_needed};
 pub use solid::{ArtificialStress, Material, Solid, SolidModelName, SubSteps};
@@ -66,8 +69,9 @@ pub struct Scene {
     pub gravity: [f64; 3],
     /// The liquid, where the scene has one.
     pub fluid: Option<Fluid>,
-    /// The solid, where the scene has one.
-    pub solid: Option<Solid>,
+    /// The solids, in the file's order. As JSON `solid`: an object for `[solid]`, a list for `[[solid]]`.
+    #[serde(rename = "solid", with = "solid_json")]
+    pub solids: Vec<Solid>,
     /// How fluid and solid act on each other.
     pub interface: Interface,
     /// What is written, and when.
@@ -185,6 +189,8 @@ pub struct Shape {
     /// Its phase.
     #[serde(with = "names::PhaseName")]
     pub phase: Phase,
+    /// Solid only: index of what it is made of in [`Scene::solids`].
+    pub solid: Option<usize>,
     /// Where it is.
     pub geometry: Geometry,
     /// Initial velocity, m/s (a wall: the constant velocity of its surface).

@@ -42,11 +42,11 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report) -> Draft {
         }
         _ => (None, false),
     };
-    let solid = match top.section("solid") {
+    let solids = match top.section("solid") {
         section if section.is_present() => {
-            Some(solid(section, defaults.with_treatment(interface.treatment), numerics.max_sub_steps))
+            vec![solid(section, defaults.with_treatment(interface.treatment), &numerics)]
         }
-        _ => None,
+        _ => Vec::new(),
     };
     let scene = Scene {
         name: stem,
@@ -63,7 +63,7 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report) -> Draft {
         },
         gravity: top.vector("gravity", dimension, Some([0.0, -9.81, 0.0])),
         fluid,
-        solid,
+        solids,
         interface,
         output: output(top.section("output"), end_time),
         shapes: top.tables("shape").into_iter().map(|s| read_shape::shape(s, dimension)).collect(),
@@ -145,13 +145,16 @@ fn viscosity(section: &Section<'_>, default: ArtificialViscosity) -> ArtificialV
     viscosity
 }
 
-fn solid(section: Section<'_>, defaults: Defaults, max_sub_steps: u32) -> Solid {
+fn solid(section: Section<'_>, defaults: Defaults, numerics: &Numerics) -> Solid {
     const HYPOELASTIC: SolidModelName = SolidModelName::Hypoelastic;
     let models = [("hypoelastic", HYPOELASTIC), ("total-lagrangian", SolidModelName::TotalLagrangian)];
     let model = section.choice("model", Some(defaults.model), &models).unwrap_or(defaults.model);
     let defaults = defaults.with_model(model);
     let stress = section.section("artificial_stress");
     let solid = Solid {
+        name: Solid::DEFAULT_NAME.to_owned(),
+        process: Solid::DEFAULT_NAME.to_owned(),
+        threads: numerics.threads.solid,
         model,
         density: section.number("density", None, DENSITY),
         youngs_modulus: section.number("youngs_modulus", None, Range::positive().up_to(1e15)),
@@ -196,7 +199,7 @@ fn solid(section: Section<'_>, defaults: Defaults, max_sub_steps: u32) -> Solid 
                 .up_to(10.0)
                 .why("beyond, it is stiffer than the material and limits the time step"),
         ),
-        sub_steps: sub_steps(&section, max_sub_steps),
+        sub_steps: sub_steps(&section, numerics.max_sub_steps),
     };
     let foreign: &[(&str, &str)] = match model {
         HYPOELASTIC => &[

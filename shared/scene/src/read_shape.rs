@@ -23,6 +23,7 @@ pub(super) fn shape(section: Section<'_>, dimension: usize) -> Shape {
     let shape = Shape {
         name: name(&section),
         phase: phase.unwrap_or(Phase::Wall),
+        solid: (phase == Some(Phase::Solid)).then_some(0),
         geometry: geometry(&section, dimension, phase),
         velocity: section.vector("velocity", dimension, Some([0.0; 3])),
         cantilever_mode: cantilever_mode(&section),

@@ -6,6 +6,12 @@ use serde::{Deserialize, Serialize};
 /// An elastic solid.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Solid {
+    /// Its name: `solid` for `[solid]`, else the section's.
+    pub name: String,
+    /// Name of the process that serves it.
+    pub process: String,
+    /// Worker threads for it.
+    pub threads: usize,
     /// Which model computes it.
     pub model: SolidModelName,
     /// Reference density, kg/m³.
@@ -30,6 +36,9 @@ pub struct Solid {
 }
 
 impl Solid {
+    /// Name of the one that a scene describes by `[solid]`, and of the process that serves all solids by default.
+    pub const DEFAULT_NAME: &str = "solid";
+
     /// Bulk modulus K = E / (3 (1 - 2 nu)), Pa.
     pub fn bulk_modulus(&self) -> f64 {
         self.youngs_modulus / (3.0 * (1.0 - 2.0 * self.poissons_ratio))

@@ -67,7 +67,7 @@ pub struct Hypoelastic<const D: usize> {
 impl<const D: usize> Hypoelastic<D> {
     /// The solid of a scene that has one.
     pub fn new(scene: &Scene, isa: Isa) -> Option<Self> {
-        let material = scene.solid.clone()?;
+        let material = scene.solids.first()?.clone();
         let layout = geometry::layout::<D>(scene);
         let h = material.smoothing_ratio * scene.resolution;
         let n = layout.solid.len();

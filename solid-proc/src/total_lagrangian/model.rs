@@ -103,7 +103,7 @@ pub struct TotalLagrangian<const D: usize> {
 impl<const D: usize> TotalLagrangian<D> {
     /// The solid of a scene that has one.
     pub fn new(scene: &Scene, isa: Isa) -> Option<Self> {
-        let material = scene.solid.clone()?;
+        let material = scene.solids.first()?.clone();
         let layout = geometry::layout::<D>(scene);
         let points = &layout.solid;
         let dx = scene.resolution;

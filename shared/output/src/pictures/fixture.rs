@@ -19,7 +19,7 @@ pub(crate) fn scene() -> Scene {
         time_step: TimeStep::Auto,
         gravity: [0.0, -9.81, 0.0],
         fluid: None,
-        solid: None,
+        solids: Vec::new(),
         interface: Interface { treatment: Treatment::MovingWall, cross_viscosity: 0.0 },
         output: Output { frame_interval: 0.02, probe_interval: 0.001, checkpoint_interval: 0.0 },
         shapes: Vec::new(),

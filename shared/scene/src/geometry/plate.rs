@@ -90,7 +90,7 @@ const TOLERANCE: f64 = 1e-9;
 /// that is not asked for.
 pub(crate) fn fewest_rows(scene: &Scene) -> Option<f64> {
     let asked = scene.fluid.is_some()
-        && scene.solid.is_some()
+        && !scene.solids.is_empty()
         && scene.interface.treatment == Treatment::MovingWall
         && scene.switch(EffectName::ThinPlateScreen) != Switch::Off;
     asked.then(|| (2.0 * scene.smoothing_ratio * (1.0 - TOLERANCE) - 1.0).ceil().max(1.0))

@@ -25,7 +25,10 @@ fn scene(shapes: Vec<Shape>) -> Scene {
             density_diffusion_coefficient: 0.1,
             background_pressure: 0.0,
         }),
-        solid: Some(Solid {
+        solids: vec![Solid {
+            name: "solid".into(),
+            process: "solid".into(),
+            threads: 1,
             model: SolidModelName::Hypoelastic,
             density: 1000.0,
             youngs_modulus: 2e6,
@@ -36,7 +39,7 @@ fn scene(shapes: Vec<Shape>) -> Scene {
             material: Material::NeoHookean,
             hourglass: None,
             sub_steps: SubSteps::Auto,
-        }),
+        }],
         interface: Interface { treatment: Treatment::MovingWall, cross_viscosity: 1.0 },
         output: Output { frame_interval: 0.1, probe_interval: 0.1, checkpoint_interval: 0.0 },
         shapes,
@@ -61,6 +64,7 @@ fn shape(phase: Phase, geometry: Geometry) -> Shape {
     Shape {
         name: "shape".into(),
         phase,
+        solid: (phase == Phase::Solid).then_some(0),
         geometry,
         velocity: [0.0; 3],
         cantilever_mode: None,
