@@ -13,7 +13,7 @@ use crate::viscosity::StressTerm;
 use crate::wall::{Damping, Walls};
 use crate::wall_guard::{self, GUARD};
 use halfstep_interface::{Parameters, non_negative_pressure};
-use halfstep_role::role::{Costs, CoverageError, Role};
+use halfstep_role::role::{Costs, CoverageError, Peer, Role};
 use halfstep_scene::bounds::Bounds;
 use halfstep_scene::geometry;
 use halfstep_scene::{DensityDiffusion, EffectName, KernelName, Phase, ProbeKind, Scene};
@@ -21,10 +21,11 @@ use halfstep_sph::lane::{Isa, LANES};
 use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_sph::state_equation::StateEquation;
 use halfstep_sph::with_kernel;
-use halfstep_wire::failure::{Diverged, RoleName};
+use halfstep_wire::Name;
+use halfstep_wire::failure::Diverged;
 use halfstep_wire::frame::Frame;
 use halfstep_wire::half_step::{HalfStep, Stage};
-use halfstep_wire::protocol::{ForceRecord, MAX_PROBE_VALUES, StateRecord};
+use halfstep_wire::protocol::{Audit, ForceRecord, StateRecord};
 
 /// Margin of the neighbour lists over h: lists are renewed when two particles may have come that much closer.
 const SKIN: f64 = 0.3;
@@ -95,12 +96,13 @@ impl<const D: usize> Fluid<D> {
             Walls::new(&layout.wall, &state, volume, 2.0 * h + skin, non_negative, damping, &motions(scene))
         });
         let domain = geometry::domain(scene);
-        let coupled = Parameters::new(scene, isa);
+        let coupled =
+            (0..scene.solids.len()).filter_map(|solid| Parameters::new(scene, solid, isa)).collect();
         Some(
             Self {
                 columns,
                 walls,
-                coupling: coupled.map(Coupling::new),
+                coupling: Coupling::new(coupled),
                 state,
                 rows: Rows::default(),
                 smoothing_length: h,
@@ -208,7 +210,7 @@ impl<const D: usize> Fluid<D> {
         let (s, worst) = found.max_by(|a, b| a.1.ratio.total_cmp(&b.1.ratio))?;
         let position: [f64; D] = std::array::from_fn(|d| c.now.position[d][s]);
         Some(Diverged {
-            role: RoleName::Fluid,
+            participant: Name::FLUID,
             particle: c.id[s],
             quantity: worst.quantity,
             value: worst.value,
@@ -229,8 +231,12 @@ impl<const D: usize> Fluid<D> {
 }
 
 impl<const D: usize> Role for Fluid<D> {
-    fn name(&self) -> RoleName {
-        RoleName::Fluid
+    fn name(&self) -> Name {
+        Name::FLUID
+    }
+
+    fn phase(&self) -> Phase {
+        Phase::Fluid
     }
 
     fn particles(&self) -> u64 {
@@ -247,17 +253,17 @@ impl<const D: usize> Role for Fluid<D> {
         }
     }
 
-    fn publish(&mut self, peer: &[StateRecord], out: &mut Vec<StateRecord>) -> u64 {
+    fn publish(&mut self, peers: &[Peer], out: &mut Vec<StateRecord>) -> u64 {
         out.clear();
         let walls = self.walls.as_ref().map_or(0.0, Walls::displacement);
         if self.displacement + self.displacement.max(walls) > self.skin
-            || self.coupling.as_ref().is_some_and(|c| c.is_stale(peer))
+            || self.coupling.as_ref().is_some_and(|c| c.is_stale(peers))
         {
             self.sort();
         }
         let Some(coupling) = &mut self.coupling else { return 0 };
         if self.sorted {
-            coupling.choose(&self.columns, peer);
+            coupling.choose(&self.columns, peers);
             self.sorted = false;
         }
         coupling.record(&self.columns, out);
@@ -272,14 +278,9 @@ impl<const D: usize> Role for Fluid<D> {
         with_kernel!(self.kernel, self.smoothing_length, D, |kernel| self.sums(kernel));
     }
 
-    fn cross_sums(
-        &mut self,
-        own: &[StateRecord],
-        peer: &[StateRecord],
-        _epoch: u64,
-    ) -> Result<(), CoverageError> {
+    fn cross_sums(&mut self, own: &[StateRecord], peers: &[Peer]) -> Result<(), CoverageError> {
         let Some(coupling) = &mut self.coupling else { return Ok(()) };
-        coupling.add_rates(&mut self.sums, own, peer, self.displacement)?;
+        coupling.add_rates(&mut self.sums, own, peers, self.displacement)?;
         self.pair_evaluations += coupling.pairs() as u64;
         Ok(())
     }
@@ -306,11 +307,11 @@ impl<const D: usize> Role for Fluid<D> {
         }
     }
 
-    fn probes(&self, out: &mut [f64; MAX_PROBE_VALUES]) -> usize {
-        self.measure(out)
+    fn probes(&self, out: &mut Vec<f64>) {
+        self.measure(out);
     }
 
-    fn audit(&self) -> [f64; 8] {
+    fn audit(&self) -> Audit {
         self.audit_values()
     }
 

@@ -2,7 +2,7 @@
 
 use crate::Fluid;
 use crate::time_step::Limits;
-use halfstep_role::role::{Role, audit};
+use halfstep_role::role::Role;
 use halfstep_scene::{self as scene, Scene};
 use halfstep_sph::lane::Isa;
 use halfstep_sph::neighbours::PADDING;
@@ -86,7 +86,7 @@ fn still_water_stays_still() {
             fluid.own_sums();
             fluid.advance(&half_step, &[]).unwrap();
         }
-        largest = largest.max(fluid.audit()[audit::KINETIC_ENERGY]);
+        largest = largest.max(fluid.audit().kinetic_energy);
     }
     // Energy of the same water falling through a tenth of its depth: 20 kg/m * g * 0.01 m = 2 J/m.
     assert!(largest < 2e-3, "{largest}");

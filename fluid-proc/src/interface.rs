@@ -3,7 +3,7 @@
 use crate::columns::Columns;
 use crate::rates::RateSum;
 use halfstep_interface::{Interface, Parameters};
-use halfstep_role::role::CoverageError;
+use halfstep_role::role::{CoverageError, Peer};
 use halfstep_sph::columns::bounds;
 use halfstep_sph::lane::LANES;
 use halfstep_sph::neighbours::{PADDING, Rows};
@@ -12,10 +12,11 @@ use halfstep_wire::wide;
 
 /// State of the coupling.
 pub struct Coupling<const D: usize> {
-    interface: Interface<D>,
+    /// One for each solid.
+    interfaces: Vec<Interface<D>>,
     /// Slots of the published particles, by ascending particle number.
     slots: Vec<u32>,
-    /// Solid positions when the set was chosen.
+    /// Positions of all solids, one after the other, when the set was chosen.
     chosen_at: Vec<[f64; D]>,
     epoch: u64,
     reach: f64,
@@ -27,11 +28,11 @@ pub struct Coupling<const D: usize> {
 }
 
 impl<const D: usize> Coupling<D> {
-    /// With the parameters of a scene that has both phases.
-    pub fn new(parameters: Parameters<D>) -> Self {
-        let h = parameters.smoothing_length;
-        Self {
-            interface: Interface::new(parameters),
+    /// With the parameters toward each solid of a scene; `None` where there is none.
+    pub fn new(parameters: Vec<Parameters<D>>) -> Option<Self> {
+        let h = parameters.first()?.smoothing_length;
+        Some(Self {
+            interfaces: parameters.into_iter().map(Interface::new).collect(),
             slots: Vec::new(),
             chosen_at: Vec::new(),
             epoch: 0,
@@ -41,7 +42,7 @@ impl<const D: usize> Coupling<D> {
             sorted: std::array::from_fn(|_| Vec::new()),
             order: Vec::new(),
             gap: f64::INFINITY,
-        }
+        })
     }
 
     /// The present set's number.
@@ -54,12 +55,13 @@ impl<const D: usize> Coupling<D> {
         self.gap
     }
 
-    fn solid_displacement(&self, peer: &[StateRecord]) -> f64 {
-        if peer.len() != self.chosen_at.len() {
+    /// Largest displacement of a solid particle since the set was chosen, m.
+    fn solid_displacement(&self, peers: &[Peer]) -> f64 {
+        if peers.iter().map(|peer| peer.records.len()).sum::<usize>() != self.chosen_at.len() {
             return f64::INFINITY;
         }
         let mut largest = 0.0_f64;
-        for (r, x0) in peer.iter().zip(&self.chosen_at) {
+        for (r, x0) in records(peers).zip(&self.chosen_at) {
             let r2: f64 = (0..D).map(|d| (r.position[d] - x0[d]).powi(2)).sum();
             largest = largest.max(r2);
         }
@@ -67,24 +69,24 @@ impl<const D: usize> Coupling<D> {
     }
 
     /// The set must be chosen anew although the fluid was not sorted.
-    pub fn is_stale(&self, peer: &[StateRecord]) -> bool {
-        self.solid_displacement(peer) > 0.3 * self.skin
+    pub fn is_stale(&self, peers: &[Peer]) -> bool {
+        self.solid_displacement(peers) > 0.3 * self.skin
     }
 
-    /// Chooses the particles within reach of the solid as last received, with a margin for what moves meanwhile.
-    pub fn choose(&mut self, fluid: &Columns<D>, peer: &[StateRecord]) {
+    /// Chooses the particles within reach of the solids as last received, with a margin for what moves meanwhile.
+    pub fn choose(&mut self, fluid: &Columns<D>, peers: &[Peer]) {
         self.epoch += 1;
         self.chosen_at.clear();
-        self.chosen_at.extend(peer.iter().map(|r| std::array::from_fn(|d| r.position[d])));
+        self.chosen_at.extend(records(peers).map(|r| std::array::from_fn(|d| r.position[d])));
         self.order.clear();
-        self.order.extend(0..peer.len() as u32);
+        self.order.extend(0..self.chosen_at.len() as u32);
         for d in 0..D {
             self.sorted[d].clear();
             self.sorted[d].extend(self.chosen_at.iter().map(|x| x[d]));
         }
         let (low, high) = bounds(&self.sorted);
         self.slots.clear();
-        if peer.is_empty() {
+        if self.chosen_at.is_empty() {
             return;
         }
         let reach = self.reach + self.skin;
@@ -138,29 +140,48 @@ impl<const D: usize> Coupling<D> {
         }
     }
 
-    /// Adds what the solid does to the fluid's rates.
+    /// Adds what the solids do to the fluid's rates, in their order.
     ///
     /// # Errors
-    /// The set may lack a particle within reach of the solid.
+    /// The set may lack a particle within reach of a solid.
     pub fn add_rates(
         &mut self,
         sums: &mut [RateSum<D>],
         own: &[StateRecord],
-        peer: &[StateRecord],
+        peers: &[Peer],
         fluid_displacement: f64,
     ) -> Result<(), CoverageError> {
-        let solid = self.solid_displacement(peer);
+        let solid = self.solid_displacement(peers);
         if fluid_displacement + solid > self.skin {
-            return Err(CoverageError { fluid: fluid_displacement, solid, allowed: self.skin });
+            let peer = self.farthest(peers);
+            return Err(CoverageError { fluid: fluid_displacement, solid, allowed: self.skin, peer });
         }
-        self.interface.update(own, peer, self.epoch);
-        let slots = &self.slots;
-        self.interface.act_on_fluid(|record, acceleration, density_rate| {
-            let slot = slots[record] as usize;
-            sums[slot / LANES].add(slot % LANES, acceleration, density_rate);
-        });
-        self.gap = self.interface.smallest_distance();
+        self.gap = f64::INFINITY;
+        for (interface, peer) in self.interfaces.iter_mut().zip(peers) {
+            interface.update(own, &peer.records, self.epoch);
+            let slots = &self.slots;
+            interface.act_on_fluid(|record, acceleration, density_rate| {
+                let slot = slots[record] as usize;
+                sums[slot / LANES].add(slot % LANES, acceleration, density_rate);
+            });
+            self.gap = self.gap.min(interface.smallest_distance());
+        }
         Ok(())
+    }
+
+    /// Place of the solid whose particles moved farthest since the set was chosen.
+    fn farthest(&self, peers: &[Peer]) -> usize {
+        let mut worst = (0, 0.0);
+        let mut chosen_at = self.chosen_at.iter();
+        for (place, peer) in peers.iter().enumerate() {
+            for (r, x0) in peer.records.iter().zip(&mut chosen_at) {
+                let r2: f64 = (0..D).map(|d| (r.position[d] - x0[d]).powi(2)).sum();
+                if r2 > worst.1 {
+                    worst = (place, r2);
+                }
+            }
+        }
+        worst.0
     }
 
     /// Slots of the published particles.
@@ -170,6 +191,11 @@ impl<const D: usize> Coupling<D> {
 
     /// Pairs listed between the phases, four targets each.
     pub fn pairs(&self) -> usize {
-        self.interface.pairs()
+        self.interfaces.iter().map(Interface::pairs).sum()
     }
+}
+
+/// The records of all solids, one after the other.
+fn records(peers: &[Peer]) -> impl Iterator<Item = &StateRecord> {
+    peers.iter().flat_map(|peer| &peer.records)
 }

@@ -2,11 +2,10 @@
 
 use crate::columns::Source;
 use crate::fluid::Fluid;
-use halfstep_role::role::audit;
 use halfstep_scene::{Phase, ProbeKind};
 use halfstep_sph::neighbours::PADDING;
 use halfstep_wire::frame::{Frame, FramePoint};
-use halfstep_wire::protocol::MAX_PROBE_VALUES;
+use halfstep_wire::protocol::Audit;
 use halfstep_wire::wide;
 use xxhash_rust::xxh3::Xxh3;
 
@@ -48,13 +47,9 @@ impl<const D: usize> Fluid<D> {
         if weight > 0.0 { sum / weight } else { 0.0 }
     }
 
-    /// Values of the fluid's probes.
-    pub(crate) fn measure(&self, out: &mut [f64; MAX_PROBE_VALUES]) -> usize {
-        let mut n = 0;
-        let mut put = |value: f64| {
-            out[n] = value;
-            n += 1;
-        };
+    /// Appends the values of the fluid's probes.
+    pub(crate) fn measure(&self, out: &mut Vec<f64>) {
+        let mut put = |value: f64| out.push(value);
         let half = 0.5 * self.resolution;
         for probe in &self.probes {
             match *probe {
@@ -79,12 +74,10 @@ impl<const D: usize> Fluid<D> {
                 _ => {}
             }
         }
-        n
     }
 
-    pub(crate) fn audit_values(&self) -> [f64; 8] {
+    pub(crate) fn audit_values(&self) -> Audit {
         let mass = self.columns.now.mass;
-        let mut values = [0.0; 8];
         let (mut momentum, mut energy, mut stored, mut error) = ([0.0; D], 0.0, 0.0, 0.0_f64);
         // All in one walk: it is done every step.
         for (particle, _) in self.columns.now.sources.iter().zip(&self.columns.id).filter(|p| *p.1 != PADDING)
@@ -96,15 +89,14 @@ impl<const D: usize> Fluid<D> {
             stored += self.state.energy(particle.density);
             error = error.max((particle.density / self.state.density - 1.0).abs());
         }
-        for d in 0..D {
-            values[audit::MOMENTUM + d] = mass * momentum[d];
+        Audit {
+            momentum: wide(momentum.map(|p| mass * p)),
+            kinetic_energy: 0.5 * mass * energy,
+            mass: mass * self.columns.particles as f64,
+            density_error: error,
+            gap: self.coupling.as_ref().map_or(f64::INFINITY, |c| c.gap()) / self.resolution,
+            stored_energy: mass * stored,
         }
-        values[audit::KINETIC_ENERGY] = 0.5 * mass * energy;
-        values[audit::MASS] = mass * self.columns.particles as f64;
-        values[audit::DENSITY_ERROR] = error;
-        values[audit::STORED_ENERGY] = mass * stored;
-        values[audit::GAP] = self.coupling.as_ref().map_or(f64::INFINITY, |c| c.gap()) / self.resolution;
-        values
     }
 
     pub(crate) fn copy_to(&self, time: f64, frame: &mut Frame) {

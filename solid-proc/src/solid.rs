@@ -7,18 +7,20 @@ use crate::sleep::{Rest, Sleep};
 use crate::sub_steps::SubStepping;
 use crate::total_lagrangian::TotalLagrangian;
 use halfstep_interface::{Interface, Parameters};
-use halfstep_role::role::{Costs, CoverageError, Role, audit};
+use halfstep_role::role::{Costs, CoverageError, Peer, Role};
 use halfstep_scene::geometry::{holds, nearest};
 use halfstep_scene::{EffectName, Phase, ProbeKind, Scene, SolidModelName, Treatment};
 use halfstep_sph::lane::Isa;
-use halfstep_wire::failure::{Diverged, RoleName};
+use halfstep_wire::failure::Diverged;
 use halfstep_wire::frame::Frame;
 use halfstep_wire::half_step::{HalfStep, Stage};
-use halfstep_wire::protocol::{ForceRecord, MAX_PROBE_VALUES, StateRecord};
+use halfstep_wire::protocol::{Audit, ForceRecord, StateRecord};
+use halfstep_wire::{Name, wide};
 use xxhash_rust::xxh3::Xxh3;
 
 /// A solid model with what the lock-step asks of it.
 pub struct Solid<const D: usize> {
+    name: Name,
     model: Box<dyn SolidModel<D>>,
     /// Phase-blind coupling: the fluid's share in density and velocity gradient.
     interface: Option<Interface<D>>,
@@ -55,7 +57,7 @@ impl<const D: usize> Solid<D> {
     /// With any model.
     pub fn with_model(scene: &Scene, isa: Isa, model: Box<dyn SolidModel<D>>) -> Self {
         let phase_blind = scene.interface.treatment == Treatment::PhaseBlind;
-        let interface = Parameters::<D>::new(scene, isa).filter(|_| phase_blind).map(Interface::new);
+        let interface = Parameters::<D>::new(scene, 0, isa).filter(|_| phase_blind).map(Interface::new);
         let probes = scene
             .probes
             .iter()
@@ -78,7 +80,9 @@ impl<const D: usize> Solid<D> {
         let sleep = takes_part(scene, EffectName::SleepingSolid)
             .then(|| scene.solids.first().map(|solid| Sleep::new(scene, solid, model.as_ref())))
             .flatten();
+        let name = scene.solids.first().and_then(|solid| solid.name.parse().ok()).unwrap_or(Name::SOLID);
         Self {
+            name,
             sleep,
             load: Load::none(model.particles()),
             limit: model.sub_step_limit(),
@@ -104,8 +108,12 @@ impl<const D: usize> Solid<D> {
 }
 
 impl<const D: usize> Role for Solid<D> {
-    fn name(&self) -> RoleName {
-        RoleName::Solid
+    fn name(&self) -> Name {
+        self.name
+    }
+
+    fn phase(&self) -> Phase {
+        Phase::Solid
     }
 
     fn particles(&self) -> u64 {
@@ -116,7 +124,7 @@ impl<const D: usize> Role for Solid<D> {
         self.limit * f64::from(self.sub_steps.most())
     }
 
-    fn publish(&mut self, _peer: &[StateRecord], out: &mut Vec<StateRecord>) -> u64 {
+    fn publish(&mut self, _peers: &[Peer], out: &mut Vec<StateRecord>) -> u64 {
         out.clear();
         out.extend(self.model.interface_set().iter().map(|&p| self.model.record(p)));
         0
@@ -128,14 +136,9 @@ impl<const D: usize> Role for Solid<D> {
 
     fn own_sums(&mut self) {}
 
-    fn cross_sums(
-        &mut self,
-        own: &[StateRecord],
-        peer: &[StateRecord],
-        epoch: u64,
-    ) -> Result<(), CoverageError> {
-        let Some(interface) = &mut self.interface else { return Ok(()) };
-        interface.update(peer, own, epoch);
+    fn cross_sums(&mut self, own: &[StateRecord], peers: &[Peer]) -> Result<(), CoverageError> {
+        let (Some(interface), [fluid]) = (&mut self.interface, peers) else { return Ok(()) };
+        interface.update(&fluid.records, own, fluid.epoch);
         self.cross_pairs += interface.pairs() as u64;
         let n = self.model.particles();
         self.load.density_rate.resize(n, 0.0);
@@ -173,7 +176,7 @@ impl<const D: usize> Role for Solid<D> {
             }
         };
         outcome.map_err(|o| Diverged {
-            role: RoleName::Solid,
+            participant: self.name,
             particle: o.particle,
             quantity: o.quantity,
             value: o.value,
@@ -189,12 +192,8 @@ impl<const D: usize> Role for Solid<D> {
         self.taken
     }
 
-    fn probes(&self, out: &mut [f64; MAX_PROBE_VALUES]) -> usize {
-        let mut n = 0;
-        let mut put = |value: f64| {
-            out[n] = value;
-            n += 1;
-        };
+    fn probes(&self, out: &mut Vec<f64>) {
+        let mut put = |value: f64| out.push(value);
         for probe in &self.probes {
             match probe {
                 Measurement::Displacement(particles) => {
@@ -222,24 +221,26 @@ impl<const D: usize> Role for Solid<D> {
                 }
             }
         }
-        n
     }
 
-    fn audit(&self) -> [f64; 8] {
-        let mut values = [0.0; 8];
+    fn audit(&self) -> Audit {
+        let (mut momentum, mut sum, mut density_error) = ([0.0; D], 0.0, 0.0_f64);
         for p in self.all() {
             let (velocity, mass) = (self.model.velocity(p), self.model.mass(p));
             for d in 0..D {
-                values[audit::MOMENTUM + d] += mass * velocity[d];
+                momentum[d] += mass * velocity[d];
             }
-            values[audit::MASS] += mass;
-            let error = (self.model.density(p) / self.density - 1.0).abs();
-            values[audit::DENSITY_ERROR] = values[audit::DENSITY_ERROR].max(error);
+            sum += mass;
+            density_error = density_error.max((self.model.density(p) / self.density - 1.0).abs());
         }
-        values[audit::KINETIC_ENERGY] = self.kinetic_energy();
-        values[audit::STORED_ENERGY] = self.model.strain_energy();
-        values[audit::GAP] = f64::INFINITY;
-        values
+        Audit {
+            momentum: wide(momentum),
+            kinetic_energy: self.kinetic_energy(),
+            mass: sum,
+            density_error,
+            gap: f64::INFINITY,
+            stored_energy: self.model.strain_energy(),
+        }
     }
 
     fn fill_frame(&self, time: f64, frame: &mut Frame) {

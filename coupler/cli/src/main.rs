@@ -3,15 +3,15 @@
 use clap::{Parser, Subcommand};
 use halfstep::options::{RunOptions, SolidSource};
 use halfstep::{isa, run};
-use halfstep_coupling::roles;
 use halfstep_coupling::supervise::abort_flag;
-use halfstep_output::FrameWriter;
+use halfstep_coupling::{reports, roles};
 use halfstep_output::run_json::RunStatus;
-use halfstep_role::lockstep::{self, RoleError};
-use halfstep_scene as scene;
+use halfstep_role::lockstep::RoleError;
+use halfstep_role::serve::serve_process;
+use halfstep_scene::{self as scene, Scene};
 use halfstep_sph::lane::Isa;
 use halfstep_study::command::{StudyArguments, study};
-use halfstep_wire::failure::RoleName;
+use halfstep_wire::Name;
 use std::os::unix::process::parent_id;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -43,7 +43,7 @@ enum Command {
     /// A role's process; started by `run`
     #[command(hide = true)]
     Role {
-        /// fluid or solid
+        /// Name of the process
         name: String,
     },
 }
@@ -71,7 +71,7 @@ struct RunArguments {
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..=1024))]
     threads: Option<u64>,
     /// Runs the roles as threads of one process
-    #[arg(long, conflicts_with = "solid")]
+    #[arg(long, conflicts_with_all = ["solid", "await_solid"])]
     in_process: bool,
     /// Shows no progress
     #[arg(long)]
@@ -79,9 +79,12 @@ struct RunArguments {
     /// Removes an earlier run in the folder
     #[arg(long)]
     force: bool,
-    /// A solid of your own: a command that speaks the protocol; without a command, one is awaited
-    #[arg(long, value_name = "COMMAND", num_args = 0..=1, default_missing_value = "")]
-    solid: Option<String>,
+    /// A solid of your own: a command that speaks the protocol; with several solids NAME=COMMAND, repeated
+    #[arg(long, value_name = "[NAME=]COMMAND")]
+    solid: Vec<String>,
+    /// Awaits a solid that you start by hand
+    #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "")]
+    await_solid: Vec<String>,
     /// How long to wait for a solid started by hand, s
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = seconds, allow_negative_numbers = true)]
     solid_wait: f64,
@@ -169,17 +172,20 @@ fn run_scene(arguments: RunArguments, isa: Isa) -> ExitCode {
         Err(code) => return code,
     };
     let out = arguments.out.unwrap_or_else(|| PathBuf::from("out").join(&scene.name));
+    let foreign = match foreign_solids(&scene, &arguments.solid, &arguments.await_solid) {
+        Ok(foreign) => foreign,
+        Err(error) => {
+            eprintln!("error: {error}");
+            return ExitCode::from(1);
+        }
+    };
     let options = RunOptions {
         out: out.clone(),
         threads: arguments.threads.map(|n| n as usize),
         in_process: arguments.in_process,
         quiet: arguments.quiet,
         force: arguments.force,
-        solid: match arguments.solid {
-            None => SolidSource::BuiltIn,
-            Some(line) if line.is_empty() => SolidSource::ByHand,
-            Some(line) => SolidSource::Command(line),
-        },
+        foreign,
         solid_wait: arguments.solid_wait,
         isa,
     };
@@ -209,13 +215,55 @@ fn run_scene(arguments: RunArguments, isa: Isa) -> ExitCode {
     }
 }
 
+/// The solids that are not built in. Where there is one solid its name may be left out.
+fn foreign_solids(
+    scene: &Scene,
+    commands: &[String],
+    awaited: &[String],
+) -> Result<Vec<(Name, SolidSource)>, String> {
+    let known: Vec<&str> = scene.solids.iter().map(|solid| solid.name.as_str()).collect();
+    let named = |text: &str| known.iter().find(|name| **name == text).copied();
+    let only = || match known.as_slice() {
+        [name] => Ok(*name),
+        [] => Err("--solid needs a scene with [fluid] and [solid]".to_owned()),
+        _ => Err(format!(
+            "there are several solids: say which with NAME=COMMAND, NAME one of {}",
+            known.join(", ")
+        )),
+    };
+    let mut foreign: Vec<(Name, SolidSource)> = Vec::new();
+    let mut add = |name: &str, source| {
+        let name: Name = name.parse().map_err(|error| format!("{error}"))?;
+        if foreign.iter().any(|(other, _)| *other == name) {
+            return Err(format!("the solid `{name}` is named twice"));
+        }
+        foreign.push((name, source));
+        Ok(())
+    };
+    for text in commands {
+        let (name, line) = match text.split_once('=').and_then(|(name, line)| Some((named(name)?, line))) {
+            Some(pair) => pair,
+            None => (only()?, text.as_str()),
+        };
+        add(name, SolidSource::Command(line.to_owned()))?;
+    }
+    for text in awaited {
+        let name = match text.as_str() {
+            "" => only()?,
+            _ => named(text)
+                .ok_or_else(|| format!("the scene has no solid `{text}`; it has {}", known.join(", ")))?,
+        };
+        add(name, SolidSource::ByHand)?;
+    }
+    Ok(foreign)
+}
+
 fn serve_role(name: &str, isa: Isa) -> ExitCode {
     tracing_subscriber::fmt().with_writer(std::io::stderr).with_ansi(false).init();
-    let role = match name {
-        "fluid" => RoleName::Fluid,
-        "solid" => RoleName::Solid,
-        _ => {
-            eprintln!("error: a role is fluid or solid, not `{name}`");
+    let process: Name = match name.parse() {
+        Ok(process) => process,
+        Err(error) => {
+            eprintln!("error: {error}");
             return ExitCode::from(1);
         }
     };
@@ -223,22 +271,22 @@ fn serve_role(name: &str, isa: Isa) -> ExitCode {
     let result = abort_flag()
         .map_err(|e| RoleError::Start(format!("cannot watch for signals: {e}")))
         .and_then(|abort| {
-            lockstep::serve_process(
-                roles::stem(role),
+            serve_process(
+                process,
                 abort,
-                |scene| roles::build(role, scene, isa),
-                |folder| Ok(Box::new(FrameWriter::start(folder, roles::stem(role))?)),
+                |scene, places, folder| roles::members(scene, places, isa, folder),
+                |folder, report| Ok(reports::write(folder, report)?),
             )
         });
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            // Without its launcher a role hears of the end from the system, or from the other role that was faster.
+            // Without its launcher a role hears of the end from the system, or from another role that was faster.
             let of_others = matches!(error, RoleError::Link(_) | RoleError::PeerEnded { .. });
             if of_others && parent_id() != launcher {
-                tracing::error!("{role}: the coupler is gone, and its roles go with it ({error})");
+                tracing::error!("{process}: the coupler is gone, and its roles go with it ({error})");
             } else {
-                tracing::error!("{role}: {error}");
+                tracing::error!("{process}: {error}");
             }
             ExitCode::from(2)
         }

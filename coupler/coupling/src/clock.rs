@@ -1,7 +1,8 @@
 //! The one time line of a run: steps, times, and when something is written.
 
 use halfstep_scene::{Scene, TimeStep};
-use halfstep_wire::failure::{Diverged, Quantity, RoleName};
+use halfstep_wire::Name;
+use halfstep_wire::failure::{Diverged, Quantity};
 use halfstep_wire::half_step::{HalfStep, Stage};
 
 /// Growth of the time step from one step to the next.
@@ -15,19 +16,19 @@ pub struct Clock {
     time: f64,
     step: u64,
     last_dt: Option<f64>,
-    /// Of each phase, as last told.
-    limits: [Option<Limit>; 2],
-    /// The fixed step was found above the limit of this phase.
-    warned: [bool; 2],
+    /// Of each participant, as last told.
+    limits: Vec<Limit>,
+    /// Participants above whose limit the fixed step was found.
+    warned: Vec<Name>,
     frames: Periodic,
     rows: Periodic,
 }
 
-/// Largest time step that a phase is stable with.
+/// Largest time step that a participant is stable with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limit {
-    /// The phase.
-    pub role: RoleName,
+    /// The participant.
+    pub participant: Name,
     /// Time step, s.
     pub dt: f64,
 }
@@ -88,8 +89,8 @@ impl Clock {
             time: 0.0,
             step: 0,
             last_dt: None,
-            limits: [None; 2],
-            warned: [false; 2],
+            limits: Vec::new(),
+            warned: Vec::new(),
             frames: Periodic { interval: scene.output.frame_interval, count: 0 },
             rows: Periodic { interval: scene.output.probe_interval, count: 0 },
         }
@@ -105,7 +106,7 @@ impl Clock {
         self.step
     }
 
-    /// Looks at the state at n: what to do with it and how far to go next, given the limits of the phases.
+    /// Looks at the state at n: what to do with it and how far to go next, given the limits of the participants.
     ///
     /// # Errors
     /// The limit is no positive number, or would never reach the end.
@@ -124,10 +125,9 @@ impl Clock {
                 exceeded: None,
             });
         }
-        for (known, told) in self.limits.iter_mut().zip(limits) {
-            *known = Some(*told);
-        }
-        // A minimum that keeps what is no number.
+        self.limits.clear();
+        self.limits.extend_from_slice(limits);
+        // NaN wins over every number in this minimum.
         let limit =
             limits.iter().map(|l| l.dt).fold(f64::INFINITY, |a, b| if b.is_nan() || b < a { b } else { a });
         let frame = self.frames.due(self.time).is_some();
@@ -138,7 +138,7 @@ impl Clock {
         };
         if !(dt.is_finite() && dt > 1e-9 * self.end.min(1.0) * 1e-3) {
             return Err(Diverged {
-                role: RoleName::Coupler,
+                participant: Name::COUPLER,
                 particle: 0,
                 quantity: Quantity::TimeStep,
                 value: dt,
@@ -156,21 +156,15 @@ impl Clock {
             dt = 0.5 * remaining;
             next_time = self.time + dt;
         }
-        let exceeded = self.exceeded().find(|(k, _)| !self.warned[*k]);
-        if let Some((k, _)) = exceeded {
-            self.warned[k] = true;
-        }
-        Ok(Tick { step, time, dt: Some(dt), next_time, frame, row, exceeded: exceeded.map(|(_, l)| l) })
+        let exceeded = self.exceeded().find(|limit| !self.warned.contains(&limit.participant));
+        self.warned.extend(exceeded.map(|limit| limit.participant));
+        Ok(Tick { step, time, dt: Some(dt), next_time, frame, row, exceeded })
     }
 
-    /// Limits that the scene's own time step exceeds, by place.
-    pub fn exceeded(&self) -> impl Iterator<Item = (usize, Limit)> + '_ {
+    /// Limits that the scene's own time step exceeds, in the order of the participants.
+    pub fn exceeded(&self) -> impl Iterator<Item = Limit> + '_ {
         let above = |l: &Limit| self.fixed.is_some_and(|dt| dt > l.dt * (1.0 + 1e-9));
-        self.limits
-            .iter()
-            .enumerate()
-            .filter_map(|(k, limit)| Some((k, *limit.as_ref()?)))
-            .filter(move |(_, limit)| above(limit))
+        self.limits.iter().copied().filter(above)
     }
 
     /// The step was done.
@@ -191,15 +185,15 @@ mod tests {
             time: 0.0,
             step: 0,
             last_dt: None,
-            limits: [None; 2],
-            warned: [false; 2],
+            limits: Vec::new(),
+            warned: Vec::new(),
             frames: Periodic { interval: 0.25, count: 0 },
             rows: Periodic { interval: 0.1, count: 0 },
         }
     }
 
     fn of_fluid(dt: f64) -> Limit {
-        Limit { role: RoleName::Fluid, dt }
+        Limit { participant: Name::FLUID, dt }
     }
 
     fn run(mut clock: Clock, limit: impl Fn(u64) -> f64) -> (Vec<f64>, Vec<f64>, f64) {
@@ -247,22 +241,22 @@ mod tests {
         let failure = clock(1.0, None).tick(&[of_fluid(f64::NAN)], false).unwrap_err();
         assert_eq!(failure.quantity, Quantity::TimeStep);
         assert!(clock(1.0, None).tick(&[of_fluid(0.0)], false).is_err());
-        let both = [of_fluid(0.1), Limit { role: RoleName::Solid, dt: f64::NAN }];
+        let both = [of_fluid(0.1), Limit { participant: Name::SOLID, dt: f64::NAN }];
         assert!(clock(1.0, None).tick(&both, false).is_err());
     }
 
     #[test]
-    fn a_fixed_step_above_a_limit_is_told_once_for_each_phase() {
+    fn a_fixed_step_above_a_limit_is_told_once_for_each_participant() {
         let mut clock = clock(1.0, Some(0.1));
         let mut told = Vec::new();
         for (fluid, solid) in [(0.2, 0.05), (0.2, 0.04), (0.09, 0.05), (0.08, 0.05)] {
-            let solid = Limit { role: RoleName::Solid, dt: solid };
+            let solid = Limit { participant: Name::SOLID, dt: solid };
             let tick = clock.tick(&[of_fluid(fluid), solid], false).unwrap();
             assert_eq!(tick.dt, Some(0.1), "it is taken all the same");
             told.push(tick.exceeded);
             clock.advance(&tick);
         }
-        let solid = Limit { role: RoleName::Solid, dt: 0.05 };
+        let solid = Limit { participant: Name::SOLID, dt: 0.05 };
         assert_eq!(told, [Some(solid), None, Some(of_fluid(0.09)), None]);
         assert_eq!(clock.exceeded().count(), 2);
     }

@@ -14,11 +14,12 @@
 //! phase-blind interface the fluid strains the solid as well, so both are judged as one.
 
 use halfstep_output::run_json::EnergyGrowth;
-use halfstep_role::role::audit;
 use halfstep_scene::bounds::flow_speed;
 use halfstep_scene::{Phase, Scene, Treatment};
-use halfstep_wire::failure::{Diverged, Quantity, RoleName};
+use halfstep_wire::Name;
+use halfstep_wire::failure::{Diverged, Quantity};
 use halfstep_wire::half_step::Stage;
+use halfstep_wire::protocol::Audit;
 
 /// Largest growth of the fluid: a tenth of the energy in play.
 pub const LIMIT: f64 = 0.1;
@@ -30,7 +31,7 @@ pub const SOLID_LIMIT: f64 = 1.0;
 /// States in a row above the limit.
 pub const PATIENCE: u32 = 100;
 
-/// One judged phase, or both as one.
+/// One judged participant, or both phases as one.
 #[derive(Clone, Copy, Debug, Default)]
 struct Ledger {
     start: Option<f64>,
@@ -47,19 +48,18 @@ struct Ledger {
 }
 
 impl Ledger {
-    fn note(&mut self, limit: f64, sums: &[f64; 8], work: f64, gravity: [f64; 3], dt: f64, speed: f64) {
-        let energy = sums[audit::KINETIC_ENERGY] + sums[audit::STORED_ENERGY];
+    fn note(&mut self, limit: f64, sums: &Audit, work: f64, gravity: [f64; 3], dt: f64, speed: f64) {
+        let energy = sums.kinetic_energy + sums.stored_energy;
         let start = *self.start.get_or_insert(energy);
         for d in 0..3 {
-            let now = sums[audit::MOMENTUM + d];
+            let now = sums.momentum[d];
             self.gravity += 0.5 * dt * gravity[d] * (self.momentum[d] + now);
             self.momentum[d] = now;
         }
         self.other += work;
         self.most_gravity = self.most_gravity.max(self.gravity.abs());
         self.most_other = self.most_other.max(self.other.abs());
-        let in_play =
-            start.abs() + self.most_gravity + self.most_other + 0.5 * sums[audit::MASS] * speed * speed;
+        let in_play = start.abs() + self.most_gravity + self.most_other + 0.5 * sums.mass * speed * speed;
         self.unexplained = energy - start - self.gravity - self.other;
         let growth = if in_play > 0.0 { self.unexplained / in_play } else { 0.0 };
         self.growth = self.growth.max(growth);
@@ -71,6 +71,19 @@ impl Ledger {
     }
 }
 
+/// What a participant tells about the state at n.
+#[derive(Clone, Copy, Debug)]
+pub struct Account<'a> {
+    /// Whose.
+    pub name: Name,
+    /// Its phase.
+    pub phase: Phase,
+    /// Its sums; `None` where they are not known.
+    pub audit: Option<&'a Audit>,
+    /// Work of the fluid on this solid since the last state, J; 0 for a fluid.
+    pub work: f64,
+}
+
 /// The ledgers of a run.
 #[derive(Clone, Debug)]
 pub struct EnergyBalance {
@@ -80,9 +93,8 @@ pub struct EnergyBalance {
     joint: bool,
     walls_rest: bool,
     time: f64,
-    fluid: Ledger,
-    solid: Ledger,
-    judged: [bool; 2],
+    /// Those that were judged, with phase and ledger.
+    ledgers: Vec<(Name, Phase, Ledger)>,
 }
 
 impl EnergyBalance {
@@ -95,55 +107,67 @@ impl EnergyBalance {
             joint: scene.interface.treatment == Treatment::PhaseBlind,
             walls_rest: !scene.shapes.iter().any(|s| s.phase == Phase::Wall && moves(s)),
             time: 0.0,
-            fluid: Ledger::default(),
-            solid: Ledger::default(),
-            judged: [false; 2],
+            ledgers: Vec::new(),
         }
     }
 
-    /// Takes the sums of the state at a time, s, and the work done on the solid since the last one, J. `None` stands for
-    /// a phase that is not there or cannot be judged.
-    pub fn note(
-        &mut self,
-        time: f64,
-        fluid: Option<&[f64; 8]>,
-        solid: Option<&[f64; 8]>,
-        work_on_solid: f64,
-    ) -> Option<(RoleName, f64)> {
+    /// Takes the accounts of the state at a time, s, in the order of the participants. Returns whose energy nothing
+    /// explains, and how much of it, J.
+    pub fn note(&mut self, time: f64, accounts: &[Account<'_>]) -> Option<(Name, f64)> {
         let dt = time - self.time;
         self.time = time;
         let (gravity, speed) = (self.gravity, self.speed);
-        if let (true, Some(f), Some(s)) = (self.joint, fluid, solid) {
-            let both = std::array::from_fn(|k| f[k] + s[k]);
-            if self.walls_rest {
-                self.judged[0] = true;
-                self.fluid.note(SOLID_LIMIT, &both, 0.0, gravity, dt, speed);
+        if let (true, [Account { audit: Some(f), .. }, Account { audit: Some(s), .. }]) =
+            (self.joint, accounts)
+        {
+            let both = Audit {
+                momentum: std::array::from_fn(|d| f.momentum[d] + s.momentum[d]),
+                kinetic_energy: f.kinetic_energy + s.kinetic_energy,
+                mass: f.mass + s.mass,
+                stored_energy: f.stored_energy + s.stored_energy,
+                ..Audit::default()
+            };
+            if !self.walls_rest {
+                return None;
             }
-            return self.fluid.excess().map(|joules| (RoleName::Coupler, joules));
+            let ledger = self.ledger(Name::COUPLER, Phase::Fluid);
+            ledger.note(SOLID_LIMIT, &both, 0.0, gravity, dt, speed);
+            return ledger.excess().map(|joules| (Name::COUPLER, joules));
         }
-        if let Some(f) = fluid.filter(|_| self.walls_rest) {
-            self.judged[0] = true;
-            self.fluid.note(LIMIT, f, -work_on_solid, gravity, dt, speed);
+        let on_solids: f64 = accounts.iter().map(|account| account.work).sum();
+        for Account { name, phase, audit, work } in accounts {
+            let Some(sums) = audit.filter(|_| *phase == Phase::Solid || self.walls_rest) else { continue };
+            let (limit, work) = match phase {
+                Phase::Solid => (SOLID_LIMIT, *work),
+                _ => (LIMIT, -on_solids),
+            };
+            self.ledger(*name, *phase).note(limit, sums, work, gravity, dt, speed);
         }
-        if let Some(s) = solid {
-            self.judged[1] = true;
-            self.solid.note(SOLID_LIMIT, s, work_on_solid, gravity, dt, speed);
-        }
-        let ledgers = [(RoleName::Fluid, &self.fluid), (RoleName::Solid, &self.solid)];
-        ledgers.into_iter().find_map(|(role, ledger)| Some((role, ledger.excess()?)))
+        self.ledgers.iter().find_map(|(name, _, ledger)| Some((*name, ledger.excess()?)))
+    }
+
+    fn ledger(&mut self, name: Name, phase: Phase) -> &mut Ledger {
+        let place = self.ledgers.iter().position(|(known, ..)| *known == name).unwrap_or_else(|| {
+            self.ledgers.push((name, phase, Ledger::default()));
+            self.ledgers.len() - 1
+        });
+        &mut self.ledgers[place].2
     }
 
     /// Largest growth so far.
     pub fn growth(&self) -> EnergyGrowth {
-        let of = |k: usize, ledger: &Ledger| self.judged[k].then_some(ledger.growth);
-        EnergyGrowth { fluid: of(0, &self.fluid), solid: of(1, &self.solid) }
+        let of = |wanted: Phase| {
+            let ledgers = self.ledgers.iter().filter(|(_, phase, _)| *phase == wanted);
+            ledgers.map(|(.., ledger)| ledger.growth).reduce(f64::max)
+        };
+        EnergyGrowth { fluid: of(Phase::Fluid), solid: of(Phase::Solid) }
     }
 }
 
 /// How the run says so.
-pub(crate) fn diverged((role, value): (RoleName, f64), step: u64) -> Diverged {
+pub(crate) fn diverged((participant, value): (Name, f64), step: u64) -> Diverged {
     Diverged {
-        role,
+        participant,
         particle: 0,
         quantity: Quantity::Energy,
         value,
@@ -166,12 +190,16 @@ mod tests {
         halfstep_scene::parse(&text, Path::new("x.toml"), &[]).unwrap()
     }
 
-    fn sums(momentum: f64, kinetic: f64) -> [f64; 8] {
-        let mut sums = [0.0; 8];
-        sums[audit::MOMENTUM + 1] = momentum;
-        sums[audit::KINETIC_ENERGY] = kinetic;
-        sums[audit::MASS] = 1000.0;
-        sums
+    fn sums(momentum: f64, kinetic: f64) -> Audit {
+        Audit { momentum: [0.0, momentum, 0.0], kinetic_energy: kinetic, mass: 1000.0, ..Audit::default() }
+    }
+
+    fn of_fluid(audit: &Audit) -> Account<'_> {
+        Account { name: Name::FLUID, phase: Phase::Fluid, audit: Some(audit), work: 0.0 }
+    }
+
+    fn of_solid(audit: &Audit, work: f64) -> Account<'_> {
+        Account { name: Name::SOLID, phase: Phase::Solid, audit: Some(audit), work }
     }
 
     /// A tonne that falls freely for a second: gravity explains all of it.
@@ -181,7 +209,7 @@ mod tests {
         for k in 0..=100 {
             let t = 0.01 * f64::from(k);
             let v = 9.81 * t;
-            assert_eq!(balance.note(t, Some(&sums(-1000.0 * v, 500.0 * v * v)), None, 0.0), None);
+            assert_eq!(balance.note(t, &[of_fluid(&sums(-1000.0 * v, 500.0 * v * v))]), None);
         }
         assert!(balance.growth().fluid.unwrap() < 1e-9);
         assert_eq!(balance.growth().solid, None);
@@ -192,19 +220,17 @@ mod tests {
         let mut balance = EnergyBalance::new(&scene(""));
         // U: free fall through the domain, three times the box in each direction.
         let in_play = 0.5 * 1000.0 * 2.0 * 9.81 * 3.0;
-        assert_eq!(balance.note(0.0, Some(&sums(0.0, 0.0)), None, 0.0), None);
+        assert_eq!(balance.note(0.0, &[of_fluid(&sums(0.0, 0.0))]), None);
         let mut told = |share: f64| {
             let after = |k: &u32| {
-                balance
-                    .note(0.1 + 1e-3 * f64::from(*k), Some(&sums(0.0, share * in_play)), None, 0.0)
-                    .is_some()
+                balance.note(0.1 + 1e-3 * f64::from(*k), &[of_fluid(&sums(0.0, share * in_play))]).is_some()
             };
             (1..=2 * PATIENCE).find(after)
         };
         assert_eq!(told(0.09), None);
         assert_eq!(told(0.11), Some(PATIENCE), "and not before");
-        let (role, joules) = balance.note(0.3, Some(&sums(0.0, 0.11 * in_play)), None, 0.0).unwrap();
-        assert_eq!(role, RoleName::Fluid);
+        let (role, joules) = balance.note(0.3, &[of_fluid(&sums(0.0, 0.11 * in_play))]).unwrap();
+        assert_eq!(role, Name::FLUID);
         assert!((joules / (0.11 * in_play) - 1.0).abs() < 1e-12);
     }
 
@@ -212,13 +238,15 @@ mod tests {
     fn what_one_phase_gives_the_other_gets() {
         let mut balance = EnergyBalance::new(&scene(""));
         let heavy = sums(0.0, 1e6);
-        balance.note(0.0, Some(&heavy), Some(&sums(0.0, 0.0)), 0.0);
+        let (cold, left) = (sums(0.0, 0.0), sums(0.0, 6e5));
+        balance.note(0.0, &[of_fluid(&heavy), of_solid(&cold, 0.0)]);
         // 4e5 J go from the fluid to the solid.
-        assert_eq!(balance.note(0.1, Some(&sums(0.0, 6e5)), Some(&sums(0.0, 4e5)), 4e5), None);
+        assert_eq!(balance.note(0.1, &[of_fluid(&left), of_solid(&sums(0.0, 4e5), 4e5)]), None);
         // The solid has them again, and nobody gave them.
         let hot = sums(0.0, 4e6);
-        let told = (0..PATIENCE).fold(None, |_, _| balance.note(0.2, Some(&sums(0.0, 6e5)), Some(&hot), 0.0));
-        assert_eq!(told.map(|(role, _)| role), Some(RoleName::Solid));
+        let told =
+            (0..PATIENCE).fold(None, |_, _| balance.note(0.2, &[of_fluid(&left), of_solid(&hot, 0.0)]));
+        assert_eq!(told.map(|(role, _)| role), Some(Name::SOLID));
     }
 
     #[test]
@@ -226,8 +254,8 @@ mod tests {
         let wall = "[[shape]]\nname = \"piston\"\nphase = \"wall\"\nbox = { min = [-0.5, 0.0], max = [-0.1, 1.0] }\n\
                     motion = { velocity = [1.0, 0.0] }\n";
         let mut balance = EnergyBalance::new(&scene(wall));
-        balance.note(0.0, Some(&sums(0.0, 0.0)), None, 0.0);
-        assert!((0..=PATIENCE).all(|_| balance.note(0.1, Some(&sums(0.0, 1e9)), None, 0.0).is_none()));
+        balance.note(0.0, &[of_fluid(&sums(0.0, 0.0))]);
+        assert!((0..=PATIENCE).all(|_| balance.note(0.1, &[of_fluid(&sums(0.0, 1e9))]).is_none()));
         assert_eq!(balance.growth().fluid, None);
     }
 }

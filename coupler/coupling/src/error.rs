@@ -4,7 +4,8 @@ use crate::supervise::SuperviseError;
 use halfstep_link::LinkError;
 use halfstep_output::OutputError;
 use halfstep_role::lockstep::RoleError;
-use halfstep_wire::failure::{Diverged, RoleName};
+use halfstep_wire::Name;
+use halfstep_wire::failure::Diverged;
 use std::process::ExitStatus;
 
 /// Why a run failed.
@@ -22,7 +23,7 @@ pub enum RunError {
     #[error("the {role} failed at step {step}; log.txt says why")]
     RoleFailed {
         /// Which.
-        role: RoleName,
+        role: Name,
         /// Step n.
         step: u64,
     },
@@ -30,7 +31,7 @@ pub enum RunError {
     #[error("the {role} process ended ({status}) while the run was going on: {link}")]
     RoleEnded {
         /// Which.
-        role: RoleName,
+        role: Name,
         /// How.
         status: ExitStatus,
         /// What the coupler saw.
@@ -47,9 +48,11 @@ pub enum RunError {
     StoppedEarly,
     /// The solid changed the size of its interface set.
     #[error(
-        "the solid published {now} interface particles at step {step} and {first} before; the number is fixed"
+        "the {solid} published {now} interface particles at step {step} and {first} before; the number is fixed"
     )]
     SolidCount {
+        /// Which solid.
+        solid: Name,
         /// At first.
         first: usize,
         /// Now.

@@ -1,8 +1,10 @@
 //! What the coupler does for a solid process that only exchanges states: its frames and probes, from its records.
 
+use crate::roles::measured_by;
 use halfstep_output::{Frame, FramePoint, FrameWriter, OutputError};
 use halfstep_scene::geometry::{holds, nearest};
-use halfstep_scene::{Phase, ProbeKind, Scene};
+use halfstep_scene::{ProbeKind, Scene};
+use halfstep_wire::Name;
 use halfstep_wire::protocol::{ForceRecord, StateRecord};
 use std::path::Path;
 
@@ -18,14 +20,15 @@ pub struct ForeignSolid {
 }
 
 impl ForeignSolid {
-    /// Frames go to the run's folder.
+    /// For the participant at this place of the scene. Frames go to the run's folder.
     ///
     /// # Errors
     /// The writer cannot start.
-    pub fn new(scene: &Scene, folder: &Path) -> Result<Self, OutputError> {
+    pub fn new(scene: &Scene, place: usize, name: Name, folder: &Path) -> Result<Self, OutputError> {
+        let own = measured_by(scene).into_iter().zip(&scene.probes).filter(|(owner, _)| *owner == place);
         Ok(Self {
-            writer: FrameWriter::start(folder, "solid")?,
-            kinds: scene.probes.iter().map(|p| p.kind).filter(|k| k.phase() == Phase::Solid).collect(),
+            writer: FrameWriter::start(folder, name.as_str())?,
+            kinds: own.map(|(_, probe)| probe.kind).collect(),
             dimension: scene.dimension,
             first: Vec::new(),
             chosen: Vec::new(),

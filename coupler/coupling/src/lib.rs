@@ -6,6 +6,7 @@ pub mod energy;
 pub mod error;
 pub mod foreign;
 pub mod recorder;
+pub mod reports;
 pub mod roles;
 pub mod solo;
 pub mod supervise;

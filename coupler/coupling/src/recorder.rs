@@ -1,23 +1,25 @@
 //! What a run writes down as it goes: probe log, statistics, progress.
 
 use crate::clock::Tick;
-use crate::energy::{self, EnergyBalance};
+use crate::energy::{self, Account, EnergyBalance};
+use crate::roles::measured_by;
 use halfstep_output::{OutputError, ProbeLog, RunReport, run_json};
-use halfstep_role::role::audit;
 use halfstep_scene::{Phase, Scene};
 use halfstep_wire::failure::Diverged;
-use halfstep_wire::protocol::StateHeader;
+use halfstep_wire::protocol::{Audit, StateHeader};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// What a phase measured on the state at n.
+/// What a participant measured on the state at n.
 #[derive(Clone, Copy, Debug)]
 pub struct Measured<'a> {
-    /// Probe values in the scene's order for this phase.
+    /// Its phase.
+    pub phase: Phase,
+    /// Values of its probes in the scene's order; empty where no row is due.
     pub probes: &'a [f64],
-    /// See [`audit`].
-    pub audit: &'a [f64; 8],
+    /// Sums over its particles.
+    pub audit: &'a Audit,
     /// Sub-steps of the last step.
     pub sub_steps: u32,
     /// Own particles.
@@ -25,22 +27,18 @@ pub struct Measured<'a> {
 }
 
 impl<'a> Measured<'a> {
-    /// What a state message carries.
-    pub fn of(header: &'a StateHeader) -> Self {
-        Self {
-            probes: &header.probes[..header.probe_count as usize],
-            audit: &header.audit,
-            sub_steps: header.sub_steps,
-            particles: header.particles,
-        }
+    /// What a state message carries, with the probe values that came beside it.
+    pub fn of(phase: Phase, header: &'a StateHeader, probes: &'a [f64]) -> Self {
+        let StateHeader { audit, sub_steps, particles, .. } = header;
+        Self { phase, probes, audit, sub_steps: *sub_steps, particles: *particles }
     }
 }
 
 /// Probe log, statistics and progress of a run.
 pub struct Recorder {
     log: ProbeLog,
-    /// For each probe its phase and number of values.
-    order: Vec<(Phase, usize)>,
+    /// For each probe the place of its participant and its number of values.
+    order: Vec<(usize, usize)>,
     values: Vec<f64>,
     bar: ProgressBar,
     started: Instant,
@@ -83,10 +81,10 @@ impl Recorder {
             && scene.shapes.iter().all(|s| s.phase != Phase::Wall && s.clamp.is_empty());
         Ok(Self {
             log: ProbeLog::create(probes, &columns)?,
-            order: scene
-                .probes
-                .iter()
-                .map(|p| (p.kind.phase(), p.kind.components(scene.dimension).0.len()))
+            order: measured_by(scene)
+                .into_iter()
+                .zip(&scene.probes)
+                .map(|(place, probe)| (place, probe.kind.components(scene.dimension).0.len()))
                 .collect(),
             values: vec![0.0; columns.len()],
             bar,
@@ -112,35 +110,22 @@ impl Recorder {
         })
     }
 
-    /// Judges the energies of the state at n, by the work done on the solid since the state before, J. `None` stands for
-    /// a phase that is not there or whose energy is not known.
-    pub fn judge(
-        &mut self,
-        step: u64,
-        time: f64,
-        fluid: Option<&[f64; 8]>,
-        solid: Option<&[f64; 8]>,
-        work_on_solid: f64,
-    ) -> Option<Diverged> {
-        self.balance.note(time, fluid, solid, work_on_solid).map(|excess| energy::diverged(excess, step))
+    /// Judges the energies of the state at n.
+    pub fn judge(&mut self, step: u64, time: f64, accounts: &[Account<'_>]) -> Option<Diverged> {
+        self.balance.note(time, accounts).map(|excess| energy::diverged(excess, step))
     }
 
-    /// Notes the state at n.
+    /// Notes the state at n, as all participants measured it.
     ///
     /// # Errors
     /// A row of the probe log cannot be written.
-    pub fn note(
-        &mut self,
-        tick: &Tick,
-        fluid: Option<Measured<'_>>,
-        solid: Option<Measured<'_>>,
-    ) -> Result<(), OutputError> {
+    pub fn note(&mut self, tick: &Tick, measured: &[Measured<'_>]) -> Result<(), OutputError> {
         self.time = tick.time;
         if let (Some(limit), Some(dt)) = (tick.exceeded, tick.dt) {
             let warning = format!(
                 "time_step = {dt:.4e} s is above the {}'s stability limit of {:.4e} s, {:.2} times (time_step = \
                  \"auto\" keeps to it)",
-                limit.role,
+                limit.participant,
                 limit.dt,
                 dt / limit.dt
             );
@@ -148,28 +133,28 @@ impl Recorder {
             self.bar.suspend(|| eprintln!("warning: {warning}"));
         }
         if tick.row {
-            let (mut f, mut s, mut at) = (0, 0, 0);
-            for &(phase, n) in &self.order {
-                let (source, from) = match phase {
-                    Phase::Solid => (&solid, &mut s),
-                    _ => (&fluid, &mut f),
-                };
+            let mut used = vec![0; measured.len()];
+            let mut at = 0;
+            for &(place, n) in &self.order {
                 for value in &mut self.values[at..at + n] {
-                    *value = source.as_ref().and_then(|m| m.probes.get(*from).copied()).unwrap_or(f64::NAN);
-                    *from += 1;
+                    let probes = measured.get(place).map_or(&[][..], |m| m.probes);
+                    *value = used.get(place).and_then(|k| probes.get(*k).copied()).unwrap_or(f64::NAN);
+                    if let Some(k) = used.get_mut(place) {
+                        *k += 1;
+                    }
                 }
                 at += n;
             }
             self.log.row(tick.time, &self.values)?;
         }
-        self.audit(fluid.as_ref(), solid.as_ref());
-        let particles: u64 = [&fluid, &solid].into_iter().flatten().map(|m| m.particles).sum();
+        self.audit(measured);
+        let particles: u64 = measured.iter().map(|m| m.particles).sum();
         if let Some(dt) = tick.dt {
             self.steps += 1;
             self.particle_steps += particles as f64;
             self.dt = (self.dt.0.min(dt), self.dt.1 + dt, self.dt.2.max(dt));
         }
-        if let Some(solid) = &solid {
+        for solid in measured.iter().filter(|m| m.phase == Phase::Solid) {
             self.sub_steps = self.sub_steps.max(solid.sub_steps);
         }
         if self.shown.elapsed() > Duration::from_millis(200) {
@@ -186,19 +171,19 @@ impl Recorder {
         Ok(())
     }
 
-    fn audit(&mut self, fluid: Option<&Measured<'_>>, solid: Option<&Measured<'_>>) {
+    fn audit(&mut self, measured: &[Measured<'_>]) {
         let (mut momentum, mut kinetic, mut stored, mut mass) = ([0.0; 3], 0.0, 0.0, 0.0);
-        for m in [fluid, solid].into_iter().flatten() {
+        for m in measured {
             for d in 0..3 {
-                momentum[d] += m.audit[audit::MOMENTUM + d];
+                momentum[d] += m.audit.momentum[d];
             }
-            kinetic += m.audit[audit::KINETIC_ENERGY];
-            stored += m.audit[audit::STORED_ENERGY];
-            mass += m.audit[audit::MASS];
+            kinetic += m.audit.kinetic_energy;
+            stored += m.audit.stored_energy;
+            mass += m.audit.mass;
         }
-        if let Some(f) = fluid {
-            self.density_error = self.density_error.max(f.audit[audit::DENSITY_ERROR]);
-            self.gap = self.gap.min(f.audit[audit::GAP]);
+        if let Some(f) = measured.iter().find(|m| m.phase == Phase::Fluid) {
+            self.density_error = self.density_error.max(f.audit.density_error);
+            self.gap = self.gap.min(f.audit.gap);
             let first = *self.first_fluid.get_or_insert(f.particles);
             self.removed = first.saturating_sub(f.particles);
         }

@@ -1,26 +1,60 @@
-//! The roles by scene: the one place where the dimension becomes a type.
+//! The participants of a scene as owners of particles: the one place where the dimension becomes a type.
 
 use halfstep_fluid::Fluid;
+use halfstep_output::FrameWriter;
+use halfstep_role::lockstep::{Member, RoleError};
 use halfstep_role::role::Role;
 use halfstep_scene::Scene;
 use halfstep_solid::Solid;
+use halfstep_sph::Phase;
 use halfstep_sph::lane::Isa;
-use halfstep_wire::failure::RoleName;
+use halfstep_wire::frame::FrameSink;
+use std::path::Path;
 
-/// The role of a phase, where the scene has it, computing with an instruction set that the processor has.
-pub fn build(role: RoleName, scene: &Scene, isa: Isa) -> Option<Box<dyn Role>> {
-    match role {
-        RoleName::Fluid => Fluid::<2>::new(scene, isa).map(|f| Box::new(f) as Box<dyn Role>),
-        RoleName::Solid => Solid::<2>::new(scene, isa).map(|s| Box::new(s) as Box<dyn Role>),
-        RoleName::Coupler => None,
+/// The participant at this place of [`Scene::participants`], computing with an instruction set that the processor has.
+pub fn build(place: usize, scene: &Scene, isa: Isa) -> Option<Box<dyn Role>> {
+    let participants = scene.participants();
+    match participants.get(place)?.phase {
+        Phase::Fluid => Fluid::<2>::new(scene, isa).map(|f| Box::new(f) as Box<dyn Role>),
+        Phase::Solid => Solid::<2>::new(scene, isa).map(|s| Box::new(s) as Box<dyn Role>),
+        Phase::Wall => None,
     }
 }
 
-/// File stem of a phase's frames.
-pub fn stem(role: RoleName) -> &'static str {
-    match role {
-        RoleName::Fluid => "fluid",
-        RoleName::Solid => "solid",
-        RoleName::Coupler => "coupler",
-    }
+/// The participants at these places, ready for the half-step loop; frames go to the run's folder.
+///
+/// # Errors
+/// The scene lacks one of them, or a writer cannot start.
+pub fn members(
+    scene: &Scene,
+    places: &[usize],
+    isa: Isa,
+    folder: Option<&Path>,
+) -> Result<Vec<Member>, RoleError> {
+    let participants = scene.participants();
+    let member = |&place: &usize| {
+        let missing = || RoleError::Start(format!("the scene has no participant number {place}"));
+        let name = &participants.get(place).ok_or_else(missing)?.name;
+        let role = build(place, scene, isa).ok_or_else(missing)?;
+        let writer = folder.map(|folder| FrameWriter::start(folder, name)).transpose();
+        let writer = writer.map_err(|error| RoleError::Output(error.into()))?;
+        Ok(Member { role, frames: writer.map(|writer| Box::new(writer) as Box<dyn FrameSink>) })
+    };
+    places.iter().map(member).collect()
+}
+
+/// Places of the probes' participants, in the order of the probes: who measures each.
+pub fn measured_by(scene: &Scene) -> Vec<usize> {
+    let first_solid = usize::from(scene.fluid.is_some());
+    let place = |probe: &halfstep_scene::Probe| match probe.kind.phase() {
+        Phase::Solid => first_solid,
+        _ => 0,
+    };
+    scene.probes.iter().map(place).collect()
+}
+
+/// Number of probe values of the participant at this place.
+pub fn probe_values(scene: &Scene, place: usize) -> usize {
+    let own = measured_by(scene).into_iter().zip(&scene.probes).filter(|(owner, _)| *owner == place);
+    own.map(|(_, probe)| probe.kind.components(scene.dimension).0.len()).sum()
 }

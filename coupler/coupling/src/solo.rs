@@ -1,110 +1,217 @@
-//! A scene with one phase: the same role, clock and writer in one process, no exchange.
+//! A scene with one phase: the same half-step loop, clock and recorder in one process, nothing exchanged.
 
-use crate::clock::{Clock, Limit};
+use crate::clock::{Clock, Limit, Tick};
+use crate::energy::Account;
 use crate::error::RunError;
 use crate::recorder::{Measured, Recorder};
-use halfstep_output::FrameWriter;
-use halfstep_output::run_json::RoleSeconds;
-use halfstep_role::role::{Costs, Role};
-use halfstep_wire::failure::RoleName;
+use halfstep_link::{Expect, LinkError, LinkTimes, Port};
+use halfstep_role::lockstep::{Member, drive};
+use halfstep_role::report::Report;
+use halfstep_sph::Phase;
+use halfstep_wire::Name;
+use halfstep_wire::failure::Diverged;
 use halfstep_wire::half_step::Stage;
-use halfstep_wire::protocol::MAX_PROBE_VALUES;
+use halfstep_wire::protocol::{ForceHeader, ForceRecord, StateHeader, StateRecord, order};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
 
 /// How a run without partner went.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct SoloOutcome {
     /// It was told to stop before its end.
     pub stopped: bool,
-    /// Hash of the final state.
-    pub state_hash: u64,
-    /// Where the time went.
-    pub seconds: RoleSeconds,
-    /// What the effects took of it, s.
-    pub costs: Costs,
-    /// See [`Role::pair_evaluations`].
-    pub pair_evaluations: u64,
+    /// Last messages of the participants.
+    pub last: Vec<StateHeader>,
+    /// What they say about themselves.
+    pub reports: Vec<Report>,
 }
 
-/// Runs a role to the clock's end or until `stop`.
+/// Drives participants that nobody couples to the clock's end or until `stop`.
 ///
 /// # Errors
 /// Divergence or output; the last state before a divergence is written as a frame first.
 pub fn run_solo(
-    role: &mut dyn Role,
+    members: Vec<Member>,
     clock: &mut Clock,
-    writer: &mut FrameWriter,
     recorder: &mut Recorder,
     stop: &AtomicBool,
 ) -> Result<SoloOutcome, RunError> {
-    let mut frame = 0;
-    let mut probes = [0.0; MAX_PROBE_VALUES];
-    let mut scratch = Vec::new();
-    let mut seconds = RoleSeconds::default();
-    let mut in_sums = 0.0;
-    loop {
-        let start = Instant::now();
-        let stopped = stop.load(Ordering::Relaxed);
-        role.set_time(clock.time());
-        role.publish(&[], &mut scratch);
-        let sums = role.audit();
-        let of = |name| (role.name() == name).then_some(&sums);
-        let grown = recorder.judge(clock.step(), clock.time(), of(RoleName::Fluid), of(RoleName::Solid), 0.0);
+    let names: Vec<Name> = members.iter().map(|member| member.role.name()).collect();
+    let phases = members.iter().map(|member| member.role.phase()).collect();
+    let count = names.len();
+    let mut port = Alone {
+        names,
+        phases,
+        clock,
+        recorder,
+        stop,
+        headers: vec![StateHeader::default(); count],
+        probes: vec![Vec::new(); count],
+        missing_probes: 0,
+        tick: None,
+        frame: 0,
+        stopped: false,
+        grown: None,
+        error: None,
+    };
+    let mut reports = Vec::new();
+    let result = drive(members, &mut port, &mut |report| {
+        reports.push(report.clone());
+        Ok(())
+    });
+    if let Some(error) = port.error {
+        return Err(error);
+    }
+    match (result, port.grown) {
+        (Ok(()), None) => Ok(SoloOutcome { stopped: port.stopped, last: port.headers, reports }),
+        (Ok(()), Some(diverged)) => Err(diverged.into()),
+        (Err(error), _) => Err(error.into()),
+    }
+}
+
+/// The coupler's part where there is nothing to couple: time line, recorder and orders.
+struct Alone<'a> {
+    names: Vec<Name>,
+    phases: Vec<Phase>,
+    clock: &'a mut Clock,
+    recorder: &'a mut Recorder,
+    stop: &'a AtomicBool,
+    headers: Vec<StateHeader>,
+    probes: Vec<Vec<f64>>,
+    /// Participants whose probe values of the present row have not come.
+    missing_probes: usize,
+    tick: Option<Tick>,
+    frame: u64,
+    stopped: bool,
+    /// Energy from nowhere, and whose.
+    grown: Option<Diverged>,
+    error: Option<RunError>,
+}
+
+impl Alone<'_> {
+    /// What happens with the state at n, decided once for all participants.
+    fn decide(&mut self) -> Result<Tick, RunError> {
+        self.stopped = self.stop.load(Ordering::Relaxed);
+        let of = self.names.iter().zip(&self.phases).zip(&self.headers);
+        let accounts: Vec<Account<'_>> = of
+            .clone()
+            .map(|((name, phase), header)| Account {
+                name: *name,
+                phase: *phase,
+                audit: Some(&header.audit),
+                work: 0.0,
+            })
+            .collect();
+        self.grown = self.recorder.judge(self.clock.step(), self.clock.time(), &accounts);
+        let limits: Vec<Limit> =
+            of.map(|((name, _), header)| Limit { participant: *name, dt: header.dt_limit }).collect();
         // Energy from nowhere ends the run in order, with its last state on disk.
-        let stop = stopped || grown.is_some();
-        let tick = clock.tick(&[Limit { role: role.name(), dt: role.dt_limit() }], stop)?;
-        let n = role.probes(&mut probes);
-        let measured = Measured {
-            probes: &probes[..n],
-            audit: &sums,
-            sub_steps: role.sub_steps(),
-            particles: role.particles(),
-        };
-        let mut notes = [None, None];
-        notes[usize::from(role.name() == RoleName::Solid)] = Some(measured);
-        let [fluid, solid] = notes;
-        recorder.note(&tick, fluid, solid)?;
-        // What walls show belongs to the state at n once the sums are there: frames come after them.
-        let summed = Instant::now();
-        role.own_sums();
-        in_sums += summed.elapsed().as_secs_f64();
-        let computed = Instant::now();
-        seconds.compute += (computed - start).as_secs_f64();
-        if tick.frame {
-            writer.submit(frame, |f| role.fill_frame(tick.time, f))?;
-            frame += 1;
+        let tick = self.clock.tick(&limits, self.stopped || self.grown.is_some())?;
+        self.missing_probes = if tick.row { self.names.len() } else { 0 };
+        if !tick.row {
+            self.note(&tick)?;
         }
-        let written = Instant::now();
-        seconds.output += (written - computed).as_secs_f64();
-        if let Some(diverged) = grown {
-            return Err(diverged.into());
+        Ok(tick)
+    }
+
+    fn note(&mut self, tick: &Tick) -> Result<(), RunError> {
+        let of = self.phases.iter().zip(&self.headers).zip(&self.probes);
+        let measured: Vec<Measured<'_>> =
+            of.map(|((phase, header), probes)| Measured::of(*phase, header, probes)).collect();
+        Ok(self.recorder.note(tick, &measured)?)
+    }
+
+    fn keep<T>(&mut self, result: Result<T, RunError>) -> Result<T, LinkError> {
+        result.map_err(|error| {
+            self.error = Some(error);
+            LinkError::Aborted
+        })
+    }
+}
+
+impl Port for Alone<'_> {
+    fn send_state(
+        &mut self,
+        member: usize,
+        header: &StateHeader,
+        _records: &[StateRecord],
+    ) -> Result<(), LinkError> {
+        self.headers[member] = *header;
+        Ok(())
+    }
+
+    fn receive_peer(
+        &mut self,
+        _member: usize,
+        _peer: usize,
+        _expect: &Expect,
+        _records: &mut Vec<StateRecord>,
+    ) -> Result<StateHeader, LinkError> {
+        Err(LinkError::Config { key: "peer", reason: "there is no other phase".into() })
+    }
+
+    fn receive_forces(
+        &mut self,
+        member: usize,
+        _expect: &Expect,
+        records: &mut Vec<ForceRecord>,
+    ) -> Result<ForceHeader, LinkError> {
+        records.clear();
+        let first = self.headers[member].stage == Stage::First.number();
+        if first && member == 0 {
+            let decided = self.decide();
+            self.tick = Some(self.keep(decided)?);
+            self.frame += u64::from(self.tick.is_some_and(|tick| tick.frame));
         }
-        if tick.dt.is_none() {
-            return Ok(SoloOutcome {
-                stopped,
-                state_hash: role.state_hash(),
-                seconds,
-                costs: role.costs().of(in_sums, seconds.compute),
-                pair_evaluations: role.pair_evaluations(),
-            });
+        let Some(tick) = self.tick else { return Err(LinkError::Aborted) };
+        let mut orders = if tick.dt.is_some() { order::GO } else { order::STOP };
+        if first && tick.frame {
+            orders |= order::WRITE_FRAME;
         }
-        for half_step in tick.half_step().both() {
-            if half_step.stage == Stage::Second {
-                role.set_time(half_step.before());
-                role.publish(&[], &mut scratch);
-                let start = Instant::now();
-                role.own_sums();
-                in_sums += start.elapsed().as_secs_f64();
+        if first && tick.row {
+            orders |= order::SEND_PROBES;
+        }
+        if !first && member + 1 == self.names.len() {
+            self.clock.advance(&tick);
+        }
+        Ok(ForceHeader {
+            order: orders,
+            step: tick.step,
+            time: tick.time,
+            dt: tick.dt.unwrap_or(0.0),
+            next_time: tick.next_time,
+            frame: self.frame.saturating_sub(1),
+            ..ForceHeader::default()
+        })
+    }
+
+    fn send_probes(
+        &mut self,
+        member: usize,
+        _step: u64,
+        _time: f64,
+        values: &[f64],
+    ) -> Result<(), LinkError> {
+        self.probes[member].clear();
+        self.probes[member].extend_from_slice(values);
+        self.missing_probes = self.missing_probes.saturating_sub(1);
+        match self.tick {
+            Some(tick) if self.missing_probes == 0 => {
+                let noted = self.note(&tick);
+                self.keep(noted)
             }
-            if let Err(diverged) = role.advance(&half_step, &[]) {
-                if let Err(error) = writer.submit(frame, |f| role.fill_frame(half_step.after(), f)) {
-                    tracing::warn!("the last frame could not be written: {error}");
-                }
-                return Err(diverged.into());
-            }
+            _ => Ok(()),
         }
-        clock.advance(&tick);
-        seconds.compute += written.elapsed().as_secs_f64();
+    }
+
+    fn peers(&self, _member: usize) -> &[Name] {
+        &[]
+    }
+
+    fn participants(&self) -> &[Name] {
+        &self.names
+    }
+
+    fn times(&self) -> LinkTimes {
+        LinkTimes::default()
     }
 }

@@ -3,8 +3,8 @@
 //! Start all children before the coupler opens its link, and from a thread that lives as long as they shall: the system
 //! ends them when that thread ends.
 
-use halfstep_link::LinkConfig;
-use halfstep_wire::failure::RoleName;
+use halfstep_link::{LinkConfig, Participant};
+use halfstep_wire::Name;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use std::ffi::OsStr;
 use std::fs::{File, OpenOptions};
@@ -34,7 +34,7 @@ pub enum SuperviseError {
     #[error("the {role} could not be started (`{command}`): {source}")]
     Start {
         /// Which role.
-        role: RoleName,
+        role: Name,
         /// The command.
         command: String,
         /// What the system said.
@@ -52,7 +52,7 @@ pub struct Children {
 
 #[derive(Debug)]
 struct Supervised {
-    role: RoleName,
+    role: Name,
     child: Child,
     /// The child leads a process group that may outlive it.
     group: bool,
@@ -89,7 +89,7 @@ impl Children {
     }
 
     /// Starts a role. It ends with this process, it does not hear Ctrl-C, and its output goes to the log.
-    pub fn spawn(&mut self, role: RoleName, command: Command) -> Result<(), SuperviseError> {
+    pub fn spawn(&mut self, role: Name, command: Command) -> Result<(), SuperviseError> {
         self.start(role, command, false)
     }
 
@@ -97,17 +97,17 @@ impl Children {
     /// [`LinkConfig::to_env`] and from `HALFSTEP_SCENE`, the path of the resolved scene as JSON.
     pub fn spawn_shell(
         &mut self,
-        role: RoleName,
+        participant: &Participant,
         line: &str,
         link: &LinkConfig,
         scene: &Path,
     ) -> Result<(), SuperviseError> {
         let mut command = Command::new("sh");
-        command.arg("-c").arg(line).envs(link.to_env()).env("HALFSTEP_SCENE", scene);
-        self.start(role, command, true)
+        command.arg("-c").arg(line).envs(link.to_env_of(participant)).env("HALFSTEP_SCENE", scene);
+        self.start(participant.name, command, true)
     }
 
-    fn start(&mut self, role: RoleName, mut command: Command, group: bool) -> Result<(), SuperviseError> {
+    fn start(&mut self, role: Name, mut command: Command, group: bool) -> Result<(), SuperviseError> {
         let log = self.open_log()?;
         let errors =
             log.try_clone().map_err(|source| SuperviseError::Log { path: self.log.clone(), source })?;
@@ -143,7 +143,7 @@ impl Children {
     }
 
     /// Process numbers of the roles, in the order of their start.
-    pub fn pids(&self) -> Vec<(RoleName, u32)> {
+    pub fn pids(&self) -> Vec<(Name, u32)> {
         self.children.iter().map(|c| (c.role, c.child.id())).collect()
     }
 
@@ -155,7 +155,7 @@ impl Children {
 
     /// The first child that was found to have ended, and how. Children that end in the same moment are ordered by
     /// their failure: one that did not succeed comes before one that did.
-    pub fn first_exit(&mut self) -> Option<(RoleName, ExitStatus)> {
+    pub fn first_exit(&mut self) -> Option<(Name, ExitStatus)> {
         self.poll();
         let ended = || self.children.iter().filter_map(|c| Some((c.role, c.status?)));
         ended().find(|(_, status)| !status.success()).or_else(|| ended().next())
@@ -163,7 +163,7 @@ impl Children {
 
     /// The child whose end ended the others: one that a signal ended, else the one that was missed, else any that
     /// failed. Which of them was noticed first says nothing.
-    pub fn culprit(&mut self, missed: Option<RoleName>) -> Option<(RoleName, ExitStatus)> {
+    pub fn culprit(&mut self, missed: Option<Name>) -> Option<(Name, ExitStatus)> {
         let exits = self.exits();
         let failed = || exits.iter().copied().filter(|(_, status)| !status.success());
         failed()
@@ -173,7 +173,7 @@ impl Children {
     }
 
     /// How each child ended that has.
-    pub fn exits(&mut self) -> Vec<(RoleName, ExitStatus)> {
+    pub fn exits(&mut self) -> Vec<(Name, ExitStatus)> {
         self.poll();
         self.children.iter().filter_map(|c| Some((c.role, c.status?))).collect()
     }
@@ -191,7 +191,7 @@ impl Children {
     }
 
     /// Asks all to end, waits so long, then kills those that have not. Returns how each ended.
-    pub fn stop(&mut self, grace: Duration) -> Vec<(RoleName, ExitStatus)> {
+    pub fn stop(&mut self, grace: Duration) -> Vec<(Name, ExitStatus)> {
         self.signal(libc::SIGTERM);
         if !self.wait(grace) {
             self.signal(libc::SIGKILL);

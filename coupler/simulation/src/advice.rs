@@ -2,41 +2,45 @@
 
 use halfstep_coupling::clock::Clock;
 use halfstep_scene::{Scene, TimeStep};
-use halfstep_wire::failure::{Diverged, Quantity, RoleName};
+use halfstep_sph::Phase;
+use halfstep_wire::Name;
+use halfstep_wire::failure::{Diverged, Quantity};
 
-/// The keys to change, with their present values. `foreign`: the solid is a process of somebody else's.
-pub(crate) fn advice(diverged: &Diverged, scene: &Scene, clock: &Clock, foreign: bool) -> String {
-    let role = diverged.role;
-    // The diverged phase's own limit says more than the other's.
-    let exceeded = clock.exceeded().map(|(_, limit)| limit);
+/// The keys to change, with their present values. `foreign`: the solids that other programs compute.
+pub(crate) fn advice(diverged: &Diverged, scene: &Scene, clock: &Clock, foreign: &[Name]) -> String {
+    let name = diverged.participant;
+    let of_solid = scene.solids.iter().any(|solid| solid.name == name.as_str());
+    let phase = if of_solid { Phase::Solid } else { Phase::Fluid };
+    // The diverged participant's own limit says more than another's.
+    let exceeded = clock.exceeded();
     if let (TimeStep::Fixed(dt), Some(limit)) =
-        (scene.time_step, exceeded.max_by_key(|limit| limit.role == role))
+        (scene.time_step, exceeded.max_by_key(|limit| limit.participant == name))
     {
         return format!(
             "time_step = {dt:.4e} s is above the {}'s stability limit of {:.4e} s: choose a smaller one or \
              time_step = \"auto\"",
-            limit.role, limit.dt
+            limit.participant, limit.dt
         );
     }
-    if foreign && role == RoleName::Solid {
-        return "the solid is not this program's: look at what its process does".into();
+    if foreign.contains(&name) {
+        return format!("the {name} is not this program's: look at what its process does");
     }
-    let change = match (scene.time_step, role) {
+    let change = match (scene.time_step, phase) {
         (TimeStep::Fixed(dt), _) => {
             format!("choose a smaller time_step than {dt:.4e} s, although it is within the stability limits")
         }
-        (TimeStep::Auto, RoleName::Solid) => {
+        (TimeStep::Auto, Phase::Solid) => {
             format!("lower numerics.solid_cfl (now {})", scene.numerics.solid_cfl)
         }
         (TimeStep::Auto, _) => format!("lower numerics.cfl (now {})", scene.numerics.cfl),
     };
-    match (diverged.quantity, role) {
+    match (diverged.quantity, phase) {
         (Quantity::TimeStep, _) => {
             "the time steps that the phases allow became too small to reach end_time: \
             look at the last frames for what goes wrong before"
                 .into()
         }
-        (Quantity::Energy, RoleName::Solid) => {
+        (Quantity::Energy, Phase::Solid) => {
             format!("{change}; or raise solid.artificial_viscosity: the last frames show where it moves")
         }
         (Quantity::Energy, _) => {
@@ -44,7 +48,7 @@ pub(crate) fn advice(diverged: &Diverged, scene: &Scene, clock: &Clock, foreign:
                 "{change}; or raise fluid.artificial_viscosity.linear: the last frames show where it moves"
             )
         }
-        (Quantity::Density, RoleName::Solid) => {
+        (Quantity::Density, Phase::Solid) => {
             format!("{change}; or the load is too much for solid.youngs_modulus")
         }
         _ => change,
@@ -60,7 +64,7 @@ mod tests {
     use std::path::Path;
 
     const DIVERGED: Diverged = Diverged {
-        role: RoleName::Solid,
+        participant: Name::SOLID,
         particle: 3,
         quantity: Quantity::Speed,
         value: 300.0,
@@ -79,9 +83,9 @@ mod tests {
     fn advised(scene: &Scene, fluid: f64, solid: f64, diverged: &Diverged) -> String {
         let mut clock = Clock::new(scene);
         let limits =
-            [(RoleName::Fluid, fluid), (RoleName::Solid, solid)].map(|(role, dt)| Limit { role, dt });
+            [(Name::FLUID, fluid), (Name::SOLID, solid)].map(|(participant, dt)| Limit { participant, dt });
         clock.tick(&limits, false).unwrap();
-        advice(diverged, scene, &clock, false)
+        advice(diverged, scene, &clock, &[])
     }
 
     #[test]
@@ -99,7 +103,7 @@ mod tests {
     fn without_a_fixed_step_the_courant_numbers_are_the_keys() {
         let scene = scene("auto");
         assert!(advised(&scene, 1e-5, 1e-5, &DIVERGED).contains("numerics.solid_cfl (now 0.6)"));
-        let fluid = Diverged { role: RoleName::Fluid, ..DIVERGED };
+        let fluid = Diverged { participant: Name::FLUID, ..DIVERGED };
         assert!(advised(&scene, 1e-5, 1e-5, &fluid).contains("numerics.cfl (now 0.4)"));
         let hot = Diverged { quantity: Quantity::Energy, ..fluid };
         assert!(advised(&scene, 1e-5, 1e-5, &hot).contains("fluid.artificial_viscosity.linear"));

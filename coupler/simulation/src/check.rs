@@ -5,10 +5,9 @@ use halfstep_coupling::roles;
 use halfstep_link::LinkConfig;
 use halfstep_role::role::Role;
 use halfstep_scene::geometry;
-use halfstep_scene::{self as scene, Scene, TimeStep};
+use halfstep_scene::{self as scene, Phase, Scene, TimeStep};
 use halfstep_solid::SubStepping;
 use halfstep_sph::lane::Isa;
-use halfstep_wire::failure::RoleName;
 use halfstep_wire::half_step::HalfStep;
 use std::fmt::Write;
 use std::time::Instant;
@@ -34,12 +33,12 @@ pub fn describe(scene: &Scene, isa: Isa) -> String {
     let mut limit = f64::INFINITY;
     let mut solid_limit = None;
     let mut built = Vec::new();
-    for name in [RoleName::Fluid, RoleName::Solid] {
-        let Some(role) = roles::build(name, scene, isa) else { continue };
+    for place in 0..scene.participants().len() {
+        let Some(role) = roles::build(place, scene, isa) else { continue };
         let own = role.dt_limit();
-        line(&format!("{name} dt limit"), format!("{own:.3e} s"));
+        line(&format!("{} dt limit", role.name()), format!("{own:.3e} s"));
         limit = limit.min(own);
-        if name == RoleName::Solid {
+        if role.phase() == Phase::Solid {
             solid_limit = Some(own);
         }
         built.push(role);
@@ -59,9 +58,10 @@ pub fn describe(scene: &Scene, isa: Isa) -> String {
     }
     line("memory", format!("about {:.1} MB", scene::memory_needed(&counts) as f64 / 1e6));
     if scene.fluid.is_some() && !scene.solids.is_empty() {
-        let (fluid, solid) = crate::run::capacities(scene, counts.fluid, counts.solid, false);
-        let bytes = LinkConfig::new(fluid, solid).shared_memory_bytes();
-        line("shared memory", format!("{:.1} MB", bytes as f64 / 1e6));
+        if let Ok(participants) = crate::participants::participants(scene, &[]) {
+            let bytes = LinkConfig::new(participants).shared_memory_bytes();
+            line("shared memory", format!("{:.1} MB", bytes as f64 / 1e6));
+        }
     }
     let costs: Option<Vec<f64>> = built.iter_mut().map(|role| step_cost(role.as_mut(), dt)).collect();
     let seconds = costs.map(|costs| costs.into_iter().fold(0.0, f64::max) * scene.end_time / dt);

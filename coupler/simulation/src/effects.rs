@@ -1,14 +1,10 @@
 //! The ledger of effects: which take part in a scene, why, and what they cost.
 
-use halfstep_coupling::couple::CoupledOutcome;
-use halfstep_coupling::solo::SoloOutcome;
 use halfstep_output::RunReport;
 use halfstep_output::run_json::EffectReport;
-use halfstep_role::farewell;
-use halfstep_role::role::Costs;
+use halfstep_role::report::Report;
 use halfstep_scene::geometry::Counts;
-use halfstep_scene::{Decision, EffectName, Scene, Treatment};
-use halfstep_wire::protocol::StateHeader;
+use halfstep_scene::{Decision, EffectName, Phase, Scene, Treatment};
 
 /// What the fluid does in any case: pressure, continuity, neighbour lists, time step.
 const FLUID: &str = "fluid";
@@ -82,51 +78,32 @@ pub(crate) fn ledger(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
     list
 }
 
-/// Shares of a coupled run: parts of the computing time of all three roles.
-pub(crate) fn share_coupled(report: &mut RunReport, outcome: &CoupledOutcome) {
-    let total = outcome.fluid.seconds[0] + outcome.solid.seconds[0] + outcome.seconds.compute;
-    let both = [&outcome.fluid, &outcome.solid];
-    let sum = |place: usize| both.iter().map(|h| told(h, place)).sum::<f64>();
-    let mut costs = Costs { walls: sum(farewell::WALLS), ..Costs::default() };
-    for (k, seconds) in costs.effects.iter_mut().enumerate() {
-        *seconds = sum(farewell::EFFECTS + k);
-    }
-    share(report, &costs, total);
-    let shown = |place: usize| {
-        let effect = place.checked_sub(farewell::EFFECTS).map(|k| EffectName::ALL[k]);
-        effect.is_none_or(|effect| is_on(report, effect))
-    };
-    let own = [&outcome.fluid, &outcome.solid].map(|header| {
-        let places = (farewell::WALLS..farewell::COUNT).filter(|&place| shown(place));
-        (header.seconds[0] - places.map(|place| told(header, place)).sum::<f64>()).max(0.0) / total
-    });
-    share_row(report, INTERFACE, sum(farewell::INTERFACE) / total);
-    share_row(report, CROSS_VISCOSITY, outcome.seconds.compute / total);
-    for (name, share) in [FLUID, SOLID].into_iter().zip(own) {
-        share_row(report, name, share);
-    }
-}
-
-/// Shares of a run of one phase.
-pub(crate) fn share_solo(report: &mut RunReport, outcome: &SoloOutcome) {
-    let total = outcome.seconds.compute;
-    share(report, &outcome.costs, total);
-    let shown =
-        EffectName::ALL.iter().zip(outcome.costs.effects).filter(|(effect, _)| is_on(report, **effect));
-    let effects = outcome.costs.walls + shown.map(|(_, seconds)| seconds).sum::<f64>();
-    for name in [FLUID, SOLID] {
-        share_row(report, name, (total - effects).max(0.0) / total);
-    }
-}
-
-fn share(report: &mut RunReport, costs: &Costs, total: f64) {
-    for (effect, seconds) in EffectName::ALL.iter().zip(costs.effects) {
-        if seconds > 0.0 {
-            share_row(report, effect.name(), seconds / total);
+/// Puts the shares of the computing time of all roles into the ledger, as the participants reported them. `coupler`: the
+/// coupler's own computing time, s.
+pub(crate) fn share(report: &mut RunReport, reports: &[(Phase, Report)], coupler: f64) {
+    let total = coupler + reports.iter().map(|(_, own)| own.compute).sum::<f64>();
+    let sum = |part: &dyn Fn(&Report) -> f64| reports.iter().map(|(_, own)| part(own)).sum::<f64>() / total;
+    for effect in EffectName::ALL {
+        let seconds = |own: &Report| own.effects.iter().find(|(e, _)| e == effect).map_or(0.0, |(_, s)| *s);
+        let share = sum(&seconds);
+        if share > 0.0 {
+            share_row(report, effect.name(), share);
         }
     }
-    if costs.walls > 0.0 {
-        share_row(report, WALLS, costs.walls / total);
+    let walls = sum(&|own| own.walls);
+    if walls > 0.0 {
+        share_row(report, WALLS, walls);
+    }
+    share_row(report, INTERFACE, sum(&|own| own.interface));
+    share_row(report, CROSS_VISCOSITY, coupler / total);
+    for (name, phase) in [(FLUID, Phase::Fluid), (SOLID, Phase::Solid)] {
+        let rest = |own: &Report| {
+            let shown = own.effects.iter().filter(|(effect, _)| is_on(report, *effect));
+            let effects: f64 = shown.map(|(_, seconds)| seconds).sum();
+            (own.compute - own.walls - own.interface - effects).max(0.0)
+        };
+        let share: f64 = reports.iter().filter(|(p, _)| *p == phase).map(|(_, own)| rest(own)).sum();
+        share_row(report, name, share / total);
     }
 }
 
@@ -143,9 +120,4 @@ fn share_row(report: &mut RunReport, name: &str, share: f64) {
     for row in report.effects.iter_mut().filter(|row| row.on && row.name == name) {
         row.share = Some(share);
     }
-}
-
-/// What a last message says; a foreign phase may say nothing.
-fn told(last: &StateHeader, place: usize) -> f64 {
-    if (place as u64) < last.probe_count { last.probes[place] } else { 0.0 }
 }

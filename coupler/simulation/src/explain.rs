@@ -1,13 +1,12 @@
 //! What takes part in a scene, why, and what it costs.
 
-use crate::options::{RunOptions, SolidSource};
+use crate::options::RunOptions;
 use crate::run::run;
 use halfstep_coupling::error::RunError;
 use halfstep_coupling::roles;
 use halfstep_output::run_json::EffectReport;
 use halfstep_scene::{Scene, TimeStep};
 use halfstep_sph::lane::Isa;
-use halfstep_wire::failure::RoleName;
 use serde::Serialize;
 use std::fmt;
 
@@ -34,8 +33,8 @@ pub struct Explanation {
 pub fn explain(scene: &Scene, isa: Isa) -> Result<Explanation, RunError> {
     let mut limit = f64::INFINITY;
     let (mut bytes, mut composition) = (None, None);
-    for name in [RoleName::Fluid, RoleName::Solid] {
-        let Some(mut role) = roles::build(name, scene, isa) else { continue };
+    for place in 0..scene.participants().len() {
+        let Some(mut role) = roles::build(place, scene, isa) else { continue };
         limit = limit.min(role.dt_limit());
         role.own_sums();
         bytes = bytes.or(role.bytes().map(|b| b as f64 / role.particles().max(1) as f64));
@@ -56,7 +55,7 @@ pub fn explain(scene: &Scene, isa: Isa) -> Result<Explanation, RunError> {
         in_process: true,
         quiet: true,
         force: false,
-        solid: SolidSource::BuiltIn,
+        foreign: Vec::new(),
         solid_wait: 0.0,
         isa,
     };

@@ -6,5 +6,6 @@ mod effects;
 pub mod explain;
 pub mod isa;
 pub mod options;
+mod participants;
 pub mod run;
 mod session;

@@ -1,14 +1,12 @@
 //! How a scene is run.
 
 use halfstep_sph::lane::Isa;
+use halfstep_wire::Name;
 use std::path::PathBuf;
 
-/// Where the solid process comes from.
-#[derive(Clone, Debug, PartialEq, Eq, Default)]
+/// Where a solid that is not built in comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SolidSource {
-    /// The scene's model.
-    #[default]
-    BuiltIn,
     /// A command line for the shell.
     Command(String),
     /// Somebody starts it by hand.
@@ -28,10 +26,17 @@ pub struct RunOptions {
     pub quiet: bool,
     /// An earlier run in the folder is removed.
     pub force: bool,
-    /// The solid.
-    pub solid: SolidSource,
+    /// Solids that are not built in, by name.
+    pub foreign: Vec<(Name, SolidSource)>,
     /// How long to wait for a solid started by hand, s.
     pub solid_wait: f64,
     /// Instruction set of every role; one that the processor has.
     pub isa: Isa,
+}
+
+impl RunOptions {
+    /// Where a solid comes from; `None`: it is built in.
+    pub fn source(&self, name: Name) -> Option<&SolidSource> {
+        self.foreign.iter().find(|(known, _)| *known == name).map(|(_, source)| source)
+    }
 }

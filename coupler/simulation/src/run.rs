@@ -2,20 +2,23 @@
 
 use crate::advice::advice;
 use crate::effects;
-use crate::options::{RunOptions, SolidSource};
+use crate::options::RunOptions;
+use crate::participants::report_participants;
 use crate::session::Session;
 use halfstep_coupling::clock::Clock;
+use halfstep_coupling::couple::combined_hash;
 use halfstep_coupling::error::RunError;
 use halfstep_coupling::recorder::Recorder;
 use halfstep_coupling::roles;
 use halfstep_coupling::solo::run_solo;
 use halfstep_coupling::supervise::stop_flag;
 use halfstep_output::run_json::{Particles, RunStatus};
-use halfstep_output::{self as output, FrameWriter, RunDirectory, RunReport};
-use halfstep_role::lockstep;
+use halfstep_output::{self as output, RunDirectory, RunReport};
+use halfstep_role::report::Report;
+use halfstep_role::serve;
 use halfstep_scene::Scene;
 use halfstep_scene::geometry;
-use halfstep_wire::failure::RoleName;
+use halfstep_wire::Name;
 use std::sync::atomic::AtomicBool;
 
 /// Runs a scene. The report is written whatever happens; an error stands in it, too.
@@ -23,8 +26,14 @@ use std::sync::atomic::AtomicBool;
 /// # Errors
 /// Nothing could be started or written. A run that failed is a report with its error.
 pub fn run(scene: &Scene, options: &RunOptions) -> Result<(RunReport, Option<RunError>), RunError> {
-    if options.solid != SolidSource::BuiltIn && (scene.fluid.is_none() || scene.solids.is_empty()) {
+    if !options.foreign.is_empty() && (scene.fluid.is_none() || scene.solids.is_empty()) {
         return Err(RunError::System("--solid needs a scene with [fluid] and [solid]".into()));
+    }
+    let unknown = |name: &Name| !scene.solids.iter().any(|solid| solid.name == name.as_str());
+    if let Some((name, _)) = options.foreign.iter().find(|(name, _)| unknown(name)) {
+        let known: Vec<&str> = scene.solids.iter().map(|solid| solid.name.as_str()).collect();
+        let reason = format!("the scene has no solid `{name}`; it has {}", known.join(", "));
+        return Err(RunError::System(reason));
     }
     let directory = RunDirectory::create(&options.out, options.force)?;
     let stop = stop_flag().map_err(|e| RunError::System(format!("cannot watch for signals: {e}")))?;
@@ -41,11 +50,10 @@ pub fn run(scene: &Scene, options: &RunOptions) -> Result<(RunReport, Option<Run
     report.write(&directory.file("run.json"))?;
     let mut recorder = Recorder::new(scene, &directory.file("probes.csv"), options.quiet)?;
     let mut clock = Clock::new(scene);
-    let foreign = options.solid != SolidSource::BuiltIn;
-    let result = if scene.fluid.is_some() && (!scene.solids.is_empty() || foreign) {
-        let capacity = capacities(scene, counts.fluid, counts.solid, foreign);
-        let session = Session { scene, options, directory: &directory, stop: &stop, capacity };
-        session.run(&mut clock, &mut recorder, &mut report)
+    let foreign: Vec<Name> = options.foreign.iter().map(|(name, _)| *name).collect();
+    let result = if scene.fluid.is_some() && !scene.solids.is_empty() {
+        Session::new(scene, options, &directory, &stop)
+            .and_then(|session| session.run(&mut clock, &mut recorder, &mut report))
     } else {
         solo(scene, options, &directory, &stop, &mut clock, &mut recorder, &mut report)
     };
@@ -58,7 +66,7 @@ pub fn run(scene: &Scene, options: &RunOptions) -> Result<(RunReport, Option<Run
         Err(mut error) => {
             report.status = Some(RunStatus::Failed);
             if let RunError::Diverged { diverged, hint } = &mut error {
-                *hint = advice(diverged, scene, &clock, foreign);
+                *hint = advice(diverged, scene, &clock, &foreign);
                 report.status = Some(RunStatus::Diverged);
             }
             tracing::error!("{error}");
@@ -94,15 +102,6 @@ fn start_log(directory: &RunDirectory) -> Result<(), RunError> {
     Ok(())
 }
 
-/// Interface capacities of fluid and solid for these numbers of particles.
-pub fn capacities(scene: &Scene, fluid: u64, solid: u64, foreign: bool) -> (u32, u32) {
-    let solid = if foreign { solid.max(4096) } else { solid };
-    // A ribbon of about four layers on each side of the solid's surface, and room for compression.
-    let ribbon = (24 * solid).max(4096).min(fluid);
-    let fluid = scene.numerics.interface_capacity.map_or(ribbon, u64::from);
-    (fluid.max(1) as u32, solid.max(1) as u32)
-}
-
 fn solo(
     scene: &Scene,
     options: &RunOptions,
@@ -112,28 +111,19 @@ fn solo(
     recorder: &mut Recorder,
     report: &mut RunReport,
 ) -> Result<bool, RunError> {
-    let name = if scene.fluid.is_some() { RoleName::Fluid } else { RoleName::Solid };
-    let stem = roles::stem(name);
-    let own = scene.numerics.threads;
-    let threads = options.threads.unwrap_or(if name == RoleName::Fluid { own.fluid } else { own.solid });
-    let mut writer = FrameWriter::start(directory.path(), stem)?;
-    let result = lockstep::on_threads(threads, || -> Result<_, RunError> {
-        let mut role = roles::build(name, scene, options.isa)
-            .ok_or_else(|| RunError::System("the scene has neither fluid nor solid".into()))?;
-        run_solo(role.as_mut(), clock, &mut writer, recorder, stop)
-    })?;
-    writer.finish()?;
-    let outcome = result?;
-    report.audit.state_hash = Some(format!("{:016x}", outcome.state_hash));
-    effects::share_solo(report, &outcome);
-    let seconds = Some(outcome.seconds);
-    let evaluations = Some(outcome.pair_evaluations);
-    if name == RoleName::Fluid {
-        report.roles.fluid = seconds;
-        report.work.pair_evaluations.fluid = evaluations;
-    } else {
-        report.roles.solid = seconds;
-        report.work.pair_evaluations.solid = evaluations;
+    let places: Vec<usize> = (0..scene.participants().len()).collect();
+    if places.is_empty() {
+        return Err(RunError::System("the scene has neither fluid nor solid".into()));
     }
+    let of_solids = scene.solids.iter().map(|solid| solid.threads).max();
+    let own = if scene.fluid.is_some() { scene.numerics.threads.fluid } else { of_solids.unwrap_or(1) };
+    let threads = options.threads.unwrap_or(own);
+    let outcome = serve::on_threads(threads, || -> Result<_, RunError> {
+        let members = roles::members(scene, &places, options.isa, Some(directory.path()))?;
+        run_solo(members, clock, recorder, stop)
+    })??;
+    report.audit.state_hash = Some(format!("{:016x}", combined_hash(&outcome.last)));
+    let reports: Vec<Option<Report>> = outcome.reports.into_iter().map(Some).collect();
+    report_participants(scene, options, &outcome.last, &reports, None, report);
     Ok(outcome.stopped)
 }

@@ -1,50 +1,77 @@
 //! A coupled run: starts its roles as processes or as threads, couples them, and finds out why one of them ended.
 
-use crate::effects;
 use crate::isa::{self, ISA_VARIABLE};
 use crate::options::{RunOptions, SolidSource};
+use crate::participants::{participants, report_participants};
 use halfstep_coupling::clock::Clock;
-use halfstep_coupling::couple::{CoupledOutcome, Coupler};
+use halfstep_coupling::couple::{CoupledOutcome, Coupler, combined_hash};
 use halfstep_coupling::error::RunError;
 use halfstep_coupling::foreign::ForeignSolid;
 use halfstep_coupling::recorder::Recorder;
-use halfstep_coupling::roles;
 use halfstep_coupling::supervise::Children;
-use halfstep_link::{self as link, Claim, CouplerLink, LinkConfig, LinkError, Processes, Threads};
-use halfstep_output::run_json::{PairEvaluations, Percentiles, RoleSeconds};
-use halfstep_output::{self as output, FrameWriter, RunDirectory, RunReport};
-use halfstep_role::farewell;
-use halfstep_role::lockstep::{self, FOLDER_VARIABLE, RoleError, SCENE_VARIABLE, THREADS_VARIABLE};
+use halfstep_coupling::{reports, roles};
+use halfstep_link::{
+    self as link, Claim, CouplerLink, FLUID, LinkConfig, LinkError, Participant, Processes, Threads,
+};
+use halfstep_output::run_json::Percentiles;
+use halfstep_output::{self as output, RunDirectory, RunReport};
+use halfstep_role::lockstep::RoleError;
+use halfstep_role::report::Report;
+use halfstep_role::serve::{self, FOLDER_VARIABLE, SCENE_VARIABLE, THREADS_VARIABLE};
 use halfstep_scene::Scene;
-use halfstep_wire::failure::RoleName;
-use halfstep_wire::protocol::StateHeader;
+use halfstep_wire::Name;
 use std::fmt::Display;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// File in the run's folder with the variables of a solid that is started by hand.
-const SOLID_VARIABLES: &str = "solid.env";
-
 /// What a coupled run needs, whatever carries its messages.
 pub(crate) struct Session<'a> {
-    pub(crate) scene: &'a Scene,
-    pub(crate) options: &'a RunOptions,
-    pub(crate) directory: &'a RunDirectory,
-    pub(crate) stop: &'a AtomicBool,
-    /// Interface capacities of fluid and solid.
-    pub(crate) capacity: (u32, u32),
+    scene: &'a Scene,
+    options: &'a RunOptions,
+    directory: &'a RunDirectory,
+    stop: &'a AtomicBool,
+    config: LinkConfig,
 }
 
-impl Session<'_> {
-    fn threads(&self, role: RoleName) -> usize {
-        let own = self.scene.numerics.threads;
-        match role {
-            RoleName::Fluid => self.options.threads.unwrap_or(own.fluid),
-            _ => own.solid,
+impl<'a> Session<'a> {
+    /// For a scene with both phases.
+    pub(crate) fn new(
+        scene: &'a Scene,
+        options: &'a RunOptions,
+        directory: &'a RunDirectory,
+        stop: &'a AtomicBool,
+    ) -> Result<Self, RunError> {
+        let foreign: Vec<Name> = options.foreign.iter().map(|(name, _)| *name).collect();
+        let mut config = LinkConfig::new(participants(scene, &foreign)?);
+        if options.foreign.iter().any(|(_, source)| *source == SolidSource::ByHand) {
+            config.handshake_seconds = options.solid_wait;
         }
+        Ok(Self { scene, options, directory, stop, config })
+    }
+
+    /// Worker threads of a process: the most that one of its participants asks for.
+    fn threads(&self, process: Name) -> usize {
+        let of = |place: usize| match place {
+            FLUID => self.options.threads.unwrap_or(self.scene.numerics.threads.fluid),
+            _ => self.scene.solids[place - 1].threads,
+        };
+        self.config.members(process).into_iter().map(of).max().unwrap_or(1)
+    }
+
+    /// Solids that are awaited, with the files that tell how to start them.
+    fn awaited(&self) -> impl Iterator<Item = (&Participant, PathBuf)> {
+        let single = self.scene.solids.len() == 1;
+        self.config.participants.iter().filter_map(move |participant| {
+            let by_hand = self.options.source(participant.name) == Some(&SolidSource::ByHand);
+            let name = match single {
+                true => "solid.env".to_owned(),
+                false => format!("solid-{}.env", participant.name),
+            };
+            by_hand.then(|| (participant, self.directory.file(&name)))
+        })
     }
 
     /// Runs to the scene's end; returns whether it was stopped before.
@@ -55,56 +82,45 @@ impl Session<'_> {
         report: &mut RunReport,
     ) -> Result<bool, RunError> {
         link::cleanup_stale();
-        let mut config = LinkConfig::new(self.capacity.0, self.capacity.1);
-        if self.options.solid == SolidSource::ByHand {
-            config.handshake_seconds = self.options.solid_wait;
-        }
         // Held while children may live: what is the run's in shared memory goes with the last who holds it.
-        let claim = Claim::new(&config)?;
+        let claim = Claim::new(&self.config)?;
         // The coupler's sums are short: one thread, and no worker to wake.
-        let outcome = lockstep::on_threads(1, || {
-            if self.options.in_process && self.options.solid == SolidSource::BuiltIn {
-                self.as_threads(&config, clock, recorder)
+        let outcome = serve::on_threads(1, || {
+            if self.options.in_process && self.options.foreign.is_empty() {
+                self.as_threads(clock, recorder)
             } else {
-                self.as_processes(&config, clock, recorder)
+                self.as_processes(clock, recorder)
             }
         });
         drop(claim);
-        if self.options.solid == SolidSource::ByHand {
+        for (_, file) in self.awaited() {
             // A solid that comes too late shall not look for a run that is gone.
-            let _ = std::fs::remove_file(self.directory.file(SOLID_VARIABLES));
+            let _ = std::fs::remove_file(file);
         }
         let outcome = match outcome? {
             // Nothing has happened yet that could have an outcome.
             Err(RunError::StoppedEarly) => return Ok(true),
             other => other?,
         };
-        let hash = outcome.fluid.state_hash ^ outcome.solid.state_hash.rotate_left(1);
-        report.audit.state_hash = Some(format!("{hash:016x}"));
+        report.audit.state_hash = Some(format!("{:016x}", combined_hash(&outcome.last)));
         report.audit.action_reaction = Some(outcome.action_reaction);
         report.audit.checks = outcome.checks;
-        report.roles.fluid = Some(seconds(&outcome.fluid));
-        report.roles.solid = Some(seconds(&outcome.solid));
         report.roles.coupler = Some(outcome.seconds);
-        report.work.pair_evaluations = PairEvaluations {
-            fluid: pair_evaluations(&outcome.fluid),
-            solid: pair_evaluations(&outcome.solid),
-            coupler: Some(outcome.pair_evaluations),
+        report.work.pair_evaluations.coupler = Some(outcome.pair_evaluations);
+        let read = |participant: &Participant| {
+            reports::read(self.directory.path(), participant.name.as_str()).map_err(RunError::from)
         };
-        report.round_trip_us = Some(Percentiles {
-            p50: outcome.fluid.probes[farewell::ROUND_TRIP_P50],
-            p99: outcome.fluid.probes[farewell::ROUND_TRIP_P99],
+        let own: Vec<_> = self.config.participants.iter().map(read).collect::<Result<_, RunError>>()?;
+        report.round_trip_us = own[FLUID].as_ref().map(|fluid| {
+            let [p50, p99] = fluid.round_trip_us;
+            Percentiles { p50, p99 }
         });
-        effects::share_coupled(report, &outcome);
+        report_participants(self.scene, self.options, &outcome.last, &own, Some(&self.config), report);
         Ok(outcome.stopped)
     }
 
-    fn as_processes(
-        &self,
-        config: &LinkConfig,
-        clock: &mut Clock,
-        recorder: &mut Recorder,
-    ) -> Result<CoupledOutcome, RunError> {
+    fn as_processes(&self, clock: &mut Clock, recorder: &mut Recorder) -> Result<CoupledOutcome, RunError> {
+        let config = &self.config;
         let system = |what: &str, e: std::io::Error| RunError::System(format!("{what}: {e}"));
         let scene_file = self.directory.file("scene.json");
         let text = self.scene.to_json().map_err(|e| RunError::System(format!("scene.json: {e}")))?;
@@ -113,30 +129,31 @@ impl Session<'_> {
         let folder = self.directory.path().canonicalize().map_err(|e| system("the run's folder", e))?;
         let program = std::env::current_exe().map_err(|e| system("cannot find the own program", e))?;
         let mut children = Children::new(&self.directory.file("log.txt"));
-        let mut built_in = vec![RoleName::Fluid];
-        match &self.options.solid {
-            SolidSource::BuiltIn => built_in.push(RoleName::Solid),
-            SolidSource::Command(line) => {
-                children.spawn_shell(RoleName::Solid, line, config, &scene_file)?;
+        for participant in &config.participants {
+            if let Some(SolidSource::Command(line)) = self.options.source(participant.name) {
+                children.spawn_shell(participant, line, config, &scene_file)?;
             }
-            SolidSource::ByHand => self.invite(config, &scene_file, &folder)?,
         }
-        for role in built_in {
+        self.invite(&scene_file)?;
+        for process in config.processes() {
+            if self.options.source(process).is_some() {
+                continue;
+            }
             let mut command = Command::new(&program);
             command
                 .arg("role")
-                .arg(roles::stem(role))
+                .arg(process.as_str())
                 .envs(config.to_env())
                 .env(SCENE_VARIABLE, &scene_file)
                 .env(FOLDER_VARIABLE, &folder)
-                .env(ISA_VARIABLE, isa::name(self.options.isa))
-                .env(THREADS_VARIABLE, self.threads(role).to_string());
-            children.spawn(role, command)?;
+                .env(THREADS_VARIABLE, self.threads(process).to_string())
+                .env(ISA_VARIABLE, isa::name(self.options.isa));
+            children.spawn(process, command)?;
         }
         let abort = Arc::new(AtomicBool::new(false));
         let (done, connected) = (AtomicBool::new(false), AtomicBool::new(false));
         let started = Instant::now();
-        let by_hand = self.options.solid == SolidSource::ByHand;
+        let by_hand = self.awaited().next().is_some();
         let watched = std::thread::scope(|scope| {
             // Before the handshake nobody else notices a child that could not even start.
             let watcher = scope.spawn(|| watch(&mut children, &abort, &done, self.stop));
@@ -189,21 +206,24 @@ impl Session<'_> {
         }
     }
 
-    /// Tells how to start a solid by hand: with the variables of a file, ready for a shell.
-    fn invite(&self, config: &LinkConfig, scene: &Path, folder: &Path) -> Result<(), RunError> {
+    /// Tells how to start the solids that are awaited: with the variables of a file, ready for a shell.
+    fn invite(&self, scene: &Path) -> Result<(), RunError> {
         let quoted = |path: &dyn Display| format!("'{}'", path.to_string().replace('\'', r"'\''"));
-        let mut text = String::new();
-        for (key, value) in config.to_env() {
-            text += &format!("export {key}={}\n", quoted(&value));
+        for (participant, file) in self.awaited() {
+            let mut text = String::new();
+            for (key, value) in self.config.to_env_of(participant) {
+                text += &format!("export {key}={}\n", quoted(&value));
+            }
+            text += &format!("export {SCENE_VARIABLE}={}\n", quoted(&scene.display()));
+            output::atomic::replace_bytes(&file, text.as_bytes())?;
+            let file = file.canonicalize().unwrap_or(file);
+            eprintln!(
+                "waiting up to {} s for the {}; start yours in another terminal:\n  . {} && COMMAND",
+                self.options.solid_wait,
+                participant.name,
+                quoted(&file.display())
+            );
         }
-        text += &format!("export {SCENE_VARIABLE}={}\n", quoted(&scene.display()));
-        let file = folder.join(SOLID_VARIABLES);
-        output::atomic::replace_bytes(&file, text.as_bytes())?;
-        eprintln!(
-            "waiting up to {} s for a solid; start yours in another terminal:\n  . {} && COMMAND",
-            self.options.solid_wait,
-            quoted(&file.display())
-        );
         Ok(())
     }
 
@@ -213,28 +233,28 @@ impl Session<'_> {
         clock: &mut Clock,
         recorder: &mut Recorder,
     ) -> Result<CoupledOutcome, RunError> {
-        let foreign = match self.options.solid {
-            SolidSource::BuiltIn => None,
-            _ => Some(ForeignSolid::new(self.scene, self.directory.path())?),
+        let foreign = |(place, participant): (usize, &Participant)| {
+            let name = participant.name;
+            let stands_in = || ForeignSolid::new(self.scene, place, name, self.directory.path());
+            self.options.source(name).map(|_| stands_in()).transpose()
         };
-        let mut coupler = Coupler::<S, 2>::new(link, self.scene, self.options.isa, foreign)
+        let solids = self.config.participants.iter().enumerate().skip(1);
+        let foreign = solids.map(foreign).collect::<Result<Vec<_>, _>>()?;
+        let mut coupler = Coupler::<S, 2>::new(link, self.scene, foreign, self.options.isa)
             .ok_or_else(|| RunError::System("a coupled scene needs [fluid] and [solid]".into()))?;
         coupler.run(clock, recorder, self.stop)
     }
 
-    fn as_threads(
-        &self,
-        config: &LinkConfig,
-        clock: &mut Clock,
-        recorder: &mut Recorder,
-    ) -> Result<CoupledOutcome, RunError> {
+    fn as_threads(&self, clock: &mut Clock, recorder: &mut Recorder) -> Result<CoupledOutcome, RunError> {
+        let config = &self.config;
         let abort = Arc::new(AtomicBool::new(false));
         std::thread::scope(|scope| {
-            let threads: Vec<_> = [RoleName::Fluid, RoleName::Solid]
+            let threads: Vec<_> = config
+                .processes()
                 .into_iter()
-                .map(|name| {
+                .map(|process| {
                     let abort = Arc::clone(&abort);
-                    scope.spawn(move || self.role_thread(name, config, abort))
+                    scope.spawn(move || self.thread(process, abort))
                 })
                 .collect();
             let result = CouplerLink::<Threads>::open(config, Some(Arc::clone(&abort)))
@@ -261,23 +281,18 @@ impl Session<'_> {
         })
     }
 
-    fn role_thread(
-        &self,
-        name: RoleName,
-        config: &LinkConfig,
-        abort: Arc<AtomicBool>,
-    ) -> Result<(), RoleError> {
+    /// A process of the scene as a thread of this one.
+    fn thread(&self, process: Name, abort: Arc<AtomicBool>) -> Result<(), RoleError> {
         let raised = Arc::clone(&abort);
-        let result = FrameWriter::start(self.directory.path(), roles::stem(name))
-            .map_err(|error| RoleError::Frames(error.into()))
-            .and_then(|writer| {
-                lockstep::on_threads(self.threads(name), move || {
-                    let mut role = roles::build(name, self.scene, self.options.isa)
-                        .ok_or_else(|| RoleError::Start(format!("the scene has no {name}")))?;
-                    lockstep::serve::<Threads>(role.as_mut(), config, Some(Box::new(writer)), abort)
-                })?
-            });
-        if matches!(result, Err(RoleError::Start(_))) {
+        let folder = self.directory.path();
+        let result = serve::on_threads(self.threads(process), move || {
+            let places = self.config.members(process);
+            let members = roles::members(self.scene, &places, self.options.isa, Some(folder))?;
+            let mut deliver = |report: &Report| Ok(reports::write(folder, report)?);
+            serve::serve::<Threads>(members, &self.config, process, abort, &mut deliver)
+        });
+        let result = result.and_then(|served| served);
+        if matches!(result, Err(RoleError::Start(_) | RoleError::Output(_))) {
             raised.store(true, Ordering::Relaxed);
         }
         result
@@ -290,7 +305,7 @@ fn watch(
     abort: &AtomicBool,
     done: &AtomicBool,
     stop: &AtomicBool,
-) -> Option<(RoleName, ExitStatus)> {
+) -> Option<(Name, ExitStatus)> {
     while !done.load(Ordering::Relaxed) {
         let exit = children.first_exit();
         if exit.is_some() || stop.load(Ordering::Relaxed) {
@@ -300,15 +315,4 @@ fn watch(
         std::thread::sleep(Duration::from_millis(20));
     }
     None
-}
-
-/// What a phase counted, where its last message says so.
-fn pair_evaluations(last: &StateHeader) -> Option<u64> {
-    let told = last.probe_count > farewell::PAIR_EVALUATIONS as u64;
-    told.then(|| last.probes[farewell::PAIR_EVALUATIONS] as u64)
-}
-
-fn seconds(header: &StateHeader) -> RoleSeconds {
-    let [compute, wait, exchange, output] = header.seconds;
-    RoleSeconds { compute, wait, exchange, output }
 }

@@ -69,9 +69,10 @@ pub fn non_negative_pressure(scene: &Scene) -> Decision {
 }
 
 impl<const D: usize> Parameters<D> {
-    /// From a scene with fluid and solid.
-    pub fn new(scene: &Scene, isa: Isa) -> Option<Self> {
-        let (fluid, solid) = (scene.fluid.as_ref()?, scene.solids.first()?);
+    /// Between the fluid of a scene and its solid number `solid`, in the scene's order; `None` where one is missing.
+    pub fn new(scene: &Scene, solid: usize, isa: Isa) -> Option<Self> {
+        let number = solid;
+        let (fluid, solid) = (scene.fluid.as_ref()?, scene.solids.get(number)?);
         Some(Self {
             treatment: scene.interface.treatment,
             kernel: scene.numerics.kernel,
@@ -82,7 +83,7 @@ impl<const D: usize> Parameters<D> {
             gravity: std::array::from_fn(|d| scene.gravity[d]),
             non_negative_pressure: non_negative_pressure(scene).on,
             resolution: scene.resolution,
-            thin_plates: thin_plate::screened(scene),
+            thin_plates: thin_plate::screened(scene, number),
             cross_viscosity: scene.interface.cross_viscosity,
             isa,
         })

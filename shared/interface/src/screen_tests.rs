@@ -24,7 +24,7 @@ fn scene(effects: &str) -> Scene {
 }
 
 fn interface(effects: &str) -> Interface<2> {
-    Interface::new(Parameters::new(&scene(effects), Isa::detect()).unwrap())
+    Interface::new(Parameters::new(&scene(effects), 0, Isa::detect()).unwrap())
 }
 
 fn plate() -> Vec<StateRecord> {

@@ -4,15 +4,15 @@
 //! are solid particles that see both; below 2h the fluid particles see each other.
 
 use halfstep_scene::geometry::Plate;
-use halfstep_scene::{Decision, Derived, EffectName, Scene, Treatment};
+use halfstep_scene::{Decision, Derived, EffectName, Scene, Shape, Treatment};
 
 /// Relative tolerance of lengths.
 const TOLERANCE: f64 = 1e-9;
 
 /// The plates of a scene that some support, in units of h, reaches through.
-fn thinner<const D: usize>(scene: &Scene, support: f64) -> Vec<Plate<D>> {
+fn thinner<const D: usize>(scene: &Scene, support: f64, of: impl Fn(&Shape) -> bool) -> Vec<Plate<D>> {
     let reach = support * scene.smoothing_ratio * (1.0 - TOLERANCE);
-    let plates = scene.shapes.iter().filter_map(|shape| Plate::of(scene, shape));
+    let plates = scene.shapes.iter().filter(|shape| of(shape)).filter_map(|shape| Plate::of(scene, shape));
     plates.filter(|plate| plate.rows + 1.0 < reach).collect()
 }
 
@@ -28,7 +28,7 @@ fn derive(scene: &Scene) -> Derived {
     if scene.interface.treatment == Treatment::PhaseBlind {
         return Derived::Impossible("phase-blind: solid particles show their own stress".into());
     }
-    match thinner::<2>(scene, 4.0).first() {
+    match thinner::<2>(scene, 4.0, |_| true).first() {
         Some(plate) => Derived::On(format!(
             "{} is {} particles thick: they see the fluid on both faces",
             plate.name,
@@ -38,7 +38,10 @@ fn derive(scene: &Scene) -> Derived {
     }
 }
 
-/// The plates to be screened; none where the effect is off.
-pub(super) fn screened<const D: usize>(scene: &Scene) -> Vec<Plate<D>> {
-    if thin_plate_screen(scene).on { thinner(scene, 4.0) } else { Vec::new() }
+/// The plates of a solid to be screened; none where the effect is off.
+pub(super) fn screened<const D: usize>(scene: &Scene, solid: usize) -> Vec<Plate<D>> {
+    if !thin_plate_screen(scene).on {
+        return Vec::new();
+    }
+    thinner(scene, 4.0, |shape| shape.solid.unwrap_or_default() == solid)
 }

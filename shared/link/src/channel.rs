@@ -1,8 +1,8 @@
 //! The ends of a channel: one publisher, up to two readers, whole messages.
 
+use super::config::FLUID;
 use super::hub::{Hub, Presence, Watch, attributes, port_error, service_name};
 use super::memory::SAMPLES;
-use super::config::FLUID;
 use super::{LinkConfig, LinkError, Participant, Transport};
 use crate::slot::Slot;
 use halfstep_wire::Name;
@@ -59,13 +59,7 @@ impl<S: Transport> ProbeChannel<S> {
 }
 
 impl<S: Transport, R: Plain, H: Plain> Channel<S, R, H> {
-    fn open(
-        hub: &Hub<S>,
-        owner: Name,
-        kind: &str,
-        capacity: u32,
-        readers: usize,
-    ) -> Result<Self, LinkError> {
+    fn open(hub: &Hub<S>, owner: Name, kind: &str, capacity: u32, readers: usize) -> Result<Self, LinkError> {
         let service = format!("halfstep/{owner}/{kind}");
         let (name, attributes) = (service_name(&service)?, attributes()?);
         let factory = hub.open_service(&service, || {
@@ -92,8 +86,11 @@ impl<S: Transport, R: Plain, H: Plain> Channel<S, R, H> {
         sender: Name,
         process: Name,
     ) -> Result<Incoming<S, R, H>, LinkError> {
-        let subscriber =
-            self.factory.subscriber_builder().create().map_err(|e| port_error(hub.process, "subscribing", e))?;
+        let subscriber = self
+            .factory
+            .subscriber_builder()
+            .create()
+            .map_err(|e| port_error(hub.process, "subscribing", e))?;
         Ok(Incoming { subscriber, channel: self, sender, process, met: false })
     }
 
@@ -154,7 +151,9 @@ impl<S: Transport, R: Plain, H: Plain> Incoming<S, R, H> {
 
     pub(super) fn receive(&mut self, hub: &mut Hub<S>) -> Result<Message<S, R, H>, LinkError> {
         let subscriber = &self.subscriber;
-        hub.wait(self.sender, self.process, || subscriber.receive().map_err(|e| LinkError::transport("receiving", e)))
+        hub.wait(self.sender, self.process, || {
+            subscriber.receive().map_err(|e| LinkError::transport("receiving", e))
+        })
     }
 }
 

@@ -5,8 +5,8 @@ use super::{LinkConfig, LinkError, Participant};
 use halfstep_wire::Name;
 use halfstep_wire::half_step::{HalfStep, Stage};
 use halfstep_wire::protocol::{
-    ForceHeader, ForceRecord, LAST_STAGE, PROTOCOL, ProbeHeader, SCHEMA, StateHeader, StateRecord,
-    order, status,
+    ForceHeader, ForceRecord, LAST_STAGE, PROTOCOL, ProbeHeader, SCHEMA, StateHeader, StateRecord, order,
+    status,
 };
 use std::fmt::Display;
 

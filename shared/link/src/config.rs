@@ -127,7 +127,8 @@ impl LinkConfig {
     /// The variables from which a process that somebody else started learns all of this.
     pub fn to_env(&self) -> Vec<(&'static str, String)> {
         let list = |of: &dyn Fn(&Participant) -> String| {
-            let all: Vec<String> = self.participants.iter().map(|p| format!("{}:{}", p.name, of(p))).collect();
+            let all: Vec<String> =
+                self.participants.iter().map(|p| format!("{}:{}", p.name, of(p))).collect();
             all.join(",")
         };
         let mut variables = vec![

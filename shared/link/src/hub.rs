@@ -342,7 +342,11 @@ pub(super) fn service_name(name: &str) -> Result<ServiceName, LinkError> {
 
 /// A port could not be made: usually somebody else has it.
 pub(super) fn port_error(process: Name, action: &'static str, error: impl PortError) -> LinkError {
-    if error.is_taken() { LinkError::RoleTaken { role: process } } else { LinkError::transport(action, error) }
+    if error.is_taken() {
+        LinkError::RoleTaken { role: process }
+    } else {
+        LinkError::transport(action, error)
+    }
 }
 
 /// Opening races with others who create, open or remove the same service: what is not final is tried again.
@@ -364,7 +368,9 @@ fn open_until<S: Transport, T, E: OpenError>(
                 return Err(LinkError::Incompatible { service: service.into(), reason: reason() });
             }
             Verdict::Taken => return Err(LinkError::RoleTaken { role: process }),
-            Verdict::Refused => return Err(LinkError::Transport { action: "opening a channel", reason: reason() }),
+            Verdict::Refused => {
+                return Err(LinkError::Transport { action: "opening a channel", reason: reason() });
+            }
             Verdict::Race if Instant::now() > deadline => {
                 return Err(LinkError::Transport { action: "opening a channel", reason: reason() });
             }

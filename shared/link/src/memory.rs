@@ -27,7 +27,8 @@ pub(super) fn published_bytes(config: &LinkConfig, process: Name) -> u64 {
     };
     let forces = |p: &Participant| channel(p.capacity, size_of::<ForceHeader>(), size_of::<ForceRecord>());
     let states = |p: &Participant| {
-        let probes = if p.probes == 0 { 0 } else { channel(p.probes, size_of::<ProbeHeader>(), size_of::<f64>()) };
+        let probes =
+            if p.probes == 0 { 0 } else { channel(p.probes, size_of::<ProbeHeader>(), size_of::<f64>()) };
         probes + channel(p.capacity, size_of::<StateHeader>(), size_of::<StateRecord>())
     };
     match process {

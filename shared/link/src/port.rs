@@ -11,8 +11,12 @@ pub trait Port {
     ///
     /// # Errors
     /// The message does not fit, or nobody takes it.
-    fn send_state(&mut self, member: usize, header: &StateHeader, records: &[StateRecord])
-    -> Result<(), LinkError>;
+    fn send_state(
+        &mut self,
+        member: usize,
+        header: &StateHeader,
+        records: &[StateRecord],
+    ) -> Result<(), LinkError>;
 
     /// Copies a peer's state of this step and stage to `records`; sleeps until it is there. A message with another
     /// status than ok is returned as it is: look at the status first.

@@ -16,6 +16,12 @@ pub const FILES: [&str; 9] = [
     "solid.env",
 ];
 
+/// Whether a file in the run's folder is one that a run leaves.
+fn is_run_file(name: &str) -> bool {
+    let between = |start: &str, end: &str| name.strip_prefix(start).is_some_and(|rest| rest.ends_with(end));
+    FILES.contains(&name) || between("report-", ".json") || between("solid-", ".env")
+}
+
 /// A folder that is ready for a run: nothing of an earlier one is in it.
 #[derive(Clone, Debug)]
 pub struct RunDirectory {
@@ -30,14 +36,13 @@ impl RunDirectory {
         let this = Self { path: dir.into() };
         let frames = this.frames();
         std::fs::create_dir_all(&frames).map_err(OutputError::io("create", &frames))?;
-        let own = |name: &str| FILES.contains(&name);
-        let mut found = files(dir, |name| own(name))?;
+        let mut found = files(dir, is_run_file)?;
         found.extend(files(&frames, is_frame_file)?);
         if let (Some(first), false) = (found.first(), force) {
             let found = first.strip_prefix(dir).unwrap_or(first).display().to_string();
             return Err(OutputError::Occupied { dir: dir.into(), found });
         }
-        found.extend(files(dir, |name| is_temporary(name, own))?);
+        found.extend(files(dir, |name| is_temporary(name, is_run_file))?);
         found.extend(files(&frames, |name| is_temporary(name, is_frame_file))?);
         for file in found {
             std::fs::remove_file(&file).map_err(OutputError::io("remove", &file))?;

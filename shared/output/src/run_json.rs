@@ -38,8 +38,34 @@ pub struct RunReport {
     pub round_trip_us: Option<Percentiles>,
     /// What the run checked about itself.
     pub audit: Audit,
+    /// Those who own particles: the fluid, then the solids in the scene's order. `particles` and `roles` are their sums.
+    pub participants: Vec<ParticipantReport>,
     /// The effects, with the reason for each.
     pub effects: Vec<EffectReport>,
+}
+
+/// One of those who own particles.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ParticipantReport {
+    /// Its name.
+    pub name: String,
+    /// `fluid` or `solid`.
+    pub phase: String,
+    /// The model that computes it; `null` for a solid of another program.
+    pub model: Option<String>,
+    /// The command of a solid of another program; empty where it was started by hand.
+    pub command: Option<String>,
+    /// The process that it ran in.
+    pub process: String,
+    /// Its particles, at the end.
+    pub particles: u64,
+    /// Their mass at the end, kg (2D: kg/m).
+    pub mass: f64,
+    /// Largest number of its particles in a message; `null` where nothing was exchanged.
+    pub capacity: Option<u32>,
+    /// Where its time went, s.
+    pub times: Option<RoleSeconds>,
 }
 
 /// How a run ended.

@@ -1,6 +1,7 @@
-//! A participant of a co-simulation, and the half-step loop that drives one.
+//! A participant of a co-simulation, and the half-step loop that drives those of a process.
 
-pub mod farewell;
 mod latency;
 pub mod lockstep;
+pub mod report;
 pub mod role;
+pub mod serve;

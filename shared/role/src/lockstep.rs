@@ -1,20 +1,19 @@
-//! The half-step loop of a process (or thread) that owns particles.
+//! The one half-step loop: drives the participants of a process through whatever carries their messages.
 
-use crate::farewell;
 use crate::latency::Latency;
-use crate::role::{CoverageError, Role};
-use halfstep_link::{Expect, LinkConfig, LinkError, PhaseLink, Processes, Transport};
-use halfstep_scene::Scene;
-use halfstep_wire::failure::{Diverged, Quantity, RoleName};
+use crate::report::Report;
+use crate::role::{CoverageError, Peer, Role};
+use halfstep_link::{Expect, LinkError, Port};
+use halfstep_scene::EffectName;
+use halfstep_sph::Phase;
+use halfstep_wire::Name;
+use halfstep_wire::failure::{Diverged, Quantity};
 use halfstep_wire::frame::{FrameSink, SinkError};
 use halfstep_wire::half_step::{HalfStep, Stage};
-use halfstep_wire::protocol::{LAST_STAGE, MAX_PROBE_VALUES, StateHeader, StateRecord, order, status};
-use std::path::Path;
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use halfstep_wire::protocol::{ForceRecord, LAST_STAGE, StateHeader, StateRecord, ability, order, status};
 use std::time::{Duration, Instant};
 
-/// Why a role ended before it was told to.
+/// Why a process of participants ended before it was told to.
 #[derive(Debug, thiserror::Error)]
 pub enum RoleError {
     /// The exchange failed.
@@ -23,86 +22,85 @@ pub enum RoleError {
     /// A particle left its bounds, or moves so fast that the interface set may lack one.
     #[error(transparent)]
     Diverged(#[from] Diverged),
-    /// A frame cannot be written.
+    /// A frame or a report cannot be written.
     #[error("{0}")]
-    Frames(SinkError),
-    /// The other phase said that it ends.
+    Output(SinkError),
+    /// A participant of another process said that it ends.
     #[error("the {peer} ended the run at step {step}, stage {stage}")]
     PeerEnded {
         /// Who.
-        peer: RoleName,
+        peer: Name,
         /// Step n.
         step: u64,
         /// Stage of its message, as the number on the wire.
         stage: u32,
     },
-    /// The process was not started as a role.
+    /// The process was not started as one of participants.
     #[error("{0}")]
     Start(String),
 }
 
-/// Runs a role until the coupler says stop.
-///
-/// # Errors
-/// Whatever ended it; the other roles were told where that was still possible.
-pub fn serve<S: Transport>(
-    role: &mut dyn Role,
-    config: &LinkConfig,
-    mut writer: Option<Box<dyn FrameSink>>,
-    abort: Arc<AtomicBool>,
-) -> Result<(), RoleError> {
-    let link = PhaseLink::<S>::open(config, role.name(), Some(abort))?;
-    let mut server = Server {
-        link,
-        own: Vec::new(),
-        peer: Vec::new(),
-        peer_epoch: 0,
-        half_step: HalfStep::begin(0, 0.0),
-        header: StateHeader::default(),
-        frames: 0,
-        at: 0.0,
-        compute: Duration::ZERO,
-        sums: Duration::ZERO,
-        cross: Duration::ZERO,
-        output: Duration::ZERO,
-        latency: Latency::default(),
-    };
-    let result = server.run(role, &mut writer);
-    if let Err(error) = &result {
-        server.report_failure(error);
-        if let (RoleError::Diverged(_) | RoleError::PeerEnded { .. }, Some(writer)) = (error, &mut writer) {
-            // It shows where the trouble is; that it failed is not the reason why the run ended.
-            let written = writer.submit(server.frames, &mut |frame| role.fill_frame(server.at, frame));
-            written.unwrap_or_else(|e| tracing::warn!("the last frame is missing: {e}"));
-        }
-    }
-    let written = match writer {
-        Some(writer) => writer.finish(),
-        None => Ok(0),
-    };
-    match result {
-        Ok(last) => {
-            // The last message says what is on disk, so it goes out after the writer has ended.
-            let frames_safe = written.map_err(RoleError::Frames)?;
-            let header = server.farewell(role, &last, frames_safe);
-            server.link.send_state(&header, &[])?;
-            Ok(())
-        }
-        Err(error) => Err(error),
-    }
+/// A participant and where its frames go.
+pub struct Member {
+    /// Owner of the particles.
+    pub role: Box<dyn Role>,
+    /// Without one no frames are written.
+    pub frames: Option<Box<dyn FrameSink>>,
 }
 
-struct Server<S: Transport> {
-    link: PhaseLink<S>,
+/// Takes the report of a participant that has ended, before its last message goes out.
+pub type Deliver<'a> = &'a mut dyn FnMut(&Report) -> Result<(), SinkError>;
+
+/// Drives participants until they are ordered to stop. Their frames are on disk and their reports delivered before
+/// their last messages go out.
+///
+/// # Errors
+/// Whatever ended it; the others were told where that was still possible, and the state that diverged was written as
+/// the last frame.
+pub fn drive(members: Vec<Member>, port: &mut dyn Port, deliver: Deliver<'_>) -> Result<(), RoleError> {
+    let peers = |k: usize| vec![Peer::default(); port.peers(k).len()];
+    let tracks = members.into_iter().enumerate().map(|(k, member)| Track::new(member, peers(k)));
+    let mut run = Drive { tracks: tracks.collect(), half_step: HalfStep::begin(0, 0.0), at: 0.0 };
+    let result = run.half_steps(port);
+    if let Err((k, error)) = &result {
+        run.report_failure(port, *k, error);
+        if let RoleError::Diverged(_) | RoleError::PeerEnded { .. } = error {
+            run.last_frames();
+        }
+    }
+    let written: Vec<Result<u32, SinkError>> = run.tracks.iter_mut().map(Track::finish).collect();
+    result.map_err(|(_, error)| error)?;
+    for (k, frames_safe) in written.into_iter().enumerate() {
+        // The last message says what is on disk.
+        let track = &mut run.tracks[k];
+        let frames_safe = frames_safe.map_err(RoleError::Output)?;
+        deliver(&track.report(port)).map_err(RoleError::Output)?;
+        let header = StateHeader {
+            status: status::FINISHED,
+            stage: LAST_STAGE,
+            frames_safe,
+            state_hash: track.role.state_hash(),
+            ..track.header
+        };
+        port.send_state(k, &header, &[])?;
+    }
+    Ok(())
+}
+
+/// A participant on its way.
+struct Track {
+    role: Box<dyn Role>,
+    frames: Option<Box<dyn FrameSink>>,
     own: Vec<StateRecord>,
-    peer: Vec<StateRecord>,
-    peer_epoch: u64,
-    half_step: HalfStep,
+    peers: Vec<Peer>,
+    /// The peers' states of this half-step are there.
+    have_peers: bool,
+    forces: Vec<ForceRecord>,
+    probes: Vec<f64>,
     header: StateHeader,
     /// Number of the next frame.
-    frames: u32,
-    /// Time of the role's own state, s.
-    at: f64,
+    frame: u32,
+    sent: Instant,
     compute: Duration,
     /// Parts of `compute`.
     sums: Duration,
@@ -111,202 +109,226 @@ struct Server<S: Transport> {
     latency: Latency,
 }
 
-impl<S: Transport> Server<S> {
-    /// All half-steps; returns the header of the state at which the run stopped.
-    fn run(
-        &mut self,
-        role: &mut dyn Role,
-        writer: &mut Option<Box<dyn FrameSink>>,
-    ) -> Result<StateHeader, RoleError> {
-        // The fluid needs the solid's first state to choose what it publishes.
-        let mut have_peer = false;
-        if role.name() == RoleName::Fluid {
-            self.receive_peer(&Expect::of(&self.half_step))?;
-            have_peer = true;
-        }
-        loop {
-            let half_step = self.half_step;
-            let expect = Expect::of(&half_step);
-            let start = Instant::now();
-            role.set_time(half_step.before());
-            let epoch = role.publish(&self.peer, &mut self.own);
-            self.describe(role, writer.as_deref(), epoch);
-            self.compute += start.elapsed();
-            let sent = Instant::now();
-            self.link.send_state(&self.header, &self.own)?;
-            let start = Instant::now();
-            role.own_sums();
-            self.sums += start.elapsed();
-            self.compute += start.elapsed();
-            if !std::mem::take(&mut have_peer) {
-                self.receive_peer(&expect)?;
-            }
-            let fluid_epoch = if role.name() == RoleName::Fluid { epoch } else { self.peer_epoch };
-            let start = Instant::now();
-            role.cross_sums(&self.own, &self.peer, fluid_epoch)
-                .map_err(|lost| self.fastest(role.name(), &lost))?;
-            self.cross += start.elapsed();
-            self.compute += start.elapsed();
-
-            // At the first stage the answer brings the time step.
-            let forces = self.link.receive_forces(&expect)?;
-            self.latency.add(sent.elapsed());
-            let answer = *forces.header();
-            let half_step = half_step.told(answer.dt, answer.next_time);
-            self.at = half_step.after();
-            if answer.order & order::WRITE_FRAME != 0
-                && let Some(writer) = writer
-            {
-                let start = Instant::now();
-                let submitted =
-                    writer.submit(answer.frame as u32, &mut |frame| role.fill_frame(half_step.time, frame));
-                submitted.map_err(RoleError::Frames)?;
-                self.frames = answer.frame as u32 + 1;
-                self.output += start.elapsed();
-            }
-            if answer.order & order::STOP != 0 {
-                return Ok(self.header);
-            }
-            let start = Instant::now();
-            role.advance(&half_step, forces.records())?;
-            self.compute += start.elapsed();
-            self.half_step = half_step.next();
+impl Track {
+    fn new(member: Member, peers: Vec<Peer>) -> Self {
+        Self {
+            role: member.role,
+            frames: member.frames,
+            own: Vec::new(),
+            peers,
+            have_peers: false,
+            forces: Vec::new(),
+            probes: Vec::new(),
+            header: StateHeader::default(),
+            frame: 0,
+            sent: Instant::now(),
+            compute: Duration::ZERO,
+            sums: Duration::ZERO,
+            cross: Duration::ZERO,
+            output: Duration::ZERO,
+            latency: Latency::default(),
         }
     }
 
-    fn receive_peer(&mut self, expect: &Expect) -> Result<(), RoleError> {
-        let sample = self.link.receive_peer(expect)?;
-        let header = sample.header();
-        if header.status != status::OK {
-            let (step, stage) = (header.step, header.stage);
-            return Err(RoleError::PeerEnded { peer: self.link.role().peer(), step, stage });
-        }
-        self.peer_epoch = header.epoch;
-        self.peer.clear();
-        self.peer.extend_from_slice(sample.records());
-        Ok(())
-    }
-
-    fn describe(&mut self, role: &dyn Role, writer: Option<&dyn FrameSink>, epoch: u64) {
+    fn publish(&mut self, half_step: &HalfStep) {
+        let start = Instant::now();
+        self.role.set_time(half_step.before());
+        let epoch = self.role.publish(&self.peers, &mut self.own);
         let mut header = StateHeader {
             status: status::OK,
             epoch,
-            displacement: role.displacement(),
-            sub_steps: role.sub_steps(),
-            frames_safe: writer.map_or(0, |w| w.safe()),
-            particles: role.particles(),
-            ..self.half_step.state_header()
+            displacement: self.role.displacement(),
+            sub_steps: self.role.sub_steps(),
+            frames_safe: self.frames.as_ref().map_or(0, |frames| frames.safe()),
+            particles: self.role.particles(),
+            abilities: ability::PROBES | ability::WALLS_AND_CONTACTS,
+            ..half_step.state_header()
         };
-        if self.half_step.stage == Stage::First {
-            header.dt_limit = role.dt_limit();
-            let mut probes = [0.0; MAX_PROBE_VALUES];
-            header.probe_count = role.probes(&mut probes) as u64;
-            header.probes = probes;
-            header.audit = role.audit();
+        if half_step.stage == Stage::First {
+            header.dt_limit = self.role.dt_limit();
+            header.audit = self.role.audit();
         }
         self.header = header;
+        self.compute += start.elapsed();
+        self.sent = Instant::now();
+    }
+
+    fn own_sums(&mut self) {
+        let start = Instant::now();
+        self.role.own_sums();
+        self.sums += start.elapsed();
+        self.compute += start.elapsed();
+    }
+
+    fn receive_peers(&mut self, port: &mut dyn Port, k: usize, expect: &Expect) -> Result<(), RoleError> {
+        for (place, peer) in self.peers.iter_mut().enumerate() {
+            let header = port.receive_peer(k, place, expect, &mut peer.records)?;
+            if header.status != status::OK {
+                let (step, stage) = (header.step, header.stage);
+                return Err(RoleError::PeerEnded { peer: port.peers(k)[place], step, stage });
+            }
+            peer.epoch = header.epoch;
+        }
+        Ok(())
+    }
+
+    fn cross_sums(&mut self, port: &dyn Port, k: usize, half_step: &HalfStep) -> Result<(), RoleError> {
+        let start = Instant::now();
+        let result = self.role.cross_sums(&self.own, &self.peers);
+        self.cross += start.elapsed();
+        self.compute += start.elapsed();
+        result.map_err(|lost| self.fastest(port.peers(k), &lost, half_step).into())
     }
 
     /// Coverage is lost when a particle moves half a smoothing length in one half-step: it is the one to name.
-    fn fastest(&self, own: RoleName, lost: &CoverageError) -> Diverged {
+    fn fastest(&self, peers: &[Name], lost: &CoverageError, half_step: &HalfStep) -> Diverged {
         tracing::error!("{lost}");
-        let role = if lost.fluid > lost.solid { RoleName::Fluid } else { RoleName::Solid };
-        let records = if role == own { &self.own } else { &self.peer };
+        let of_fluid = lost.fluid > lost.solid;
+        let (participant, records) = if of_fluid == (self.role.phase() == Phase::Fluid) {
+            (self.role.name(), &self.own)
+        } else {
+            (peers[lost.peer], &self.peers[lost.peer].records)
+        };
         let speed = |r: &StateRecord| r.velocity.iter().map(|v| v * v).sum::<f64>().sqrt();
         let fastest = records.iter().max_by(|a, b| speed(a).total_cmp(&speed(b)));
         let record = fastest.copied().unwrap_or_default();
         Diverged {
-            role,
+            participant,
             particle: record.id,
             quantity: Quantity::Speed,
             value: speed(&record),
-            step: self.half_step.step,
-            stage: self.half_step.stage,
+            step: half_step.step,
+            stage: half_step.stage,
             position: record.position,
         }
     }
 
-    fn farewell(&self, role: &mut dyn Role, last: &StateHeader, frames_safe: u32) -> StateHeader {
-        let times = self.link.times();
-        let mut header = StateHeader {
-            status: status::FINISHED,
-            stage: LAST_STAGE,
-            frames_safe,
-            state_hash: role.state_hash(),
-            seconds: [self.compute, times.wait, times.exchange, self.output].map(|d| d.as_secs_f64()),
-            probe_count: farewell::COUNT as u64,
-            ..*last
-        };
-        header.probes = [0.0; MAX_PROBE_VALUES];
-        header.probes[farewell::ROUND_TRIP_P50] = self.latency.percentile(0.5);
-        header.probes[farewell::ROUND_TRIP_P99] = self.latency.percentile(0.99);
-        header.probes[farewell::PAIR_EVALUATIONS] = role.pair_evaluations() as f64;
-        let costs = role.costs().of(self.sums.as_secs_f64(), self.compute.as_secs_f64());
-        header.probes[farewell::WALLS] = costs.walls;
-        header.probes[farewell::INTERFACE] = self.cross.as_secs_f64();
-        header.probes[farewell::EFFECTS..farewell::COUNT].copy_from_slice(&costs.effects);
-        header
+    fn write_frame(&mut self, number: u32, time: f64) -> Result<(), SinkError> {
+        let Some(frames) = &mut self.frames else { return Ok(()) };
+        let start = Instant::now();
+        frames.submit(number, &mut |frame| self.role.fill_frame(time, frame))?;
+        self.frame = number + 1;
+        self.output += start.elapsed();
+        Ok(())
     }
 
-    fn report_failure(&mut self, error: &RoleError) {
+    fn finish(&mut self) -> Result<u32, SinkError> {
+        self.frames.take().map_or(Ok(0), |frames| frames.finish())
+    }
+
+    fn report(&mut self, port: &dyn Port) -> Report {
+        let times = port.times();
+        let compute = self.compute.as_secs_f64();
+        let costs = self.role.costs().of(self.sums.as_secs_f64(), compute);
+        let effects = EffectName::ALL.iter().copied().zip(costs.effects);
+        Report {
+            name: self.role.name().to_string(),
+            compute,
+            wait: times.wait.as_secs_f64(),
+            exchange: times.exchange.as_secs_f64(),
+            output: self.output.as_secs_f64(),
+            round_trip_us: [0.5, 0.99].map(|share| self.latency.percentile(share)),
+            pair_evaluations: self.role.pair_evaluations(),
+            walls: costs.walls,
+            interface: self.cross.as_secs_f64(),
+            effects: effects.filter(|(_, seconds)| *seconds > 0.0).collect(),
+        }
+    }
+}
+
+struct Drive {
+    tracks: Vec<Track>,
+    half_step: HalfStep,
+    /// Time of the participants' own states, s.
+    at: f64,
+}
+
+impl Drive {
+    /// All half-steps until the order to stop; an error comes with the place of the participant.
+    fn half_steps(&mut self, port: &mut dyn Port) -> Result<(), (usize, RoleError)> {
+        let expect = Expect::of(&self.half_step);
+        for (k, track) in self.tracks.iter_mut().enumerate() {
+            // The fluid needs the solids' first states to choose what it publishes.
+            if track.role.phase() == Phase::Fluid {
+                track.receive_peers(port, k, &expect).map_err(|error| (k, error))?;
+                track.have_peers = true;
+            }
+        }
+        while self.half_step(port)? {}
+        Ok(())
+    }
+
+    /// One half-step; returns whether the run goes on.
+    fn half_step(&mut self, port: &mut dyn Port) -> Result<bool, (usize, RoleError)> {
+        let half_step = self.half_step;
+        let expect = Expect::of(&half_step);
+        for (k, track) in self.tracks.iter_mut().enumerate() {
+            track.publish(&half_step);
+            port.send_state(k, &track.header, &track.own).map_err(|error| (k, error.into()))?;
+        }
+        for track in &mut self.tracks {
+            track.own_sums();
+        }
+        for (k, track) in self.tracks.iter_mut().enumerate() {
+            if !std::mem::take(&mut track.have_peers) {
+                track.receive_peers(port, k, &expect).map_err(|error| (k, error))?;
+            }
+            track.cross_sums(port, k, &half_step).map_err(|error| (k, error))?;
+        }
+        let (mut next, mut stopped) = (half_step, false);
+        for (k, track) in self.tracks.iter_mut().enumerate() {
+            // At the first stage the answer brings the time step.
+            let answer =
+                port.receive_forces(k, &expect, &mut track.forces).map_err(|error| (k, error.into()))?;
+            track.latency.add(track.sent.elapsed());
+            let half_step = half_step.told(answer.dt, answer.next_time);
+            self.at = half_step.after();
+            if answer.order & order::WRITE_FRAME != 0 {
+                let number = answer.frame as u32;
+                track.write_frame(number, half_step.time).map_err(|error| (k, RoleError::Output(error)))?;
+            }
+            if answer.order & order::SEND_PROBES != 0 {
+                track.probes.clear();
+                track.role.probes(&mut track.probes);
+                port.send_probes(k, half_step.step, half_step.time, &track.probes)
+                    .map_err(|error| (k, error.into()))?;
+            }
+            next = half_step.next();
+            // All participants are stopped at the same state.
+            stopped = answer.order & order::STOP != 0;
+            if stopped {
+                continue;
+            }
+            let start = Instant::now();
+            track.role.advance(&half_step, &track.forces).map_err(|error| (k, error.into()))?;
+            track.compute += start.elapsed();
+        }
+        self.half_step = next;
+        Ok(!stopped)
+    }
+
+    /// Tells the others that participant `k` failed.
+    fn report_failure(&mut self, port: &mut dyn Port, k: usize, error: &RoleError) {
         // It takes the place of the next state.
         let (step, stage) = self.half_step.stage.following(self.half_step.step);
-        let mut header = StateHeader { status: status::FAILED, step, stage: stage.number(), ..self.header };
+        let last = self.tracks[k].header;
+        let mut header = StateHeader { status: status::FAILED, step, stage: stage.number(), ..last };
         match error {
-            RoleError::Diverged(diverged) => diverged.tell(self.link.role(), &mut header),
-            // The exchange itself is broken, or the other side knows already.
+            RoleError::Diverged(diverged) => diverged.tell(port.participants(), &mut header),
+            // The exchange itself is broken, or the others know already.
             RoleError::Link(_) | RoleError::PeerEnded { .. } | RoleError::Start(_) => return,
-            RoleError::Frames(_) => {}
+            RoleError::Output(_) => {}
         }
-        if let Err(error) = self.link.send_state(&header, &[]) {
+        if let Err(error) = port.send_state(k, &header, &[]) {
             tracing::warn!("the failure could not be reported: {error}");
         }
     }
-}
 
-/// Environment variable with the path of the resolved scene.
-pub const SCENE_VARIABLE: &str = "HALFSTEP_SCENE";
-/// Environment variable with the run's folder; without it no frames are written.
-pub const FOLDER_VARIABLE: &str = "HALFSTEP_OUT";
-/// Environment variable with the number of worker threads.
-pub const THREADS_VARIABLE: &str = "HALFSTEP_THREADS";
-
-/// Serves a role in this process, as its environment says: what a role's `main` calls.
-///
-/// # Errors
-/// The environment is not that of a role, or the role failed.
-pub fn serve_process(
-    stem: &str,
-    abort: Arc<AtomicBool>,
-    build: impl FnOnce(&Scene) -> Option<Box<dyn Role>> + Send,
-    frames: impl FnOnce(&Path) -> Result<Box<dyn FrameSink>, SinkError>,
-) -> Result<(), RoleError> {
-    let start = |reason: String| RoleError::Start(reason);
-    let config = LinkConfig::from_env()?;
-    let variable = |key: &str| std::env::var_os(key);
-    let scene = variable(SCENE_VARIABLE).ok_or_else(|| start(format!("{SCENE_VARIABLE} is not set")))?;
-    let text = std::fs::read_to_string(&scene)
-        .map_err(|e| start(format!("cannot read {}: {e}", Path::new(&scene).display())))?;
-    let scene = Scene::from_json(&text).map_err(|e| start(format!("not a resolved scene: {e}")))?;
-    let threads = variable(THREADS_VARIABLE).and_then(|v| v.to_str()?.parse().ok()).unwrap_or(1);
-    let writer = variable(FOLDER_VARIABLE)
-        .map(|dir| frames(Path::new(&dir)))
-        .transpose()
-        .map_err(RoleError::Frames)?;
-    on_threads(threads, move || {
-        let mut role = build(&scene).ok_or_else(|| RoleError::Start(format!("the scene has no {stem}")))?;
-        serve::<Processes>(role.as_mut(), &config, writer, abort)
-    })?
-}
-
-/// Runs `work` with a pool of that many threads for the neighbour passes.
-///
-/// # Errors
-/// The threads cannot be started.
-pub fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> Result<T, RoleError> {
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .map(|pool| pool.install(work))
-        .map_err(|e| RoleError::Start(format!("cannot start {threads} threads: {e}")))
+    /// The last states show where the trouble is; that they could not be written is not the reason why the run ended.
+    fn last_frames(&mut self) {
+        for track in &mut self.tracks {
+            let written = track.write_frame(track.frame, self.at);
+            written.unwrap_or_else(|error| tracing::warn!("the last frame is missing: {error}"));
+        }
+    }
 }

@@ -1,26 +1,21 @@
 //! What a process that owns particles does, seen from the lock-step: the seam between physics and co-simulation.
 
 use halfstep_scene::EffectName;
-use halfstep_wire::failure::{Diverged, RoleName};
+use halfstep_sph::Phase;
+use halfstep_wire::Name;
+use halfstep_wire::failure::Diverged;
 use halfstep_wire::frame::Frame;
 use halfstep_wire::half_step::HalfStep;
-use halfstep_wire::protocol::{ForceRecord, MAX_PROBE_VALUES, StateRecord};
+use halfstep_wire::protocol::{Audit, ForceRecord, StateRecord};
 use std::time::Instant;
 
-/// The numbers of [`Role::audit`] by place.
-pub mod audit {
-    /// Linear momentum x, y, z, kg m/s (2D: per metre).
-    pub const MOMENTUM: usize = 0;
-    /// Kinetic energy, J.
-    pub const KINETIC_ENERGY: usize = 3;
-    /// Mass, kg.
-    pub const MASS: usize = 4;
-    /// Largest |rho / rho0 - 1|.
-    pub const DENSITY_ERROR: usize = 5;
-    /// Smallest distance to the other phase over dx (infinite where none is near).
-    pub const GAP: usize = 6;
-    /// Energy stored in the material, J: strain energy of a solid, work of compression of a fluid.
-    pub const STORED_ENERGY: usize = 7;
+/// A peer's state as last received.
+#[derive(Clone, Debug, Default)]
+pub struct Peer {
+    /// Its interface particles, by ascending number.
+    pub records: Vec<StateRecord>,
+    /// Generation of the set.
+    pub epoch: u64,
 }
 
 /// What the effects take of a role's time: each measured by leaving the effect out.
@@ -52,37 +47,34 @@ pub fn fastest(mut work: impl FnMut()) -> f64 {
     (0..3).map(once).fold(f64::INFINITY, f64::min)
 }
 
-/// Owner of the fluid's or of the solid's particles.
+/// Owner of the particles of a participant: of the fluid, or of one solid.
 ///
-/// One half-step is `publish`, `own_sums`, `cross_sums`, `advance`, in this order; the loops in [`crate::lockstep`]
-/// call them.
+/// One half-step is `publish`, `own_sums`, `cross_sums`, `advance`, in this order; the loop in [`crate::lockstep`]
+/// calls them.
 pub trait Role: Send {
+    /// Name of the participant.
+    fn name(&self) -> Name;
     /// Which phase.
-    fn name(&self) -> RoleName;
+    fn phase(&self) -> Phase;
     /// Number of own particles.
     fn particles(&self) -> u64;
     /// Largest stable time step from the state at n, s.
     fn dt_limit(&self) -> f64;
     /// The instant of the state that is published next, s: what moves by prescription goes there.
     fn set_time(&mut self, _time: f64) {}
-    /// Fills `out` with the interface record of the present state. `peer` is the other phase's record as last received.
-    /// Returns the epoch.
-    fn publish(&mut self, peer: &[StateRecord], out: &mut Vec<StateRecord>) -> u64;
+    /// Fills `out` with the interface record of the present state. `peers` are the states of the other phase as last
+    /// received: of all solids in the scene's order, or of the fluid. Returns the epoch.
+    fn publish(&mut self, peers: &[Peer], out: &mut Vec<StateRecord>) -> u64;
     /// Largest displacement of an own particle since the epoch began, m.
     fn displacement(&self) -> f64;
     /// Sums over own particles and walls.
     fn own_sums(&mut self);
-    /// Sums across the interface, from both sides' records of this half-step. `epoch` is the fluid's.
+    /// Sums across the interfaces, from both sides' records of this half-step.
     ///
     /// # Errors
-    /// An own particle within reach of the peer was not published.
-    fn cross_sums(
-        &mut self,
-        own: &[StateRecord],
-        peer: &[StateRecord],
-        epoch: u64,
-    ) -> Result<(), CoverageError>;
-    /// Goes from n over the half-step's span, to n + 1/2 or to n + 1. `forces` answer the record last published.
+    /// An own particle within reach of a peer was not published.
+    fn cross_sums(&mut self, own: &[StateRecord], peers: &[Peer]) -> Result<(), CoverageError>;
+    /// Advances over a half-step. `forces` answer the record last published.
     ///
     /// # Errors
     /// A quantity left its bounds.
@@ -91,10 +83,10 @@ pub trait Role: Send {
     fn sub_steps(&self) -> u32 {
         1
     }
-    /// Values of this phase's probes in the scene's order; returns how many.
-    fn probes(&self, out: &mut [f64; MAX_PROBE_VALUES]) -> usize;
-    /// Integral quantities, see [`audit`].
-    fn audit(&self) -> [f64; 8];
+    /// Appends the values of this participant's probes on the present state to `out`, in the scene's order.
+    fn probes(&self, out: &mut Vec<f64>);
+    /// Sums over all own particles.
+    fn audit(&self) -> Audit;
     /// Copies the particles for output.
     fn fill_frame(&self, time: f64, frame: &mut Frame);
     /// Hash over the own particles' state in id order.
@@ -128,4 +120,6 @@ pub struct CoverageError {
     pub solid: f64,
     /// Allowed sum, m.
     pub allowed: f64,
+    /// Place of the solid among the peers.
+    pub peer: usize,
 }

@@ -1,7 +1,7 @@
 //! A simulation that left its bounds: who, where, which quantity.
 
-use crate::half_step::Stage;
 use crate::Name;
+use crate::half_step::Stage;
 use crate::protocol::{Failure, StateHeader, status};
 pub use halfstep_sph::quantity::Quantity;
 

@@ -1,0 +1,113 @@
+//! The participants of a run: their messages' sizes before it, what they said at their ends after it.
+
+use crate::effects;
+use crate::options::{RunOptions, SolidSource};
+use halfstep_coupling::error::RunError;
+use halfstep_coupling::roles;
+use halfstep_link::{FLUID, LinkConfig, Participant};
+use halfstep_output::RunReport;
+use halfstep_output::run_json::{ParticipantReport, RoleSeconds};
+use halfstep_role::report::Report;
+use halfstep_scene::geometry;
+use halfstep_scene::{Phase, Scene};
+use halfstep_wire::Name;
+use halfstep_wire::protocol::StateHeader;
+
+/// The participants of a coupled scene with the sizes of their messages: each in the process that the scene names, those
+/// in `foreign` in one of their own.
+///
+/// # Errors
+/// A name of the scene is none.
+pub(crate) fn participants(scene: &Scene, foreign: &[Name]) -> Result<Vec<Participant>, RunError> {
+    let layout = geometry::layout::<2>(scene);
+    let mut solids = vec![0; scene.solids.len()];
+    for point in &layout.solid {
+        solids[scene.shapes[point.body as usize].solid.unwrap_or_default()] += 1;
+    }
+    let fluid = layout.fluid.len() as u64;
+    let name = |text: &str| text.parse::<Name>().map_err(|e| RunError::System(e.to_string()));
+    let mut participants = Vec::new();
+    let mut all_solids = 0;
+    for (place, participant) in scene.participants().into_iter().enumerate() {
+        let own = name(&participant.name)?;
+        let is_foreign = foreign.contains(&own);
+        let capacity = match place {
+            FLUID => 0,
+            _ if is_foreign => solids[place - 1].max(4096),
+            _ => solids[place - 1],
+        };
+        all_solids += capacity;
+        participants.push(Participant {
+            name: own,
+            process: if is_foreign { own } else { name(&participant.process)? },
+            capacity: capacity.max(1) as u32,
+            probes: roles::probe_values(scene, place) as u32,
+        });
+    }
+    // A ribbon of about four layers on each side of the solids' surfaces, and room for compression.
+    let ribbon = (24 * all_solids).max(4096).min(fluid);
+    let capacity = scene.numerics.interface_capacity.map_or(ribbon, u64::from);
+    participants[FLUID].capacity = capacity.max(1) as u32;
+    Ok(participants)
+}
+
+/// Puts what the participants said at their ends into the report: sums by phase, and a row for each of them.
+pub(crate) fn report_participants(
+    scene: &Scene,
+    options: &RunOptions,
+    last: &[StateHeader],
+    reports: &[Option<Report>],
+    config: Option<&LinkConfig>,
+    report: &mut RunReport,
+) {
+    for (place, participant) in scene.participants().into_iter().enumerate() {
+        let times = reports[place].as_ref().map(|own| RoleSeconds {
+            compute: own.compute,
+            wait: own.wait,
+            exchange: own.exchange,
+            output: own.output,
+        });
+        let pairs = reports[place].as_ref().map(|own| own.pair_evaluations);
+        let (seconds, evaluations, phase) = match participant.phase {
+            Phase::Fluid => (&mut report.roles.fluid, &mut report.work.pair_evaluations.fluid, "fluid"),
+            _ => (&mut report.roles.solid, &mut report.work.pair_evaluations.solid, "solid"),
+        };
+        if let Some(own) = times {
+            let sum = seconds.get_or_insert_default();
+            sum.compute += own.compute;
+            sum.wait += own.wait;
+            sum.exchange += own.exchange;
+            sum.output += own.output;
+        }
+        if let Some(own) = pairs {
+            *evaluations.get_or_insert(0) += own;
+        }
+        let source = participant.name.parse().ok().and_then(|name| options.source(name));
+        let model = match participant.phase {
+            Phase::Fluid => Some("weakly-compressible".to_owned()),
+            _ => scene
+                .solids
+                .iter()
+                .find(|s| s.name == participant.name)
+                .and_then(|s| serde_json::to_value(s.model).ok()?.as_str().map(str::to_owned)),
+        };
+        report.participants.push(ParticipantReport {
+            phase: phase.into(),
+            model: model.filter(|_| source.is_none()),
+            command: source.map(|source| match source {
+                SolidSource::Command(line) => line.clone(),
+                SolidSource::ByHand => String::new(),
+            }),
+            process: config.map_or(participant.process, |c| c.participants[place].process.to_string()),
+            name: participant.name,
+            particles: last[place].particles,
+            mass: last[place].audit.mass,
+            capacity: config.map(|c| c.participants[place].capacity),
+            times,
+        });
+    }
+    let phases = scene.participants().into_iter().map(|participant| participant.phase);
+    let known: Vec<(Phase, Report)> =
+        phases.zip(reports).filter_map(|(phase, own)| Some((phase, own.clone()?))).collect();
+    effects::share(report, &known, report.roles.coupler.map_or(0.0, |coupler| coupler.compute));
+}

@@ -1,0 +1,77 @@
+//! Serving the participants of a process, as its environment says.
+
+use crate::lockstep::{Deliver, Member, RoleError, drive};
+use crate::report::Report;
+use halfstep_link::{LinkConfig, ProcessLink, Processes, Transport};
+use halfstep_scene::Scene;
+use halfstep_wire::Name;
+use halfstep_wire::frame::SinkError;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+/// Environment variable with the path of the resolved scene.
+pub const SCENE_VARIABLE: &str = "HALFSTEP_SCENE";
+/// Environment variable with the run's folder; without it neither frames nor reports are written.
+pub const FOLDER_VARIABLE: &str = "HALFSTEP_OUT";
+/// Environment variable with the number of worker threads.
+pub const THREADS_VARIABLE: &str = "HALFSTEP_THREADS";
+
+/// Drives the participants of `process` until the coupler says stop.
+///
+/// # Errors
+/// Whatever ended it; the others were told where that was still possible.
+pub fn serve<S: Transport>(
+    members: Vec<Member>,
+    config: &LinkConfig,
+    process: Name,
+    abort: Arc<AtomicBool>,
+    deliver: Deliver<'_>,
+) -> Result<(), RoleError> {
+    let mut link = ProcessLink::<S>::open(config, process, Some(abort))?;
+    let own: Vec<Name> = members.iter().map(|member| member.role.name()).collect();
+    if own != link.members() {
+        return Err(RoleError::Start(format!("{process} shall serve {:?} and not {own:?}", link.members())));
+    }
+    drive(members, &mut link, deliver)
+}
+
+/// Serves the participants of this process: what the `main` of such a process calls. `build` makes them from the scene,
+/// given their places among the scene's participants and the run's folder.
+///
+/// # Errors
+/// The environment is not that of a run, or the run failed.
+pub fn serve_process(
+    process: Name,
+    abort: Arc<AtomicBool>,
+    build: impl FnOnce(&Scene, &[usize], Option<&Path>) -> Result<Vec<Member>, RoleError> + Send,
+    deliver: impl Fn(&Path, &Report) -> Result<(), SinkError> + Send,
+) -> Result<(), RoleError> {
+    let start = |reason: String| RoleError::Start(reason);
+    let config = LinkConfig::from_env()?;
+    let variable = |key: &str| std::env::var_os(key);
+    let scene = variable(SCENE_VARIABLE).ok_or_else(|| start(format!("{SCENE_VARIABLE} is not set")))?;
+    let text = std::fs::read_to_string(&scene)
+        .map_err(|e| start(format!("cannot read {}: {e}", Path::new(&scene).display())))?;
+    let scene = Scene::from_json(&text).map_err(|e| start(format!("not a resolved scene: {e}")))?;
+    let threads = variable(THREADS_VARIABLE).and_then(|v| v.to_str()?.parse().ok()).unwrap_or(1);
+    let folder = variable(FOLDER_VARIABLE);
+    let folder = folder.as_deref().map(Path::new);
+    on_threads(threads, move || {
+        let members = build(&scene, &config.members(process), folder)?;
+        let mut deliver = |report: &Report| folder.map_or(Ok(()), |folder| deliver(folder, report));
+        serve::<Processes>(members, &config, process, abort, &mut deliver)
+    })?
+}
+
+/// Runs `work` with a pool of that many threads for the neighbour passes.
+///
+/// # Errors
+/// The threads cannot be started.
+pub fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> Result<T, RoleError> {
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .map(|pool| pool.install(work))
+        .map_err(|e| RoleError::Start(format!("cannot start {threads} threads: {e}")))
+}
