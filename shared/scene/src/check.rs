@@ -3,9 +3,8 @@
 use super::document::Node;
 use super::error::{Report, listed, nearest};
 use super::*;
+use crate::geometry::Plate;
 use crate::geometry::fewest_rows;
-use crate::geometry::{self, Plate};
-use crate::probe::MAX_PROBE_VALUES;
 
 /// Frames, rows and steps that no run can be meant to have.
 const MAX_FRAMES: f64 = 1e5;
@@ -13,7 +12,7 @@ const MAX_ROWS: f64 = 1e7;
 const MAX_STEPS: f64 = 1e9;
 
 /// The keys that can choose the phase-blind treatment.
-const PHASE_BLIND_BY: [&str; 2] = ["interface.treatment", "preset"];
+pub(super) const PHASE_BLIND_BY: [&str; 2] = ["interface.treatment", "preset"];
 
 pub(super) struct Check<'a> {
     pub(super) scene: &'a Scene,
@@ -24,11 +23,11 @@ pub(super) struct Check<'a> {
 impl Check<'_> {
     pub(super) fn all(&self) {
         self.phases();
+        self.solids();
         self.shape_names();
         self.sizes();
         self.thin_plates();
         self.interface();
-        self.solid_time_step();
         self.times();
         self.not_yet();
         self.probes();
@@ -36,11 +35,11 @@ impl Check<'_> {
         self.metrics();
     }
 
-    fn wrong(&self, key: &str, reason: impl Into<String>) {
+    pub(super) fn wrong(&self, key: &str, reason: impl Into<String>) {
         self.report.among(self.root, key, &[], reason);
     }
 
-    fn place(&self, key: &str, reason: impl Into<String>) {
+    pub(super) fn place(&self, key: &str, reason: impl Into<String>) {
         self.report.place(key, self.root.origin_of(key), reason);
     }
 
@@ -66,6 +65,7 @@ impl Check<'_> {
         ] {
             match (shape_of(phase), present) {
                 _ if self.report.has(section) => (),
+                (None, true) if self.scene.solids.len() > 1 && phase == Phase::Solid => (),
                 (None, true) => self.place(section, format!("the scene has no shape of phase \"{section}\"")),
                 (Some(index), false) => self.place(
                     &format!("{}.phase", self.shape_key(index)),
@@ -120,7 +120,7 @@ impl Check<'_> {
             };
             let nodal = self.scene.numerics.lattice == Lattice::Nodal && shape.phase != Phase::Wall;
             // One row of particles has no deformation gradient across.
-            let row = shape.phase == Phase::Solid && self.total_lagrangian() && kind != "disc";
+            let row = shape.solid.is_some_and(|k| self.total_lagrangian(k)) && kind != "disc";
             let needed =
                 if row { "two particles of the total-lagrangian model need" } else { "one particle needs" };
             let least = dx * (1.0 + f64::from(u8::from(nodal)) + f64::from(u8::from(row)));
@@ -128,8 +128,8 @@ impl Check<'_> {
             if thickness < least * (1.0 - 1e-9) {
                 let place = format!("{key}.{kind}");
                 let corners = [format!("{place}.min"), format!("{place}.max")];
-                let others =
-                    [&corners[0], &corners[1], "resolution", "numerics.lattice", "solid.model", "preset"];
+                let model = format!("{}.model", self.solid_key(shape.solid.unwrap_or(0)));
+                let others = [&corners[0], &corners[1], "resolution", "numerics.lattice", &model, "preset"];
                 // In single precision: without the last digits that a difference leaves.
                 let thickness = thickness as f32;
                 let reason = format!("is {thickness} m thin, and {needed} {least} m{convention}");
@@ -167,10 +167,6 @@ impl Check<'_> {
         }
     }
 
-    fn total_lagrangian(&self) -> bool {
-        self.scene.solids.first().is_some_and(|s| s.model == SolidModelName::TotalLagrangian)
-    }
-
     fn thinnest(&self, block: &Block) -> f64 {
         let extents = (0..self.scene.dimension).map(|a| block.max[a] - block.min[a]);
         extents.fold(f64::INFINITY, f64::min)
@@ -180,32 +176,11 @@ impl Check<'_> {
         if self.report.has("interface.treatment") || self.scene.interface.treatment != Treatment::PhaseBlind {
             return;
         }
-        if self.total_lagrangian() {
-            let why = "the fluid's share in a velocity gradient means nothing to a deformation gradient";
-            let reason = format!("cannot be phase-blind with solid.model = \"total-lagrangian\": {why}");
-            self.report.among(self.root, "interface.treatment", &["solid.model", "preset"], reason);
-        }
-        if let Some(SubSteps::Fixed(n)) = self.scene.solids.first().map(|s| s.sub_steps)
-            && n != 1
-        {
-            let why = "a particle close to the interface hangs on a spring as stiff as the solid";
-            let reason = format!("must be \"auto\" or 1 with phase-blind: {why}");
-            self.report.among(self.root, "solid.sub_steps", &PHASE_BLIND_BY, reason);
-        }
+        self.phase_blind_solids();
         if self.scene.smoothing_ratio < 1.1 && !self.report.has("smoothing_ratio") {
             let why = "with h / dx = 1.0 the sums over both phases blow up at once";
             let reason = format!("must be at least 1.1 with phase-blind: {why}");
             self.report.among(self.root, "smoothing_ratio", &PHASE_BLIND_BY, reason);
-        }
-    }
-
-    /// The limit of the total-Lagrangian model is below what `numerics.solid_cfl` allows in general.
-    fn solid_time_step(&self) {
-        let key = "numerics.solid_cfl";
-        let cfl = self.scene.numerics.solid_cfl;
-        if self.total_lagrangian() && cfl > 0.9 && !self.report.has(key) {
-            let reason = "must be at most 0.9 with solid.model = \"total-lagrangian\": it is stable to 0.94";
-            self.report.among(self.root, key, &["solid.model"], reason);
         }
     }
 
@@ -236,98 +211,11 @@ impl Check<'_> {
         }
     }
 
-    /// What the scene language has and the program does not do yet, and numbers that must be whole.
+    /// What the scene language has and the program does not do yet.
     fn not_yet(&self) {
         let key = "output.checkpoint_interval";
         if self.scene.output.checkpoint_interval > 0.0 && !self.report.has(key) {
             self.report.among(self.root, key, &[], "checkpoints cannot be written yet; leave it at 0");
-        }
-        let key = "solid.artificial_stress.exponent";
-        let exponent = self.scene.solids.first().map_or(1.0, |s| s.artificial_stress.exponent);
-        if exponent.fract() != 0.0 && !self.report.has(key) {
-            self.report.among(
-                self.root,
-                key,
-                &[],
-                "must be a whole number: it is a power of a ratio of kernels",
-            );
-        }
-    }
-
-    fn probes(&self) {
-        let names: Vec<&str> = self.scene.probes.iter().map(|p| p.name.as_str()).collect();
-        if !self.report.has("probe") {
-            self.unique("probe", &names);
-        }
-        let mut values = [0_usize; 3];
-        for probe in &self.scene.probes {
-            let key = format!("probe.{}", probe.name);
-            if self.report.has(&key) {
-                continue;
-            }
-            let phase = probe.kind.phase();
-            let (name, section) = match phase {
-                Phase::Solid => ("solid", !self.scene.solids.is_empty()),
-                _ => ("fluid", self.scene.fluid.is_some()),
-            };
-            // A shape without its section has been noted.
-            let present = section || self.scene.shapes.iter().any(|s| s.phase == phase);
-            if !present && !self.report.has(name) {
-                self.place(&key, format!("measures a {name}, and the scene has none"));
-                continue;
-            }
-            let count = &mut values[phase as usize];
-            let before = *count;
-            *count += probe.kind.components(self.scene.dimension).0.len();
-            if *count > MAX_PROBE_VALUES && before <= MAX_PROBE_VALUES {
-                let reason = format!("is one probe too many: a phase has at most {MAX_PROBE_VALUES} values");
-                self.place(&key, reason);
-            }
-            self.probe_place(probe, &key);
-        }
-    }
-
-    fn probe_place(&self, probe: &Probe, key: &str) {
-        if self.report.has_any(&["resolution", "shape", "dimension"]) {
-            return;
-        }
-        match &probe.kind {
-            ProbeKind::Displacement { at } => {
-                let near = |s: &&Shape| {
-                    let bounds = geometry::bounding_box(s, self.scene);
-                    s.phase == Phase::Solid && geometry::holds(&bounds, at, 2.0 * self.scene.resolution)
-                };
-                if !self.scene.shapes.iter().any(|s| near(&s)) {
-                    self.wrong(&format!("{key}.at"), "is in or beside no solid shape");
-                }
-            }
-            ProbeKind::Pressure { at }
-                if !self.report.has("numerics.domain")
-                    && !geometry::holds(&geometry::domain(self.scene), at, 0.0) =>
-            {
-                self.wrong(&format!("{key}.at"), "is outside the domain: no fluid gets there");
-            }
-            ProbeKind::WaterLevel { x } if !self.report.has("numerics.domain") => {
-                let domain = geometry::domain(self.scene);
-                if *x < domain.min[0] || *x > domain.max[0] {
-                    self.wrong(&format!("{key}.x"), "is outside the domain: no fluid gets there");
-                }
-            }
-            ProbeKind::Force { .. } if self.scene.fluid.is_none() || self.scene.solids.is_empty() => {
-                self.wrong(&format!("{key}.kind"), "needs a fluid and a solid");
-            }
-            ProbeKind::Force { within: Some(within) } => {
-                let near = |s: &&Shape| {
-                    let bounds = geometry::bounding_box(s, self.scene);
-                    s.phase == Phase::Solid
-                        && (0..self.scene.dimension)
-                            .all(|a| bounds.min[a] < within.max[a] && within.min[a] < bounds.max[a])
-                };
-                if !self.scene.shapes.iter().any(|s| near(&s)) {
-                    self.wrong(&format!("{key}.within"), "holds no part of a solid shape");
-                }
-            }
-            _ => (),
         }
     }
 

@@ -201,6 +201,22 @@ pub fn bounding_box(shape: &Shape, scene: &Scene) -> Block {
     }
 }
 
+/// Distance of a point to a shape, m: zero inside. A tank's is that to its cavity.
+pub(crate) fn distance(geometry: &Geometry, at: &[f64; 3]) -> f64 {
+    let length = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let from = |center: &[f64; 3]| length(std::array::from_fn(|a| at[a] - center[a]));
+    match geometry {
+        Geometry::Box(b) | Geometry::Tank { cavity: b, .. } => {
+            length(std::array::from_fn(|a| (b.min[a] - at[a]).max(at[a] - b.max[a]).max(0.0)))
+        }
+        Geometry::Disc { center, radius } => (from(center) - radius).max(0.0),
+        Geometry::Ring { center, inner, outer } => {
+            let r = from(center);
+            (inner - r).max(r - outer).max(0.0)
+        }
+    }
+}
+
 /// Whether each clamp of a solid shape holds one of its particles.
 pub(crate) fn clamp_catches(scene: &Scene, shape: &Shape) -> Vec<bool> {
     match scene.dimension {

@@ -7,6 +7,8 @@
 pub mod bounds;
 mod check;
 mod check_metric;
+mod check_probe;
+mod check_solid;
 mod document;
 mod effect;
 mod error;
@@ -23,6 +25,7 @@ mod read;
 mod read_metric;
 mod read_probe;
 mod read_shape;
+mod read_solid;
 mod resources;
 mod section;
 mod solid;

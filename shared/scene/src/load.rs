@@ -29,7 +29,10 @@ pub fn parse(text: &str, path: &Path, overrides: &[String]) -> Result<Scene, Sce
         Ok(root) => root,
         Err(errors) => {
             for (origin, message) in errors {
-                report.place("", origin, message);
+                let note = report.place("", origin, message);
+                if text.get(origin.start..origin.end) == Some("solid") {
+                    note.help("a scene has either one [solid] or several [[solid]]");
+                }
             }
             return Err(report.into_errors(path));
         }

@@ -13,6 +13,8 @@ pub struct Probe {
     pub name: String,
     /// What it measures.
     pub kind: ProbeKind,
+    /// Index of the solid that it measures in [`crate::Scene::solids`]; `None` for the fluid.
+    pub solid: Option<usize>,
 }
 
 /// The kinds of probes.

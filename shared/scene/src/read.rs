@@ -5,7 +5,7 @@ use super::error::{Report, listed, nearest};
 use super::preset::Defaults;
 use super::section::{Range, Section};
 use super::*;
-use super::{read_metric, read_probe, read_shape};
+use super::{read_metric, read_probe, read_shape, read_solid};
 use std::path::Path;
 
 /// What a scene's file holds, before the sound speed `auto` is resolved.
@@ -15,16 +15,15 @@ pub(super) struct Draft {
     pub(super) sound_speed_auto: bool,
 }
 
-const SMOOTHING: Range = Range::at_least(1.0)
+pub(super) const SMOOTHING: Range = Range::at_least(1.0)
     .up_to(2.5)
     .why("below, neighbours are too few; above, they are too many to resolve anything at this spacing");
-const FIXED_SMOOTHING: Range = Range::at_least(0.75)
-    .up_to(2.5)
-    .why("below, a particle loses its diagonal neighbours; above, they are too many to resolve anything at this spacing");
 // Ends beyond any material, within which no formula overflows.
-const DENSITY: Range = Range::at_least(1e-6).up_to(1e9);
+pub(super) const DENSITY: Range = Range::at_least(1e-6).up_to(1e9);
+/// Most worker threads of a process.
+pub(super) const MAX_THREADS: u32 = 1024;
 const PRESSURE: Range = Range::at_least(0.0).up_to(1e15);
-const COEFFICIENT: Range = Range::at_least(0.0).up_to(100.0);
+pub(super) const COEFFICIENT: Range = Range::at_least(0.0).up_to(100.0);
 
 pub(super) fn scene(root: &Node, path: &Path, report: &Report) -> Draft {
     let top = Section::root(root, report);
@@ -42,12 +41,12 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report) -> Draft {
         }
         _ => (None, false),
     };
-    let solids = match top.section("solid") {
-        section if section.is_present() => {
-            vec![solid(section, defaults.with_treatment(interface.treatment), &numerics)]
-        }
-        _ => Vec::new(),
-    };
+    let solids = read_solid::solids(&top, defaults.with_treatment(interface.treatment), &numerics);
+    let names: Vec<&str> = solids.iter().map(|s| s.name.as_str()).collect();
+    let shapes: Vec<Shape> =
+        top.tables("shape").into_iter().map(|s| read_shape::shape(s, dimension, &names)).collect();
+    let probe = |p| read_probe::probe(p, dimension, &names, &shapes);
+    let probes = top.tables("probe").into_iter().filter_map(probe).collect();
     let scene = Scene {
         name: stem,
         // A path that is no Unicode could not be written to JSON.
@@ -66,8 +65,8 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report) -> Draft {
         solids,
         interface,
         output: output(top.section("output"), end_time),
-        shapes: top.tables("shape").into_iter().map(|s| read_shape::shape(s, dimension)).collect(),
-        probes: top.tables("probe").into_iter().filter_map(|p| read_probe::probe(p, dimension)).collect(),
+        shapes,
+        probes,
         references: {
             let folder = path.parent().unwrap_or(Path::new(""));
             top.tables("reference").into_iter().filter_map(|r| read_probe::reference(r, folder)).collect()
@@ -135,7 +134,7 @@ fn fluid(section: Section<'_>, defaults: &Defaults) -> (Fluid, bool) {
     (fluid, sound_speed.is_none())
 }
 
-fn viscosity(section: &Section<'_>, default: ArtificialViscosity) -> ArtificialViscosity {
+pub(super) fn viscosity(section: &Section<'_>, default: ArtificialViscosity) -> ArtificialViscosity {
     let table = section.section("artificial_viscosity");
     let viscosity = ArtificialViscosity {
         linear: table.number("linear", Some(default.linear), COEFFICIENT),
@@ -143,105 +142,6 @@ fn viscosity(section: &Section<'_>, default: ArtificialViscosity) -> ArtificialV
     };
     table.finish();
     viscosity
-}
-
-fn solid(section: Section<'_>, defaults: Defaults, numerics: &Numerics) -> Solid {
-    const HYPOELASTIC: SolidModelName = SolidModelName::Hypoelastic;
-    let models = [("hypoelastic", HYPOELASTIC), ("total-lagrangian", SolidModelName::TotalLagrangian)];
-    let model = section.choice("model", Some(defaults.model), &models).unwrap_or(defaults.model);
-    let defaults = defaults.with_model(model);
-    let stress = section.section("artificial_stress");
-    let solid = Solid {
-        name: Solid::DEFAULT_NAME.to_owned(),
-        process: Solid::DEFAULT_NAME.to_owned(),
-        threads: numerics.threads.solid,
-        model,
-        density: section.number("density", None, DENSITY),
-        youngs_modulus: section.number("youngs_modulus", None, Range::positive().up_to(1e15)),
-        poissons_ratio: section.number(
-            "poissons_ratio",
-            None,
-            Range::at_least(0.0)
-                .below(0.5)
-                .why("at 0.5 a solid is incompressible, its bulk modulus infinite"),
-        ),
-        smoothing_ratio: section.number(
-            "smoothing_ratio",
-            Some(defaults.solid_smoothing_ratio),
-            match model {
-                HYPOELASTIC => SMOOTHING,
-                SolidModelName::TotalLagrangian => FIXED_SMOOTHING,
-            },
-        ),
-        artificial_viscosity: viscosity(&section, defaults.solid_viscosity),
-        artificial_stress: ArtificialStress {
-            strength: stress.number("strength", Some(defaults.artificial_stress.strength), COEFFICIENT),
-            exponent: stress.number(
-                "exponent",
-                Some(defaults.artificial_stress.exponent),
-                Range::at_least(1.0).up_to(16.0).why("it is a whole power of a ratio of kernels"),
-            ),
-        },
-        material: section
-            .choice(
-                "material",
-                Some(Material::NeoHookean),
-                &[
-                    ("st-venant-kirchhoff", Material::StVenantKirchhoff),
-                    ("neo-hookean", Material::NeoHookean),
-                ],
-            )
-            .unwrap_or(Material::NeoHookean),
-        hourglass: section.number_or_auto(
-            "hourglass",
-            None,
-            Range::at_least(0.0)
-                .up_to(10.0)
-                .why("beyond, it is stiffer than the material and limits the time step"),
-        ),
-        sub_steps: sub_steps(&section, numerics.max_sub_steps),
-    };
-    let foreign: &[(&str, &str)] = match model {
-        HYPOELASTIC => &[
-            ("material", "only the total-lagrangian model has a choice of materials"),
-            ("hourglass", "only the total-lagrangian model resists hourglass modes"),
-        ],
-        SolidModelName::TotalLagrangian => {
-            &[("artificial_stress", "the total-lagrangian model has no tensile instability that needs it")]
-        }
-    };
-    for (key, why) in foreign {
-        if let Some(node) = section.node(key) {
-            section.wrong(key, node, *why);
-        }
-    }
-    stress.finish();
-    section.finish();
-    solid
-}
-
-fn sub_steps(section: &Section<'_>, most: u32) -> SubSteps {
-    let Some(node) = section.node("sub_steps") else { return SubSteps::Auto };
-    match &node.value {
-        Value::String(text) if text == "auto" => SubSteps::Auto,
-        Value::Integer(n) => match u32::try_from(*n) {
-            Ok(n) if n > most => {
-                let reason = format!("must be at most numerics.max_sub_steps, which is {most}");
-                section.wrong("sub_steps", node, reason);
-                SubSteps::Auto
-            }
-            Ok(n) if n == 1 || (n >= 2 && n % 2 == 0) => SubSteps::Fixed(n),
-            _ => {
-                let why = "half of them lead to the middle of the step";
-                section.wrong("sub_steps", node, format!("must be \"auto\", 1 or an even number: {why}"));
-                SubSteps::Auto
-            }
-        },
-        _ => {
-            section.wrong("sub_steps", node, "must be \"auto\", 1 or an even number");
-            SubSteps::Auto
-        }
-    }
 }
 
 fn interface(section: Section<'_>, defaults: &Defaults) -> Interface {
@@ -295,7 +195,6 @@ fn effects(top: &Section<'_>) -> BTreeMap<EffectName, Switch> {
 }
 
 fn numerics(section: Section<'_>, dimension: usize, defaults: &Defaults) -> Numerics {
-    const THREADS: u32 = 1024;
     let threads = section.section("threads");
     let numerics = Numerics {
         kernel: section
@@ -322,8 +221,8 @@ fn numerics(section: Section<'_>, dimension: usize, defaults: &Defaults) -> Nume
             .node("interface_capacity")
             .and_then(|node| section.as_integer("interface_capacity", node, 1, 100_000_000)),
         threads: Threads {
-            fluid: threads.integer("fluid", 2, 1, THREADS) as usize,
-            solid: threads.integer("solid", 1, 1, THREADS) as usize,
+            fluid: threads.integer("fluid", 2, 1, MAX_THREADS) as usize,
+            solid: threads.integer("solid", 1, 1, MAX_THREADS) as usize,
         },
         lattice: section
             .choice(

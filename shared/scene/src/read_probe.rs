@@ -1,7 +1,7 @@
 //! `[[probe]]` and `[[reference]]`.
 
 use super::document::{Node, Value};
-use super::read_shape::name;
+use super::read_shape::{name, needs_solid, which_solid};
 use super::section::{Range, Section};
 use super::*;
 use std::path::Path;
@@ -30,7 +30,12 @@ const KINDS: [(&str, Kind); 7] = [
 const MOVING: [(&str, Phase); 2] = [("fluid", Phase::Fluid), ("solid", Phase::Solid)];
 
 /// A probe; `None` where it is not clear what it measures, so that nobody asks it anything.
-pub(super) fn probe(section: Section<'_>, dimension: usize) -> Option<Probe> {
+pub(super) fn probe(
+    section: Section<'_>,
+    dimension: usize,
+    solids: &[&str],
+    shapes: &[Shape],
+) -> Option<Probe> {
     let name = name(&section);
     let at = || section.vector("at", dimension, None);
     // Without a kind its other keys mean nothing: they are not looked at.
@@ -46,8 +51,29 @@ pub(super) fn probe(section: Section<'_>, dimension: usize) -> Option<Probe> {
             ProbeKind::Force { within: within.is_present().then(|| within.whole_block(dimension)) }
         }
     };
+    let solid = match kind {
+        ProbeKind::Displacement { at } => nearest_solid(shapes, &at),
+        _ if kind.phase() == Phase::Solid => {
+            needs_solid(&section, solids, "a probe of a solid");
+            which_solid(&section, solids)
+        }
+        _ => None,
+    };
+    let needless = match kind {
+        ProbeKind::Displacement { .. } => Some("the displacement is that of the solid nearest to `at`"),
+        _ => (kind.phase() == Phase::Fluid).then_some("the probe measures the fluid"),
+    };
+    if let (Some(why), Some(node)) = (needless, section.node("solid")) {
+        section.wrong("solid", node, format!("is not asked for: {why}"));
+    }
     section.finish();
-    Some(Probe { name, kind })
+    Some(Probe { name, kind, solid })
+}
+
+/// The solid whose shape is nearest to a point: of several equally near the one that comes first.
+fn nearest_solid(shapes: &[Shape], at: &[f64; 3]) -> Option<usize> {
+    let of_solid = shapes.iter().filter_map(|s| Some((s.solid?, geometry::distance(&s.geometry, at))));
+    of_solid.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(solid, _)| solid)
 }
 
 pub(super) fn reference(section: Section<'_>, folder: &Path) -> Option<Reference> {

@@ -1,6 +1,7 @@
 //! `[[shape]]`.
 
 use super::document::Value;
+use super::error::listed;
 use super::section::{Range, Section};
 use super::*;
 
@@ -18,12 +19,12 @@ const SIDES: [(&str, Side); 6] = [
 
 const GEOMETRIES: [&str; 4] = ["box", "disc", "ring", "tank"];
 
-pub(super) fn shape(section: Section<'_>, dimension: usize) -> Shape {
+pub(super) fn shape(section: Section<'_>, dimension: usize, solids: &[&str]) -> Shape {
     let phase = section.choice("phase", None, &PHASES);
     let shape = Shape {
         name: name(&section),
         phase: phase.unwrap_or(Phase::Wall),
-        solid: (phase == Some(Phase::Solid)).then_some(0),
+        solid: which_solid(&section, solids).filter(|_| phase == Some(Phase::Solid)),
         geometry: geometry(&section, dimension, phase),
         velocity: section.vector("velocity", dimension, Some([0.0; 3])),
         cantilever_mode: cantilever_mode(&section),
@@ -39,6 +40,7 @@ pub(super) fn shape(section: Section<'_>, dimension: usize) -> Shape {
     for (key, owner, article) in [
         ("cantilever_mode", Phase::Solid, "a solid"),
         ("clamp", Phase::Solid, "a solid"),
+        ("solid", Phase::Solid, "a solid"),
         ("velocity_field", Phase::Fluid, "a fluid"),
         ("motion", Phase::Wall, "a wall"),
         ("contact", Phase::Wall, "a wall"),
@@ -51,11 +53,37 @@ pub(super) fn shape(section: Section<'_>, dimension: usize) -> Shape {
             section.wrong(key, node, format!("only {article} has `{key}`"));
         }
     }
+    if phase == Some(Phase::Solid) {
+        needs_solid(&section, solids, "a solid shape");
+    }
     if let (Some(node), true) = (section.node("motion"), shape.contact) {
         section.wrong("motion", node, "a wall that the solid may touch (contact = true) cannot move yet");
     }
     section.finish();
     shape
+}
+
+/// Index of the solid that a shape or a probe names; where it names none, of the only one.
+pub(super) fn which_solid(section: &Section<'_>, solids: &[&str]) -> Option<usize> {
+    // Names that are missing or taken twice are errors of their own.
+    let told = |(k, name): (usize, &&str)| !name.is_empty() && !solids[..k].contains(name);
+    let named = !solids.is_empty() && solids.iter().enumerate().all(told);
+    match section.node("solid") {
+        None => (solids.len() == 1).then_some(0),
+        Some(node) if named => {
+            let names: Vec<(&str, usize)> = solids.iter().enumerate().map(|(k, name)| (*name, k)).collect();
+            section.as_choice("solid", node, &names)
+        }
+        Some(_) => None,
+    }
+}
+
+/// Notes that a solid has to be named where there are several.
+pub(super) fn needs_solid(section: &Section<'_>, solids: &[&str], who: &str) {
+    if solids.len() > 1 && section.node("solid").is_none() {
+        let names = listed(solids.iter().copied(), "or");
+        section.whole(format!("says no `solid`: where there are several, {who} names its own, {names}"));
+    }
 }
 
 fn motion(section: &Section<'_>, dimension: usize) -> Option<Motion> {

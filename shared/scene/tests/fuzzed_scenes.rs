@@ -34,7 +34,7 @@ const VALUES: [&str; 26] = [
     "",
 ];
 
-const KEYS: [&str; 25] = [
+const KEYS: [&str; 29] = [
     "preset",
     "dimension",
     "resolution",
@@ -48,9 +48,13 @@ const KEYS: [&str; 25] = [
     "fluid.sound_speed",
     "solid.poissons_ratio",
     "solid.sub_steps",
+    "solid.name",
+    "solid.process",
+    "solid",
     "shape",
     "shape.plate.box",
     "shape.plate.clamp",
+    "shape.plate.solid",
     "shape.water.velocity",
     "shape.0",
     "probe.0.at",

@@ -44,7 +44,7 @@ points = [[0.0, 0.0], [1.0, 0.01]]
 "#;
 
 /// One case a paragraph: lines taken out of [`RIGHT`] (`-`), lines put in their place (`+`), overrides (`$`), and the
-/// messages that follow (`>`).
+/// messages that follow (`>`). A paragraph headed `= two solids` starts from [`two_solids`] instead.
 const CASES: &str = include_str!("wrong_scenes.txt");
 
 fn errors(text: &str, overrides: &[&str]) -> SceneErrors {
@@ -59,17 +59,33 @@ fn messages(errors: &SceneErrors) -> Vec<String> {
     errors.problems.iter().map(|p| p.to_string()).collect()
 }
 
+/// The right scene with another solid beside its own.
+fn two_solids() -> String {
+    let gate = edited("[solid]\n", "[[solid]]\nname = \"gate\"\n");
+    let named = "phase = \"solid\"\nsolid = \"gate\"\n";
+    let gate = replaced(&gate, "phase = \"solid\"\n", named);
+    let lid = "[[solid]]\nname = \"lid\"\nmodel = \"hypoelastic\"\ndensity = 900.0\nyoungs_modulus = 1e9\n\
+               poissons_ratio = 0.3\n\n[[shape]]\nname = \"cover\"\nphase = \"solid\"\nsolid = \"lid\"\n\
+               box = { min = [0.5, 0.0], max = [0.6, 0.3] }\n";
+    format!("{gate}\n{lid}")
+}
+
 /// The right scene with whole lines replaced.
 fn edited(from: &str, to: &str) -> String {
-    let framed = format!("\n{RIGHT}");
+    replaced(RIGHT, from, to)
+}
+
+fn replaced(text: &str, from: &str, to: &str) -> String {
+    let framed = format!("\n{text}");
     let from = format!("\n{from}");
     assert_eq!(framed.matches(&from).count(), 1, "must occur once:{from}");
     framed.replacen(&from, &format!("\n{to}"), 1)[1..].to_owned()
 }
 
 #[test]
-fn the_scene_that_they_are_made_of_is_right() {
+fn the_scenes_that_they_are_made_of_are_right() {
     parse(RIGHT, Path::new("s.toml"), &[]).unwrap();
+    parse(&two_solids(), Path::new("s.toml"), &[]).unwrap();
 }
 
 #[test]
@@ -78,9 +94,12 @@ fn every_wrong_scene_is_told_what_is_wrong_and_nothing_else() {
     for case in CASES.split("\n\n") {
         let marked = |mark: &str| case.lines().filter_map(|l| l.strip_prefix(mark)).collect::<Vec<_>>();
         let [out, put, set, want] = ["- ", "+ ", "$ ", "> "].map(marked);
-        assert_eq!(out.len() + put.len() + set.len() + want.len(), case.lines().count(), "{case}");
+        let two = case.starts_with("= two solids\n");
+        let marks = out.len() + put.len() + set.len() + want.len() + usize::from(two);
+        assert_eq!(marks, case.lines().count(), "{case}");
+        let base = if two { two_solids() } else { RIGHT.to_owned() };
         let lines = |lines: &[&str]| lines.iter().map(|l| format!("{l}\n")).collect::<String>();
-        let text = if out.is_empty() { RIGHT.to_owned() } else { edited(&lines(&out), &lines(&put)) };
+        let text = if out.is_empty() { base } else { replaced(&base, &lines(&out), &lines(&put)) };
         let got = messages(&errors(&text, &set));
         if got != want {
             failed.push(format!("{case}\n  got: {got:#?}"));
@@ -128,6 +147,9 @@ fn what_is_nearly_right_is_suggested() {
         let helps: Vec<&str> = errors.problems.iter().filter_map(|p| p.help.as_deref()).collect();
         assert_eq!(helps, [help], "{to}");
     }
+    let both = format!("{RIGHT}\n[[solid]]\nname = \"lid\"\n");
+    let help = errors(&both, &[]).problems.remove(0).help;
+    assert_eq!(help.as_deref(), Some("a scene has either one [solid] or several [[solid]]"));
     let errors = errors(RIGHT, &["shape.plat.velocity=[1,0]"]);
     assert_eq!(errors.problems[0].help.as_deref(), Some("did you mean `shape.plate`?"));
 }

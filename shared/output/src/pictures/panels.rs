@@ -154,7 +154,11 @@ mod tests {
 
     fn tip() -> Scene {
         let mut scene = fixture::scene();
-        scene.probes = vec![Probe { name: "tip".into(), kind: ProbeKind::Displacement { at: [0.0; 3] } }];
+        scene.probes = vec![Probe {
+            name: "tip".into(),
+            kind: ProbeKind::Displacement { at: [0.0; 3] },
+            solid: Some(0),
+        }];
         scene.references.clear();
         scene
     }

@@ -87,6 +87,7 @@ fn many_probes_share_a_picture_in_columns() {
     let pressure = |k| halfstep_scene::Probe {
         name: format!("p{k}"),
         kind: halfstep_scene::ProbeKind::Pressure { at: [0.0; 3] },
+        solid: None,
     };
     scene.probes.extend((1..=4).map(pressure));
     let columns: Vec<String> = scene.probes.iter().flat_map(|probe| probe.columns(2)).collect();

@@ -1,0 +1,77 @@
+//! What must hold between solids and the rest of the scene.
+
+use super::check::{Check, PHASE_BLIND_BY};
+use super::document::Value;
+use super::*;
+
+impl Check<'_> {
+    pub(super) fn solids(&self) {
+        let names: Vec<&str> = self.scene.solids.iter().map(|s| s.name.as_str()).collect();
+        self.unique("solid", &names);
+        if names.len() > 1 && !self.report.has_any(&["shape", "solid"]) {
+            for (k, name) in names.iter().enumerate() {
+                if self.scene.shapes.iter().all(|s| s.solid != Some(k)) {
+                    self.place(&self.solid_key(k), format!("no solid shape says `solid = \"{name}\"`"));
+                }
+            }
+        }
+        self.solid_time_step();
+    }
+
+    /// The key of the solid of that index: by index where its name is taken twice.
+    pub(super) fn solid_key(&self, index: usize) -> String {
+        let listed = self.root.child("solid").is_some_and(|node| matches!(node.value, Value::Array(_)));
+        let name = self.scene.solids.get(index).map_or("", |s| s.name.as_str());
+        let first = self.scene.solids.iter().position(|s| s.name == name);
+        match (listed, first == Some(index) && !name.is_empty()) {
+            (false, _) => "solid".to_owned(),
+            (true, true) => format!("solid.{name}"),
+            (true, false) => format!("solid.{index}"),
+        }
+    }
+
+    pub(super) fn total_lagrangian(&self, solid: usize) -> bool {
+        self.scene.solids.get(solid).is_some_and(|s| s.model == SolidModelName::TotalLagrangian)
+    }
+
+    /// The limit of the total-Lagrangian model is below what `numerics.solid_cfl` allows in general.
+    fn solid_time_step(&self) {
+        let key = "numerics.solid_cfl";
+        let cfl = self.scene.numerics.solid_cfl;
+        let limited = (0..self.scene.solids.len()).find(|&k| self.total_lagrangian(k));
+        if let Some(k) = limited
+            && cfl > 0.9
+            && !self.report.has(key)
+        {
+            let model = format!("{}.model", self.solid_key(k));
+            let reason =
+                format!("must be at most 0.9 with {model} = \"total-lagrangian\": it is stable to 0.94");
+            self.report.among(self.root, key, &[&model], reason);
+        }
+    }
+
+    /// What the phase-blind treatment asks of solids.
+    pub(super) fn phase_blind_solids(&self) {
+        let key = "interface.treatment";
+        if self.scene.solids.len() > 1 {
+            let why =
+                "its sums do not ask what a neighbour is, so each would need the particles of the others";
+            let reason = format!("cannot be phase-blind with several solids: {why}");
+            self.report.among(self.root, key, &["preset"], reason);
+            return;
+        }
+        let Some(solid) = self.scene.solids.first() else { return };
+        let of_solid = self.solid_key(0);
+        if self.total_lagrangian(0) {
+            let why = "the fluid's share in a velocity gradient means nothing to a deformation gradient";
+            let model = format!("{of_solid}.model");
+            let reason = format!("cannot be phase-blind with {model} = \"total-lagrangian\": {why}");
+            self.report.among(self.root, key, &[&model, "preset"], reason);
+        }
+        if matches!(solid.sub_steps, SubSteps::Fixed(n) if n != 1) {
+            let why = "a particle close to the interface hangs on a spring as stiff as the solid";
+            let reason = format!("must be \"auto\" or 1 with phase-blind: {why}");
+            self.report.among(self.root, &format!("{of_solid}.sub_steps"), &PHASE_BLIND_BY, reason);
+        }
+    }
+}

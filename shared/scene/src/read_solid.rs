@@ -1,0 +1,177 @@
+//! `[solid]` or `[[solid]]`.
+
+use super::document::Value;
+use super::preset::Defaults;
+use super::read::{COEFFICIENT, DENSITY, MAX_THREADS, SMOOTHING, viscosity};
+use super::section::{Range, Section};
+use super::*;
+
+const FIXED_SMOOTHING: Range = Range::at_least(0.75)
+    .up_to(2.5)
+    .why("below, a particle loses its diagonal neighbours; above, they are too many to resolve anything at this spacing");
+/// Longest name of a solid or a process: it is part of the names of shared memory and of files.
+const LONGEST_NAME: usize = 24;
+/// What else takes part in a run, and the word for a process of one's own.
+const RESERVED: [&str; 4] = ["fluid", "coupler", "wall", OWN];
+const OWN: &str = "own";
+
+/// The solids of a scene: the one of `[solid]`, or those of `[[solid]]`.
+pub(super) fn solids(top: &Section<'_>, defaults: Defaults, numerics: &Numerics) -> Vec<Solid> {
+    match top.node("solid").map(|node| &node.value) {
+        None => Vec::new(),
+        Some(Value::Array(_)) => {
+            let read = |section| {
+                let name = name(&section);
+                solid(section, name, defaults, numerics)
+            };
+            top.tables("solid").into_iter().map(read).collect()
+        }
+        Some(_) => {
+            let section = top.section("solid");
+            if let Some(node) = section.node("name") {
+                let reason = "only a [[solid]] has a name: the one of [solid] is called `solid`";
+                section.wrong("name", node, reason);
+            }
+            vec![solid(section, Solid::DEFAULT_NAME.to_owned(), defaults, numerics)]
+        }
+    }
+}
+
+fn name(section: &Section<'_>) -> String {
+    if section.node("name").is_none() {
+        section.missing("name");
+    }
+    identifier(section, "name").unwrap_or_default().to_owned()
+}
+
+/// The process that serves the solid of this name.
+fn process(section: &Section<'_>, name: &str) -> String {
+    match section.string("process") {
+        None => Solid::DEFAULT_NAME,
+        Some(OWN) => name,
+        Some(_) => identifier(section, "process").unwrap_or_default(),
+    }
+    .to_owned()
+}
+
+/// A name that can be part of the name of a file or a service and means nothing else.
+fn identifier<'a>(section: &Section<'a>, key: &'static str) -> Option<&'a str> {
+    let (node, text) = (section.node(key)?, section.string(key)?);
+    let allowed = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
+    let begins = text.starts_with(|c: char| c.is_ascii_lowercase());
+    if !begins || !text.chars().all(allowed) || text.len() > LONGEST_NAME {
+        let form = "must be lower-case letters, digits and `-`, begin with a letter";
+        let why = "files and shared memory are named after it";
+        section.wrong(key, node, format!("{form} and have at most {LONGEST_NAME} characters: {why}"));
+    } else if RESERVED.contains(&text) {
+        let names = super::error::listed(RESERVED, "and");
+        section.wrong(key, node, format!("is reserved: {names} mean something else"));
+    }
+    Some(text)
+}
+
+fn solid(section: Section<'_>, name: String, defaults: Defaults, numerics: &Numerics) -> Solid {
+    const HYPOELASTIC: SolidModelName = SolidModelName::Hypoelastic;
+    let models = [("hypoelastic", HYPOELASTIC), ("total-lagrangian", SolidModelName::TotalLagrangian)];
+    let model = section.choice("model", Some(defaults.model), &models).unwrap_or(defaults.model);
+    let defaults = defaults.with_model(model);
+    let stress = section.section("artificial_stress");
+    let solid = Solid {
+        process: process(&section, &name),
+        name,
+        threads: section.integer("threads", numerics.threads.solid as u32, 1, MAX_THREADS) as usize,
+        model,
+        density: section.number("density", None, DENSITY),
+        youngs_modulus: section.number("youngs_modulus", None, Range::positive().up_to(1e15)),
+        poissons_ratio: section.number(
+            "poissons_ratio",
+            None,
+            Range::at_least(0.0)
+                .below(0.5)
+                .why("at 0.5 a solid is incompressible, its bulk modulus infinite"),
+        ),
+        smoothing_ratio: section.number(
+            "smoothing_ratio",
+            Some(defaults.solid_smoothing_ratio),
+            match model {
+                HYPOELASTIC => SMOOTHING,
+                SolidModelName::TotalLagrangian => FIXED_SMOOTHING,
+            },
+        ),
+        artificial_viscosity: viscosity(&section, defaults.solid_viscosity),
+        artificial_stress: ArtificialStress {
+            strength: stress.number("strength", Some(defaults.artificial_stress.strength), COEFFICIENT),
+            exponent: exponent(&stress, defaults.artificial_stress.exponent),
+        },
+        material: section
+            .choice(
+                "material",
+                Some(Material::NeoHookean),
+                &[
+                    ("st-venant-kirchhoff", Material::StVenantKirchhoff),
+                    ("neo-hookean", Material::NeoHookean),
+                ],
+            )
+            .unwrap_or(Material::NeoHookean),
+        hourglass: section.number_or_auto(
+            "hourglass",
+            None,
+            Range::at_least(0.0)
+                .up_to(10.0)
+                .why("beyond, it is stiffer than the material and limits the time step"),
+        ),
+        sub_steps: sub_steps(&section, numerics.max_sub_steps),
+    };
+    let foreign: &[(&str, &str)] = match model {
+        HYPOELASTIC => &[
+            ("material", "only the total-lagrangian model has a choice of materials"),
+            ("hourglass", "only the total-lagrangian model resists hourglass modes"),
+        ],
+        SolidModelName::TotalLagrangian => {
+            &[("artificial_stress", "the total-lagrangian model has no tensile instability that needs it")]
+        }
+    };
+    for (key, why) in foreign {
+        if let Some(node) = section.node(key) {
+            section.wrong(key, node, *why);
+        }
+    }
+    stress.finish();
+    section.finish();
+    solid
+}
+
+fn exponent(stress: &Section<'_>, default: f64) -> f64 {
+    let range = Range::at_least(1.0).up_to(16.0).why("it is a whole power of a ratio of kernels");
+    let exponent = stress.number("exponent", Some(default), range);
+    if exponent.fract() != 0.0
+        && let Some(node) = stress.node("exponent")
+    {
+        stress.wrong("exponent", node, "must be a whole number: it is a power of a ratio of kernels");
+    }
+    exponent
+}
+
+fn sub_steps(section: &Section<'_>, most: u32) -> SubSteps {
+    let Some(node) = section.node("sub_steps") else { return SubSteps::Auto };
+    match &node.value {
+        Value::String(text) if text == "auto" => SubSteps::Auto,
+        Value::Integer(n) => match u32::try_from(*n) {
+            Ok(n) if n > most => {
+                let reason = format!("must be at most numerics.max_sub_steps, which is {most}");
+                section.wrong("sub_steps", node, reason);
+                SubSteps::Auto
+            }
+            Ok(n) if n == 1 || (n >= 2 && n % 2 == 0) => SubSteps::Fixed(n),
+            _ => {
+                let why = "half of them lead to the middle of the step";
+                section.wrong("sub_steps", node, format!("must be \"auto\", 1 or an even number: {why}"));
+                SubSteps::Auto
+            }
+        },
+        _ => {
+            section.wrong("sub_steps", node, "must be \"auto\", 1 or an even number");
+            SubSteps::Auto
+        }
+    }
+}
