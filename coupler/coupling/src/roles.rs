@@ -47,7 +47,7 @@ pub fn members(
 pub fn measured_by(scene: &Scene) -> Vec<usize> {
     let first_solid = usize::from(scene.fluid.is_some());
     let place = |probe: &halfstep_scene::Probe| match probe.kind.phase() {
-        Phase::Solid => first_solid,
+        Phase::Solid => first_solid + probe.solid.unwrap_or_default(),
         _ => 0,
     };
     scene.probes.iter().map(place).collect()
