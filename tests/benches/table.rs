@@ -6,7 +6,7 @@
 
 mod support;
 
-use halfstep_role::lockstep::on_threads;
+use halfstep_role::serve::on_threads;
 use halfstep_sph::lane::Isa;
 use serde_json::{Value, json};
 use support::{Clock, LEAN, Patch, Running, collapse, medians, naive, tank};

@@ -2,14 +2,13 @@
 
 use halfstep_coupling::roles;
 use halfstep_interface::{Interface, Parameters};
-use halfstep_role::lockstep::on_threads;
-use halfstep_role::role::Role;
+use halfstep_role::role::{Peer, Role};
+use halfstep_role::serve::on_threads;
 use halfstep_scene::{self as scene, Scene};
 use halfstep_sph::lane::Isa;
 use halfstep_tests::run::repository;
-use halfstep_wire::failure::RoleName;
 use halfstep_wire::half_step::{HalfStep, Stage};
-use halfstep_wire::protocol::{ForceRecord, StateRecord};
+use halfstep_wire::protocol::ForceRecord;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::backtrace::Backtrace;
 use std::cell::Cell;
@@ -70,12 +69,12 @@ fn allocations(mut step: impl FnMut(u64) + Send) -> u64 {
 }
 
 /// Steps of a role that is alone.
-fn alone(name: RoleName, scene: &Scene) -> u64 {
+fn alone(scene: &Scene) -> u64 {
     let mut role: Option<Box<dyn Role>> = None;
     let mut records = Vec::new();
     let mut time = 0.0;
     allocations(|n| {
-        let role = role.get_or_insert_with(|| roles::build(name, scene, Isa::detect()).expect("the phase"));
+        let role = role.get_or_insert_with(|| roles::build(0, scene, Isa::detect()).expect("the phase"));
         let mut half_step = HalfStep::begin(n, time);
         while half_step.step == n {
             role.set_time(half_step.before());
@@ -94,31 +93,31 @@ fn alone(name: RoleName, scene: &Scene) -> u64 {
 /// Steps of both roles of a coupled scene, with the forces that the coupler would send but for f_i.
 fn coupled(scene: &Scene) -> u64 {
     let mut state: Option<[Box<dyn Role>; 2]> = None;
-    let parameters = || Parameters::<2>::new(scene, Isa::detect()).expect("both phases");
+    let parameters = || Parameters::<2>::new(scene, 0, Isa::detect()).expect("both phases");
     let mut interface = Interface::new(parameters());
-    let (mut of_fluid, mut of_solid): (Vec<StateRecord>, Vec<StateRecord>) = Default::default();
+    let [mut of_fluid, mut of_solid] = [(); 2].map(|()| [Peer::default()]);
     let mut forces = [Vec::new(), Vec::new()];
     allocations(|n| {
         let [fluid, solid] = state.get_or_insert_with(|| {
-            [RoleName::Fluid, RoleName::Solid]
-                .map(|name| roles::build(name, scene, Isa::detect()).expect("the phase"))
+            [0, 1].map(|place| roles::build(place, scene, Isa::detect()).expect("the phase"))
         });
         let mut half_step = HalfStep::begin(n, 0.0);
         while half_step.step == n {
-            solid.publish(&of_fluid, &mut of_solid);
-            let epoch = fluid.publish(&of_solid, &mut of_fluid);
+            solid.publish(&of_fluid, &mut of_solid[0].records);
+            let epoch = fluid.publish(&of_solid, &mut of_fluid[0].records);
+            of_fluid[0].epoch = epoch;
             if half_step.stage == Stage::First {
                 half_step = half_step.lasting(fluid.dt_limit().min(solid.dt_limit()));
             }
             fluid.own_sums();
             solid.own_sums();
-            fluid.cross_sums(&of_fluid, &of_solid, epoch).unwrap();
-            solid.cross_sums(&of_solid, &of_fluid, epoch).unwrap();
-            for (forces, records) in forces.iter_mut().zip([&of_fluid, &of_solid]) {
+            fluid.cross_sums(&of_fluid[0].records, &of_solid).unwrap();
+            solid.cross_sums(&of_solid[0].records, &of_fluid).unwrap();
+            for (forces, records) in forces.iter_mut().zip([&of_fluid[0].records, &of_solid[0].records]) {
                 forces.clear();
                 forces.extend(records.iter().map(|r| ForceRecord { id: r.id, ..ForceRecord::default() }));
             }
-            interface.update(&of_fluid, &of_solid, epoch);
+            interface.update(&of_fluid[0].records, &of_solid[0].records, epoch);
             interface.act_on_solid(|record, [x, y]| forces[1][record].stress_force = [x, y, 0.0]);
             fluid.advance(&half_step, &forces[0]).unwrap();
             solid.advance(&half_step, &forces[1]).unwrap();
@@ -129,42 +128,42 @@ fn coupled(scene: &Scene) -> u64 {
 
 #[test]
 fn fluid_at_rest() {
-    assert_eq!(alone(RoleName::Fluid, &shipped("hydrostatic-tank", &[])), 0);
+    assert_eq!(alone(&shipped("hydrostatic-tank", &[])), 0);
 }
 
 #[test]
 fn fluid_that_spreads() {
-    assert_eq!(alone(RoleName::Fluid, &shipped("dam-break", &["resolution=0.0028575"])), 0);
+    assert_eq!(alone(&shipped("dam-break", &["resolution=0.0028575"])), 0);
 }
 
 #[test]
 fn fluid_between_moving_walls() {
-    assert_eq!(alone(RoleName::Fluid, &shipped("wave-paddle", &["resolution=0.02"])), 0);
+    assert_eq!(alone(&shipped("wave-paddle", &["resolution=0.02"])), 0);
 }
 
 #[test]
 fn viscous_fluid() {
-    assert_eq!(alone(RoleName::Fluid, &shipped("taylor-green", &[])), 0);
+    assert_eq!(alone(&shipped("taylor-green", &[])), 0);
     let overrides = ["resolution=0.0028575", "fluid.viscosity=1", "effects.viscosity=on"];
-    assert_eq!(alone(RoleName::Fluid, &shipped("dam-break", &overrides)), 0);
+    assert_eq!(alone(&shipped("dam-break", &overrides)), 0);
 }
 
 #[test]
 fn solid_that_bends() {
     for model in ["solid.model=hypoelastic", "solid.model=total-lagrangian"] {
-        assert_eq!(alone(RoleName::Solid, &shipped("oscillating-plate", &["resolution=0.004", model])), 0);
+        assert_eq!(alone(&shipped("oscillating-plate", &["resolution=0.004", model])), 0);
     }
 }
 
 #[test]
 fn solids_that_collide() {
-    assert_eq!(alone(RoleName::Solid, &shipped("colliding-rings", &["resolution=0.002"])), 0);
+    assert_eq!(alone(&shipped("colliding-rings", &["resolution=0.002"])), 0);
 }
 
 #[test]
 fn total_lagrangian_solids_that_collide() {
     let overrides = ["resolution=0.002", "solid.model=total-lagrangian"];
-    assert_eq!(alone(RoleName::Solid, &shipped("colliding-rings", &overrides)), 0);
+    assert_eq!(alone(&shipped("colliding-rings", &overrides)), 0);
 }
 
 #[test]

@@ -68,7 +68,7 @@ fn coupled(treatment: &str) -> Scene {
 fn a_fluid_particle_on_a_solid_one_has_finite_forces() {
     for treatment in ["moving-wall", "phase-blind"] {
         let scene = coupled(treatment);
-        let mut interface = Interface::<2>::new(Parameters::new(&scene, Isa::detect()).unwrap());
+        let mut interface = Interface::<2>::new(Parameters::new(&scene, 0, Isa::detect()).unwrap());
         let record = |density: f64, mass: f64, velocity: f64| StateRecord {
             position: [0.5, 0.5, 0.0],
             velocity: [velocity, 0.0, 0.0],

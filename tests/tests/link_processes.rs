@@ -1,11 +1,13 @@
 //! Roles as processes: what others notice when one is killed, and what is left when all are gone.
 
 use halfstep_coupling::supervise::{Children, stop_flag};
-use halfstep_link::{Claim, Expect, LinkConfig, LinkError, PhaseLink, Processes, Threads, cleanup_stale};
+use halfstep_link::{Claim, Expect, LinkConfig, LinkError, Processes, Threads, cleanup_stale};
+use halfstep_tests::conformance::link::end::End;
 use halfstep_tests::conformance::link::suite::with_links;
 use halfstep_tests::conformance::link::{Run, eventually};
-use halfstep_wire::failure::RoleName::{self, Coupler, Fluid, Solid};
+use halfstep_wire::Name;
 use halfstep_wire::half_step::Stage::First;
+use std::collections::BTreeMap;
 use std::os::unix::fs::MetadataExt;
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
@@ -13,14 +15,14 @@ use std::process::Command;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-const ROLES: [RoleName; 3] = [Fluid, Solid, Coupler];
+const ROLES: [Name; 3] = [Name::FLUID, Name::SOLID, Name::COUPLER];
 const ENDLESS: &str = "1000000000";
 
 fn helper() -> Command {
     Command::new(env!("CARGO_BIN_EXE_link-role"))
 }
 
-fn start(children: &mut Children, config: &LinkConfig, role: RoleName, steps: &str) {
+fn start(children: &mut Children, config: &LinkConfig, role: Name, steps: &str) {
     let mut command = helper();
     command.arg(role.to_string()).arg(steps).envs(config.to_env());
     children.spawn(role, command).unwrap();
@@ -47,7 +49,7 @@ fn settle(run: &Run) {
 #[test]
 fn memory_that_is_not_there_is_refused_before_anything_is_made() {
     let run = Run::new(u32::MAX, 1);
-    match PhaseLink::<Processes>::open(&run, Fluid, None).map(drop) {
+    match End::<Processes>::open(&run, Name::FLUID, None).map(drop) {
         Err(LinkError::SharedMemoryFull { needed, available }) => {
             assert!(needed > available && needed >= 128 * u64::from(u32::MAX));
             assert!(needed <= run.shared_memory_bytes());
@@ -55,8 +57,8 @@ fn memory_that_is_not_there_is_refused_before_anything_is_made() {
         other => panic!("{other:?}"),
     }
     // On the heap there is no such limit to ask for.
-    let config = LinkConfig { handshake_seconds: 0.1, ..LinkConfig::new(100, 100) };
-    let error = PhaseLink::<Threads>::open(&config, Fluid, None).map(drop).unwrap_err();
+    let config = LinkConfig { handshake_seconds: 0.1, ..LinkConfig::of_two(100, 100) };
+    let error = End::<Threads>::open(&config, Name::FLUID, None).map(drop).unwrap_err();
     assert!(matches!(error, LinkError::HandshakeTimeout { .. }), "{error}");
 }
 
@@ -103,7 +105,7 @@ fn three_processes_finish() {
 }
 
 /// Kills a role of a run and returns how long it took the two others to report it and end.
-fn kill_one(victim: RoleName) -> Duration {
+fn kill_one(victim: Name) -> Duration {
     let dir = tempfile::tempdir().unwrap();
     let run = Run::new(100, 100);
     let _claim = Claim::new(&run).unwrap();
@@ -168,7 +170,8 @@ fn launch(dir: &Path) -> (std::process::Child, Run, Vec<u32>) {
     let path = dir.join("run.json");
     eventually(20.0, "the launcher's start", || path.exists());
     let state: serde_json::Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
-    let run = Run(serde_json::from_value(state["config"].clone()).unwrap());
+    let environment: BTreeMap<String, String> = serde_json::from_value(state["environment"].clone()).unwrap();
+    let run = Run(LinkConfig::from_variables(|key| environment.get(key).cloned()).unwrap());
     let pids: Vec<u32> = serde_json::from_value(state["pids"].clone()).unwrap();
     settle(&run);
     (launcher, run, pids)
@@ -210,7 +213,7 @@ fn a_shell_line_learns_of_the_run_and_is_killed_with_its_children() {
     let mut children = Children::new(&log);
     let line = "echo $HALFSTEP_FLUID_CAPACITY $HALFSTEP_SOLID_CAPACITY $HALFSTEP_SCENE; trap '' TERM; \
                 sleep 1000 & echo child $! >&2; wait; wait";
-    children.spawn_shell(Solid, line, &run, Path::new("/some/scene.json")).unwrap();
+    children.spawn_shell(&run.participants[1], line, &run, Path::new("/some/scene.json")).unwrap();
     eventually(5.0, "the shell's words", || log_of(&dir).contains("child "));
     let log = log_of(&dir);
     assert!(log.starts_with("before\n123 45 /some/scene.json\n"), "{log}");
@@ -225,9 +228,10 @@ fn a_shell_line_learns_of_the_run_and_is_killed_with_its_children() {
 fn what_cannot_be_started_is_named() {
     let dir = tempfile::tempdir().unwrap();
     let mut children = Children::new(&dir.path().join("log.txt"));
-    let error = children.spawn(Fluid, Command::new("/no/such/program")).unwrap_err().to_string();
+    let error = children.spawn(Name::FLUID, Command::new("/no/such/program")).unwrap_err().to_string();
     assert!(error.contains("fluid") && error.contains("/no/such/program"), "{error}");
-    let error = Children::new(Path::new("/no/such/log.txt")).spawn(Fluid, helper()).unwrap_err().to_string();
+    let error =
+        Children::new(Path::new("/no/such/log.txt")).spawn(Name::FLUID, helper()).unwrap_err().to_string();
     assert!(error.contains("/no/such/log.txt"), "{error}");
 }
 
@@ -236,11 +240,11 @@ fn failure_comes_before_success() {
     let dir = tempfile::tempdir().unwrap();
     let run = Run::new(1, 1);
     let mut children = Children::new(&dir.path().join("log.txt"));
-    children.spawn_shell(Fluid, "exit 0", &run, Path::new("x")).unwrap();
-    children.spawn_shell(Solid, "exit 3", &run, Path::new("x")).unwrap();
+    children.spawn_shell(&run.participants[0], "exit 0", &run, Path::new("x")).unwrap();
+    children.spawn_shell(&run.participants[1], "exit 3", &run, Path::new("x")).unwrap();
     assert!(children.wait(Duration::from_secs(5)));
     let (role, status) = children.first_exit().unwrap();
-    assert_eq!((role, status.code()), (Solid, Some(3)));
+    assert_eq!((role, status.code()), (Name::SOLID, Some(3)));
 }
 
 #[test]

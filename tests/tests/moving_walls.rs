@@ -2,7 +2,7 @@
 
 use halfstep_fluid::Fluid;
 use halfstep_output::Frame;
-use halfstep_role::role::{Role, audit};
+use halfstep_role::role::Role;
 use halfstep_scene as scene;
 use halfstep_sph::lane::Isa;
 use halfstep_wire::half_step::{HalfStep, Stage};
@@ -53,7 +53,7 @@ fn a_piston_that_pushes_slowly_raises_the_water() {
     let mut heights: Vec<f64> = water().map(|x| x[1]).collect();
     heights.sort_unstable_by(f64::total_cmp);
     assert!((heights[500] - 0.125).abs() < 0.005, "median height {}", heights[500]);
-    assert!((fluid.audit()[audit::MASS] - 100.0).abs() < 1e-9);
+    assert!((fluid.audit().mass - 100.0).abs() < 1e-9);
 }
 
 #[test]
@@ -69,7 +69,7 @@ fn a_tank_that_moves_with_its_water_is_a_tank_at_rest() {
     let centroid = (0..1000).map(|k| f64::from(frame.points[k][0])).sum::<f64>() / 1000.0;
     // The water sloshes by no more than the standing tank's: a thousandth of a spacing.
     assert!((centroid - 0.55).abs() < 1e-5, "{centroid}");
-    let energy = |f: &Fluid<2>| f.audit()[audit::KINETIC_ENERGY];
+    let energy = |f: &Fluid<2>| f.audit().kinetic_energy;
     let drift = energy(&moving) - 0.5 * 100.0;
     assert!(drift.abs() < 10.0 * energy(&rest).max(1e-4), "{drift} J beside {} J at rest", energy(&rest));
 }

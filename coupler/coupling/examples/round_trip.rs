@@ -1,9 +1,11 @@
 //! How long a half step's exchange takes: from the fluid's publishing its state to its having the coupler's answer,
-//! with nothing computed in between. `cargo run --release -p halfstep --example round_trip`
+//! with nothing computed in between. `cargo run --release -p halfstep-coupling --example round_trip`
 
 use halfstep_coupling::supervise::Children;
-use halfstep_link::{Claim, CouplerLink, Expect, LinkConfig, PhaseLink, Processes, Threads, Transport};
-use halfstep_wire::failure::RoleName::{self, Coupler, Fluid, Solid};
+use halfstep_link::{
+    Claim, CouplerLink, Expect, LinkConfig, Port, ProcessLink, Processes, Threads, Transport,
+};
+use halfstep_wire::Name;
 use halfstep_wire::half_step::HalfStep;
 use halfstep_wire::protocol::{ForceHeader, ForceRecord, StateHeader, StateRecord, order};
 use std::error::Error;
@@ -21,7 +23,7 @@ fn main() -> Outcome<()> {
     if let [role] = arguments.as_slice() {
         let config = LinkConfig::from_env()?;
         return match role.as_str() {
-            "solid" => phase::<Processes>(&config, Solid).map(drop),
+            "solid" => phase::<Processes>(&config, Name::SOLID).map(drop),
             "coupler" => coupler::<Processes>(&config),
             other => Err(format!("no role: {other}").into()),
         };
@@ -44,39 +46,40 @@ fn report(roles: &str, records: u32, mut times: Vec<Duration>) {
 }
 
 fn with_processes(records: u32) -> Outcome<Vec<Duration>> {
-    let config = LinkConfig::new(records, records);
+    let config = LinkConfig::of_two(records, records);
     let _claim = Claim::new(&config)?;
     let log = std::env::temp_dir().join(format!("{}round_trip.txt", config.prefix));
     let mut children = Children::new(&log);
-    for role in [Solid, Coupler] {
+    for role in [Name::SOLID, Name::COUPLER] {
         let mut command = Command::new(std::env::current_exe()?);
         command.arg(role.to_string()).envs(config.to_env());
         children.spawn(role, command)?;
     }
-    let times = phase::<Processes>(&config, Fluid)?;
+    let times = phase::<Processes>(&config, Name::FLUID)?;
     children.wait(Duration::from_secs(5));
     std::fs::remove_file(log)?;
     Ok(times)
 }
 
 fn with_threads(records: u32) -> Outcome<Vec<Duration>> {
-    let config = LinkConfig::new(records, records);
+    let config = LinkConfig::of_two(records, records);
     let _claim = Claim::new(&config)?;
     std::thread::scope(|threads| {
-        threads.spawn(|| phase::<Threads>(&config, Solid).map(drop).expect("the solid's part"));
+        threads.spawn(|| phase::<Threads>(&config, Name::SOLID).map(drop).expect("the solid's part"));
         threads.spawn(|| coupler::<Threads>(&config).expect("the coupler's part"));
-        phase::<Threads>(&config, Fluid)
+        phase::<Threads>(&config, Name::FLUID)
     })
 }
 
-fn phase<S: Transport>(config: &LinkConfig, role: RoleName) -> Outcome<Vec<Duration>> {
-    let mut link = PhaseLink::<S>::open(config, role, None)?;
-    let count = config.capacity(role) as usize;
+fn phase<S: Transport>(config: &LinkConfig, role: Name) -> Outcome<Vec<Duration>> {
+    let mut link = ProcessLink::<S>::open(config, role, None)?;
+    let count = config.participants[0].capacity as usize;
+    let (mut states, mut forces) = (Vec::new(), Vec::new());
     let mut times = Vec::with_capacity(2 * STEPS as usize);
     for half_step in half_steps() {
         let header = StateHeader { dt_limit: 1.0, ..half_step.state_header() };
         let start = Instant::now();
-        link.send_state_from(&header, count, |slot| StateRecord {
+        link.send_state_from(0, &header, count, |slot| StateRecord {
             id: slot as u32,
             position: [slot as f64, half_step.time, 0.0],
             density: 1000.0,
@@ -84,8 +87,8 @@ fn phase<S: Transport>(config: &LinkConfig, role: RoleName) -> Outcome<Vec<Durat
             ..StateRecord::default()
         })?;
         let expect = Expect::of(&half_step);
-        drop(link.receive_peer(&expect.dt(header.dt))?);
-        drop(link.receive_forces(&expect.dt(DT))?);
+        link.receive_peer(0, 0, &expect.dt(header.dt), &mut states)?;
+        link.receive_forces(0, &expect.dt(DT), &mut forces)?;
         times.push(start.elapsed());
     }
     Ok(times)
@@ -95,17 +98,17 @@ fn coupler<S: Transport>(config: &LinkConfig) -> Outcome<()> {
     let mut link = CouplerLink::<S>::open(config, None)?;
     let zero = ForceRecord::default();
     let mut forces: Vec<ForceRecord> =
-        (0..config.fluid_capacity).map(|id| ForceRecord { id, ..zero }).collect();
+        (0..config.participants[0].capacity).map(|id| ForceRecord { id, ..zero }).collect();
     for half_step in half_steps() {
         let expect = Expect::of(&half_step).dt(half_step.state_header().dt);
-        let fluid = link.receive_state(Fluid, &expect)?;
-        let solid = link.receive_state(Solid, &expect)?;
+        let fluid = link.receive_state(0, &expect)?;
+        let solid = link.receive_state(1, &expect)?;
         for (force, (a, b)) in forces.iter_mut().zip(fluid.records().iter().zip(solid.records())) {
             force.cross_viscosity = [a.position[0] - b.position[0], a.position[1] - b.position[1], 0.0];
         }
         let header = ForceHeader { order: order::GO, ..half_step.force_header() };
-        link.send_forces(Fluid, &header, &forces)?;
-        link.send_forces(Solid, &header, &forces)?;
+        link.send_forces(0, &header, &forces)?;
+        link.send_forces(1, &header, &forces)?;
     }
     Ok(())
 }

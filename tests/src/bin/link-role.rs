@@ -4,7 +4,8 @@
 use halfstep_coupling::supervise::{Children, abort_flag};
 use halfstep_link::{Claim, LinkConfig, Processes};
 use halfstep_tests::conformance::link::play;
-use halfstep_wire::failure::RoleName;
+use halfstep_wire::Name;
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
 use std::process::{Command, ExitCode};
@@ -13,9 +14,9 @@ use std::time::Duration;
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let role = match arguments[0].as_str() {
-        "fluid" => RoleName::Fluid,
-        "solid" => RoleName::Solid,
-        "coupler" => RoleName::Coupler,
+        "fluid" => Name::FLUID,
+        "solid" => Name::SOLID,
+        "coupler" => Name::COUPLER,
         _ => return launcher(Path::new(&arguments[1])),
     };
     let flag = abort_flag().expect("a signal handler");
@@ -31,20 +32,21 @@ fn main() -> ExitCode {
 }
 
 fn launcher(dir: &Path) -> ExitCode {
-    let config = LinkConfig::new(100, 100);
+    let config = LinkConfig::of_two(100, 100);
     let _claim = Claim::new(&config).expect("a claim");
     let mut children = Children::new(&dir.join("log.txt"));
     for role in ["fluid", "solid", "coupler"] {
         let mut command = Command::new(std::env::current_exe().expect("own path"));
         command.args([role, "1000000000"]).envs(config.to_env());
-        let role = [RoleName::Fluid, RoleName::Solid, RoleName::Coupler]
+        let role = [Name::FLUID, Name::SOLID, Name::COUPLER]
             .into_iter()
             .find(|name| name.to_string() == role)
             .expect("a role");
         children.spawn(role, command).expect("a child");
     }
+    let environment: BTreeMap<&str, String> = config.to_env().into_iter().collect();
     let pids: Vec<u32> = children.pids().into_iter().map(|(_, pid)| pid).collect();
-    let state = serde_json::json!({ "config": config, "pids": pids });
+    let state = serde_json::json!({ "environment": environment, "pids": pids });
     let path = dir.join("run.json");
     std::fs::write(path.with_extension("tmp"), state.to_string()).expect("a file");
     std::fs::rename(path.with_extension("tmp"), path).expect("a file");

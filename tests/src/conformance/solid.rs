@@ -1,6 +1,6 @@
 //! What every [`SolidModel`] must do: the lock-step, prescribed particles, contact, conservation, bounds.
 
-use halfstep_role::lockstep::on_threads;
+use halfstep_role::serve::on_threads;
 use halfstep_scene::geometry;
 use halfstep_scene::{self as scene, Scene};
 use halfstep_solid::{Load, SolidModel};

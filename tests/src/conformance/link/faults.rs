@@ -1,10 +1,11 @@
 //! Messages that are wrong in one place each: the receiver says which.
 
 use super::Run;
+use super::end::End;
 use super::play;
 use super::raw::{RawCoupler, RawPhase, identified, identified_force};
-use halfstep_link::{CouplerLink, Expect, LinkError, PhaseLink, Transport};
-use halfstep_wire::failure::RoleName::{self, Coupler, Fluid, Solid};
+use halfstep_link::{CouplerLink, Expect, LinkError, Transport};
+use halfstep_wire::Name;
 use halfstep_wire::half_step::Stage::{First, Second};
 use halfstep_wire::protocol::{ForceHeader, ForceRecord, StateHeader, StateRecord, order};
 use std::thread::scope;
@@ -26,7 +27,6 @@ const STATES: &[StateFault] = &[
     ("dt", |header, _| header.dt = header.dt.next_down()),
     ("dt_limit", |header, _| header.dt_limit = f64::INFINITY),
     ("displacement", |header, _| header.displacement = f64::NAN),
-    ("probe_count", |header, _| header.probe_count = 33),
     ("epoch", |header, _| header.epoch = 6),
     ("count", |header, _| header.count -= 1),
     ("count", |header, records| {
@@ -78,7 +78,7 @@ const FORCES: &[ForceFault] = &[
 /// Step at which the wrong message is sent; epoch 7 of the fluid.
 const STEP: u64 = 370;
 
-fn is_about(error: &LinkError, sender: RoleName, wrong: &str) -> bool {
+fn is_about(error: &LinkError, sender: Name, wrong: &str) -> bool {
     match error {
         LinkError::Mismatch { peer, field, expected, found, step, stage } => {
             *peer == sender
@@ -107,16 +107,21 @@ pub fn wrong_states<S: Transport>() {
         let second = Expect::new(STEP, Second).time(time).dt(dt);
         let verdict = |receiver: &str, result: Result<(), LinkError>| match result {
             Ok(()) => assert!(field.is_empty(), "{receiver} accepted a wrong {field}"),
-            Err(error) => assert!(is_about(&error, Fluid, field), "{receiver}: {error} instead of {field}"),
+            Err(error) => {
+                assert!(is_about(&error, Name::FLUID, field), "{receiver}: {error} instead of {field}")
+            }
         };
         scope(|threads| {
             threads.spawn(move || {
                 let fluid = RawPhase::<S>::enter(run, "fluid", 100);
                 let records = |stage| -> Vec<_> {
-                    (0..play::count(Fluid, STEP)).map(|slot| play::state(Fluid, STEP, stage, slot)).collect()
+                    (0..play::count(Name::FLUID, STEP))
+                        .map(|slot| play::state(Name::FLUID, STEP, stage, slot))
+                        .collect()
                 };
                 let mut records_0 = records(First);
-                let header = |stage, count| identified(run, play::state_header(Fluid, STEP, stage), count);
+                let header =
+                    |stage, count| identified(run, play::state_header(Name::FLUID, STEP, stage), count);
                 fluid.send(header(First, records_0.len()), &records_0);
                 let mut header_1 = header(Second, records_0.len());
                 records_0 = records(Second);
@@ -125,15 +130,15 @@ pub fn wrong_states<S: Transport>() {
                 linger(|| fluid.peer.receive().unwrap().is_some());
             });
             threads.spawn(move || {
-                let mut solid = PhaseLink::<S>::open(run, Solid, None).unwrap();
+                let mut solid = End::<S>::open(run, Name::SOLID, None).unwrap();
                 drop(solid.receive_peer(&first).unwrap());
                 verdict("the solid", solid.receive_peer(&second).map(drop));
-                solid.send_state(&play::state_header(Solid, STEP, First), &[]).unwrap();
+                solid.send_state(&play::state_header(Name::SOLID, STEP, First), &[]).unwrap();
             });
             let mut coupler = CouplerLink::<S>::open(run, None).unwrap();
-            drop(coupler.receive_state(Fluid, &first).unwrap());
-            verdict("the coupler", coupler.receive_state(Fluid, &second).map(drop));
-            drop(coupler.receive_state(Solid, &Expect::new(STEP, First)).unwrap());
+            drop(coupler.receive_state(0, &first).unwrap());
+            verdict("the coupler", coupler.receive_state(0, &second).map(drop));
+            drop(coupler.receive_state(1, &Expect::new(STEP, First)).unwrap());
         });
     }
 }
@@ -147,22 +152,24 @@ pub fn wrong_forces<S: Transport>() {
         let (time, dt) = play::clock(STEP);
         scope(|threads| {
             threads.spawn(move || {
-                let mut fluid = PhaseLink::<S>::open(run, Fluid, None).unwrap();
-                let records: Vec<_> = (0..play::count(Fluid, STEP))
-                    .map(|slot| play::state(Fluid, STEP, Second, slot))
+                let mut fluid = End::<S>::open(run, Name::FLUID, None).unwrap();
+                let records: Vec<_> = (0..play::count(Name::FLUID, STEP))
+                    .map(|slot| play::state(Name::FLUID, STEP, Second, slot))
                     .collect();
-                fluid.send_state(&play::state_header(Fluid, STEP, Second), &records).unwrap();
+                fluid.send_state(&play::state_header(Name::FLUID, STEP, Second), &records).unwrap();
                 match fluid.receive_forces(&Expect::new(STEP, Second).time(time).dt(dt)).map(drop) {
                     Ok(()) => assert!(field.is_empty(), "accepted a wrong {field}"),
-                    Err(error) => assert!(is_about(&error, Coupler, field), "{error} instead of {field}"),
+                    Err(error) => {
+                        assert!(is_about(&error, Name::COUPLER, field), "{error} instead of {field}")
+                    }
                 }
-                fluid.send_state(&play::state_header(Fluid, STEP, Second), &records).unwrap();
+                fluid.send_state(&play::state_header(Name::FLUID, STEP, Second), &records).unwrap();
             });
             threads.spawn(move || {
-                let mut solid = PhaseLink::<S>::open(run, Solid, None).unwrap();
+                let mut solid = End::<S>::open(run, Name::SOLID, None).unwrap();
                 drop(solid.receive_peer(&Expect::new(STEP, Second)).unwrap());
                 drop(solid.receive_peer(&Expect::new(STEP, Second)).unwrap());
-                solid.send_state(&play::state_header(Solid, STEP, Second), &[]).unwrap();
+                solid.send_state(&play::state_header(Name::SOLID, STEP, Second), &[]).unwrap();
             });
             let coupler = RawCoupler::<S>::enter(run);
             let mut state = None;
@@ -173,7 +180,8 @@ pub fn wrong_forces<S: Transport>() {
             let zero = StateRecord::default();
             let mut forces: Vec<_> =
                 state.take().unwrap().payload().iter().map(|slot| play::force(&slot.0, &zero)).collect();
-            let mut header = identified_force(run, play::force_header(Fluid, STEP, Second), forces.len());
+            let mut header =
+                identified_force(run, play::force_header(Name::FLUID, STEP, Second), forces.len());
             spoil(&mut header, &mut forces);
             coupler.role.send(&coupler.forces[0], header, &forces);
             linger(|| coupler.states[0].receive().unwrap().is_some());

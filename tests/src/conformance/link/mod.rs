@@ -1,6 +1,7 @@
 //! What every transport of the link must do: [`suite`] has the cases, [`play`] a run with known values, [`raw`] a
 //! peer that is written against the wire alone and can therefore lie.
 
+pub mod end;
 pub mod faults;
 pub mod play;
 pub mod raw;
@@ -21,7 +22,7 @@ impl Run {
         Self(LinkConfig {
             handshake_seconds: 20.0,
             patience_seconds: 20.0,
-            ..LinkConfig::new(fluid_capacity, solid_capacity)
+            ..LinkConfig::of_two(fluid_capacity, solid_capacity)
         })
     }
 

@@ -1,7 +1,8 @@
 //! A run whose every value is known beforehand, so that each role can check all it receives.
 
-use halfstep_link::{CouplerLink, Expect, LinkConfig, LinkError, LinkTimes, PhaseLink, Transport};
-use halfstep_wire::failure::RoleName;
+use super::end::End;
+use halfstep_link::{CouplerLink, Expect, LinkConfig, LinkError, LinkTimes, Transport};
+use halfstep_wire::Name;
 use halfstep_wire::half_step::{HalfStep, Stage};
 use halfstep_wire::protocol::{
     ForceHeader, ForceRecord, LAST_STAGE, StateHeader, StateRecord, order, status,
@@ -13,26 +14,26 @@ use std::sync::atomic::AtomicBool;
 const EPOCH: u64 = 50;
 
 /// Number of particles that a phase publishes at a step.
-pub fn count(role: RoleName, step: u64) -> usize {
+pub fn count(role: Name, step: u64) -> usize {
     match role {
-        RoleName::Fluid => 20 + (epoch(role, step) as usize * 7) % 30,
+        Name::FLUID => 20 + (epoch(role, step) as usize * 7) % 30,
         _ => 12,
     }
 }
 
 /// Epoch of a phase's set at a step.
-pub fn epoch(role: RoleName, step: u64) -> u64 {
-    if role == RoleName::Fluid { step / EPOCH } else { 0 }
+pub fn epoch(role: Name, step: u64) -> u64 {
+    if role == Name::FLUID { step / EPOCH } else { 0 }
 }
 
 /// A number that belongs to this place alone.
-fn value(role: RoleName, step: u64, stage: Stage, slot: usize, component: usize) -> f64 {
+fn value(role: Name, step: u64, stage: Stage, slot: usize, component: usize) -> f64 {
     let key = ((step * 2 + u64::from(stage.number())) * 100 + slot as u64) * 16 + component as u64;
-    (key as f64 + if role == RoleName::Fluid { 0.25 } else { 0.5 }) / 3.0
+    (key as f64 + if role == Name::FLUID { 0.25 } else { 0.5 }) / 3.0
 }
 
 /// The record in a slot.
-pub fn state(role: RoleName, step: u64, stage: Stage, slot: usize) -> StateRecord {
+pub fn state(role: Name, step: u64, stage: Stage, slot: usize) -> StateRecord {
     let v = |component| value(role, step, stage, slot, component);
     StateRecord {
         id: (slot * 3) as u32 + epoch(role, step) as u32,
@@ -70,26 +71,26 @@ fn half_step(step: u64, stage: Stage) -> HalfStep {
 }
 
 /// The header of a state.
-pub fn state_header(role: RoleName, step: u64, stage: Stage) -> StateHeader {
+pub fn state_header(role: Name, step: u64, stage: Stage) -> StateHeader {
     header_of(role, &half_step(step, stage))
 }
 
-fn header_of(role: RoleName, half_step: &HalfStep) -> StateHeader {
+fn header_of(role: Name, half_step: &HalfStep) -> StateHeader {
     StateHeader { epoch: epoch(role, half_step.step), dt_limit: 1.0, ..half_step.state_header() }
 }
 
 /// The header of the answer to a state.
-pub fn force_header(role: RoleName, step: u64, stage: Stage) -> ForceHeader {
+pub fn force_header(role: Name, step: u64, stage: Stage) -> ForceHeader {
     ForceHeader { order: order::GO, epoch: epoch(role, step), ..half_step(step, stage).force_header() }
 }
 
 /// Plays a phase until it is told to stop. Panics where a value is wrong.
 pub fn phase<S: Transport>(
     config: &LinkConfig,
-    role: RoleName,
+    role: Name,
     abort: Option<Arc<AtomicBool>>,
 ) -> Result<LinkTimes, LinkError> {
-    let mut link = PhaseLink::<S>::open(config, role, abort)?;
+    let mut link = End::<S>::open(config, role, abort)?;
     let mut half_step = HalfStep::begin(0, 0.0);
     loop {
         let HalfStep { step, stage, .. } = half_step;
@@ -103,7 +104,12 @@ pub fn phase<S: Transport>(
         }
         let expect = Expect::of(&half_step);
         let peer = link.receive_peer(&expect.dt(header.dt))?;
-        check_states(role.peer(), step, stage, peer.records());
+        check_states(
+            if role == Name::FLUID { Name::SOLID } else { Name::FLUID },
+            step,
+            stage,
+            peer.records(),
+        );
         let forces = link.receive_forces(&expect)?;
         let answer = forces.header();
         if answer.order & order::STOP != 0 {
@@ -127,26 +133,26 @@ pub fn coupler<S: Transport>(
     abort: Option<Arc<AtomicBool>>,
 ) -> Result<LinkTimes, LinkError> {
     let mut link = CouplerLink::<S>::open(config, abort)?;
-    let roles = [RoleName::Fluid, RoleName::Solid];
+    let roles = [Name::FLUID, Name::SOLID];
     let mut time = 0.0;
     for step in 0..=steps {
         let dt = step_size(step);
         for half_step in HalfStep::begin(step, time).lasting(dt).both() {
             let stage = half_step.stage;
             let expect = Expect::of(&half_step).dt(half_step.state_header().dt);
-            let fluid = link.receive_state(RoleName::Fluid, &expect)?;
-            let solid = link.receive_state(RoleName::Solid, &expect)?;
-            check_states(RoleName::Fluid, step, stage, fluid.records());
-            check_states(RoleName::Solid, step, stage, solid.records());
-            for role in roles {
+            let fluid = link.receive_state(0, &expect)?;
+            let solid = link.receive_state(1, &expect)?;
+            check_states(Name::FLUID, step, stage, fluid.records());
+            check_states(Name::SOLID, step, stage, solid.records());
+            for (place, role) in roles.into_iter().enumerate() {
                 let (own, other) = match role {
-                    RoleName::Fluid => (fluid.records(), solid.records()),
+                    Name::FLUID => (fluid.records(), solid.records()),
                     _ => (solid.records(), fluid.records()),
                 };
                 let mut header = force_header(role, step, stage);
                 if step == steps {
                     header.order = order::STOP;
-                    link.send_forces(role, &header, &[])?;
+                    link.send_forces(place, &header, &[])?;
                     continue;
                 }
                 let forces: Vec<ForceRecord> = own
@@ -154,11 +160,11 @@ pub fn coupler<S: Transport>(
                     .enumerate()
                     .map(|(slot, record)| force(record, &other[slot % other.len()]))
                     .collect();
-                link.send_forces(role, &header, &forces)?;
+                link.send_forces(place, &header, &forces)?;
             }
             if step == steps {
-                for role in roles {
-                    let last = link.receive_state(role, &Expect::last(step))?;
+                for place in 0..roles.len() {
+                    let last = link.receive_state(place, &Expect::last(step))?;
                     assert_eq!((last.header().status, last.records().len()), (status::FINISHED, 0));
                 }
                 return Ok(link.times());
@@ -169,7 +175,7 @@ pub fn coupler<S: Transport>(
     unreachable!("the last step returns")
 }
 
-fn check_states(role: RoleName, step: u64, stage: Stage, records: &[StateRecord]) {
+fn check_states(role: Name, step: u64, stage: Stage, records: &[StateRecord]) {
     assert_eq!(records.len(), count(role, step), "{role} {step} {stage}");
     for (slot, record) in records.iter().enumerate() {
         assert_eq!(*record, state(role, step, stage, slot), "{role} {step} {stage} {slot}");
@@ -179,12 +185,12 @@ fn check_states(role: RoleName, step: u64, stage: Stage, records: &[StateRecord]
 /// Plays any role.
 pub fn role<S: Transport>(
     config: &LinkConfig,
-    role: RoleName,
+    role: Name,
     steps: u64,
     abort: Option<Arc<AtomicBool>>,
 ) -> Result<LinkTimes, LinkError> {
     match role {
-        RoleName::Coupler => coupler::<S>(config, steps, abort),
+        Name::COUPLER => coupler::<S>(config, steps, abort),
         phase_name => phase::<S>(config, phase_name, abort),
     }
 }

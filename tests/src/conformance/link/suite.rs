@@ -1,18 +1,19 @@
 //! The regular course of a run, and its ends.
 
+use super::end::End;
 use super::play;
 use super::raw::{RawPhase, RawRole, identified};
 use super::{Run, eventually};
-use halfstep_link::{Claim, CouplerLink, Expect, LinkConfig, LinkError, PhaseLink, Transport};
-use halfstep_wire::failure::RoleName::{self, Coupler, Fluid, Solid};
+use halfstep_link::{Claim, CouplerLink, Expect, LinkConfig, LinkError, Transport};
+use halfstep_wire::Name;
 use halfstep_wire::half_step::Stage::{First, Second};
-use halfstep_wire::protocol::{StateHeader, StateRecord, status};
+use halfstep_wire::protocol::{Failure, StateHeader, StateRecord, status};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{scope, sleep};
 use std::time::{Duration, Instant};
 
-const ROLES: [RoleName; 3] = [Fluid, Solid, Coupler];
+const ROLES: [Name; 3] = [Name::FLUID, Name::SOLID, Name::COUPLER];
 /// Well below a run's patience of 20 s, and enough for a machine with other work.
 const SOON: Duration = Duration::from_secs(5);
 
@@ -66,11 +67,11 @@ pub fn role_taken<S: Transport>() {
     let run = Run::new(100, 100);
     let run = &*run;
     scope(|threads| {
-        let fluid = threads.spawn(move || play::phase::<S>(run, Fluid, None));
+        let fluid = threads.spawn(move || play::phase::<S>(run, Name::FLUID, None));
         sleep(Duration::from_millis(100));
-        let second = PhaseLink::<S>::open(run, Fluid, None).map(drop);
-        assert_eq!(second, Err(LinkError::RoleTaken { role: Fluid }));
-        threads.spawn(move || play::phase::<S>(run, Solid, None).unwrap());
+        let second = End::<S>::open(run, Name::FLUID, None).map(drop);
+        assert_eq!(second, Err(LinkError::RoleTaken { role: Name::FLUID }));
+        threads.spawn(move || play::phase::<S>(run, Name::SOLID, None).unwrap());
         play::coupler::<S>(run, 20, None).unwrap();
         fluid.join().unwrap().unwrap();
     });
@@ -80,15 +81,19 @@ pub fn role_taken<S: Transport>() {
 pub fn handshake_timeout<S: Transport>() {
     let run = Run::new(100, 100);
     let config = LinkConfig { handshake_seconds: 0.3, ..run.0.clone() };
-    let error = PhaseLink::<S>::open(&config, Solid, None).map(drop);
+    let error = End::<S>::open(&config, Name::SOLID, None).map(drop);
     assert_eq!(
         error,
-        Err(LinkError::HandshakeTimeout { role: Solid, missing: vec![Fluid, Coupler], seconds: 0.3 })
+        Err(LinkError::HandshakeTimeout {
+            role: Name::SOLID,
+            missing: vec![Name::FLUID, Name::COUPLER],
+            seconds: 0.3
+        })
     );
     let flag = Arc::new(AtomicBool::new(false));
     let error = scope(|threads| {
         threads.spawn(|| {
-            let solid = PhaseLink::<S>::open(&run, Solid, Some(Arc::clone(&flag))).map(drop);
+            let solid = End::<S>::open(&run, Name::SOLID, Some(Arc::clone(&flag))).map(drop);
             assert_eq!(solid, Err(LinkError::Aborted));
         });
         sleep(Duration::from_millis(50));
@@ -96,22 +101,25 @@ pub fn handshake_timeout<S: Transport>() {
         flag.store(true, Ordering::Relaxed);
         error
     });
-    assert_eq!(error, Err(LinkError::HandshakeTimeout { role: Coupler, missing: vec![Fluid], seconds: 0.3 }));
+    assert_eq!(
+        error,
+        Err(LinkError::HandshakeTimeout { role: Name::COUPLER, missing: vec![Name::FLUID], seconds: 0.3 })
+    );
 }
 
 /// Opens a link of each role in its own thread and hands it to a closure.
 pub fn with_links<S: Transport>(
     config: &LinkConfig,
     abort: Option<Arc<AtomicBool>>,
-    fluid: impl FnOnce(PhaseLink<S>) + Send,
-    solid: impl FnOnce(PhaseLink<S>) + Send,
+    fluid: impl FnOnce(End<S>) + Send,
+    solid: impl FnOnce(End<S>) + Send,
     coupler: impl FnOnce(CouplerLink<S>),
 ) {
     scope(|threads| {
         let flag = abort.clone();
-        threads.spawn(move || fluid(PhaseLink::open(config, Fluid, flag).unwrap()));
+        threads.spawn(move || fluid(End::open(config, Name::FLUID, flag).unwrap()));
         let flag = abort.clone();
-        threads.spawn(move || solid(PhaseLink::open(config, Solid, flag).unwrap()));
+        threads.spawn(move || solid(End::open(config, Name::SOLID, flag).unwrap()));
         coupler(CouplerLink::open(config, abort).unwrap());
     });
 }
@@ -127,7 +135,7 @@ pub fn peer_leaves<S: Transport>() {
         |mut fluid| {
             let start = Instant::now();
             let error = fluid.receive_peer(&expect).map(drop);
-            assert_eq!(error, Err(LinkError::PeerDied { peer: Solid }));
+            assert_eq!(error, Err(LinkError::PeerDied { peer: Name::SOLID }));
             soon(start);
             // To say so to those who are left is still possible.
             let header = StateHeader { status: status::FAILED, ..StateHeader::default() };
@@ -136,10 +144,10 @@ pub fn peer_leaves<S: Transport>() {
         drop,
         |mut coupler| {
             let start = Instant::now();
-            let error = coupler.receive_state(Solid, &expect).map(drop);
-            assert_eq!(error, Err(LinkError::PeerDied { peer: Solid }));
+            let error = coupler.receive_state(1, &expect).map(drop);
+            assert_eq!(error, Err(LinkError::PeerDied { peer: Name::SOLID }));
             soon(start);
-            let last = coupler.receive_state(Fluid, &expect).unwrap();
+            let last = coupler.receive_state(0, &expect).unwrap();
             assert_eq!(last.header().status, status::FAILED);
         },
     );
@@ -149,8 +157,8 @@ pub fn peer_leaves<S: Transport>() {
 pub fn last_words<S: Transport>() {
     let run = Run::new(100, 100);
     let read = |header: &StateHeader| {
-        assert_eq!((header.status, header.failure_particle), (status::DIVERGED, 17));
-        assert!(header.failure_value.is_nan());
+        assert_eq!((header.status, header.failure.particle), (status::DIVERGED, 17));
+        assert!(header.failure.value.is_nan());
     };
     with_links::<S>(
         &run,
@@ -159,13 +167,12 @@ pub fn last_words<S: Transport>() {
             sleep(Duration::from_millis(150));
             read(fluid.receive_peer(&Expect::new(4, Second)).unwrap().header());
             let error = fluid.receive_peer(&Expect::new(4, Second)).map(drop);
-            assert_eq!(error, Err(LinkError::PeerDied { peer: Solid }));
+            assert_eq!(error, Err(LinkError::PeerDied { peer: Name::SOLID }));
         },
         |mut solid| {
             let header = StateHeader {
                 status: status::DIVERGED,
-                failure_particle: 17,
-                failure_value: f64::NAN,
+                failure: Failure { particle: 17, value: f64::NAN, ..Failure::default() },
                 time: f64::NAN,
                 ..StateHeader::default()
             };
@@ -173,7 +180,7 @@ pub fn last_words<S: Transport>() {
         },
         |mut coupler| {
             sleep(Duration::from_millis(150));
-            read(coupler.receive_state(Solid, &Expect::new(4, Second)).unwrap().header());
+            read(coupler.receive_state(1, &Expect::new(4, Second)).unwrap().header());
         },
     );
 }
@@ -189,9 +196,10 @@ pub fn silence<S: Transport>() {
         None,
         |mut fluid| {
             let error = fluid.receive_peer(&Expect::new(0, First)).map(drop);
-            assert_eq!(error, Err(LinkError::Timeout { peer: Solid, seconds: 0.4 }));
-            let results: Vec<_> =
-                (0..3).map(|step| fluid.send_state(&play::state_header(Fluid, step, First), &[])).collect();
+            assert_eq!(error, Err(LinkError::Timeout { peer: Name::SOLID, seconds: 0.4 }));
+            let results: Vec<_> = (0..3)
+                .map(|step| fluid.send_state(&play::state_header(Name::FLUID, step, First), &[]))
+                .collect();
             assert_eq!(results[..2], [Ok(()), Ok(())]);
             assert!(matches!(results[2], Err(LinkError::Timeout { seconds: 0.4, .. })), "{results:?}");
             done.store(true, Ordering::Relaxed);
@@ -229,24 +237,24 @@ pub fn abort<S: Transport>() {
                     sleep(Duration::from_millis(150));
                     flag.store(true, Ordering::Relaxed);
                 });
-                is_aborted(coupler.receive_state(Fluid, &Expect::new(0, First)).map(drop));
+                is_aborted(coupler.receive_state(0, &Expect::new(0, First)).map(drop));
             });
             set.store(true, Ordering::Relaxed);
         },
     );
-    is_aborted(PhaseLink::<S>::open(&run, Fluid, Some(flag)).map(drop));
+    is_aborted(End::<S>::open(&run, Name::FLUID, Some(flag)).map(drop));
 }
 
 /// More particles than there is room for: refused where they are sent, and where they come from a stranger.
 pub fn capacity<S: Transport>() {
     let run = Run::new(10, 10);
-    let records: Vec<StateRecord> = (0..11).map(|slot| play::state(Fluid, 0, First, slot)).collect();
+    let records: Vec<StateRecord> = (0..11).map(|slot| play::state(Name::FLUID, 0, First, slot)).collect();
     let too_many =
         |peer| LinkError::Capacity { peer, needed: 11, capacity: 10, key: LinkError::CAPACITY_KEY };
     scope(|threads| {
         threads.spawn(|| {
             let fluid = RawPhase::<S>::enter(&run, "fluid", 11);
-            fluid.send(identified(&run, play::state_header(Fluid, 0, First), 11), &records);
+            fluid.send(identified(&run, play::state_header(Name::FLUID, 0, First), 11), &records);
             eventually(20.0, "the solid's end", || {
                 fluid
                     .peer
@@ -256,17 +264,17 @@ pub fn capacity<S: Transport>() {
             });
         });
         threads.spawn(|| {
-            let mut solid = PhaseLink::<S>::open(&run, Solid, None).unwrap();
-            let header = play::state_header(Solid, 0, First);
-            assert_eq!(solid.send_state(&header, &records), Err(too_many(Solid)));
+            let mut solid = End::<S>::open(&run, Name::SOLID, None).unwrap();
+            let header = play::state_header(Name::SOLID, 0, First);
+            assert_eq!(solid.send_state(&header, &records), Err(too_many(Name::SOLID)));
             let error = solid.receive_peer(&Expect::new(0, First)).map(drop);
-            assert_eq!(error, Err(too_many(Fluid)));
+            assert_eq!(error, Err(too_many(Name::FLUID)));
             solid.send_state(&StateHeader { status: status::FAILED, ..header }, &[]).unwrap();
         });
         let mut coupler = CouplerLink::<S>::open(&run, None).unwrap();
-        let error = coupler.receive_state(Fluid, &Expect::new(0, First)).map(drop);
-        assert_eq!(error, Err(too_many(Fluid)));
-        let last = coupler.receive_state(Solid, &Expect::new(0, First)).unwrap();
+        let error = coupler.receive_state(0, &Expect::new(0, First)).map(drop);
+        assert_eq!(error, Err(too_many(Name::FLUID)));
+        let last = coupler.receive_state(1, &Expect::new(0, First)).unwrap();
         assert_eq!(last.header().status, status::FAILED);
     });
 }
@@ -276,7 +284,7 @@ pub fn strangers<S: Transport>() {
     let run = Run::new(10, 10);
     let _claim = Claim::new(&run).unwrap();
     let is_refused = |channel: &str, what: &str| {
-        let error = PhaseLink::<S>::open(&run, Solid, None).map(drop).unwrap_err();
+        let error = End::<S>::open(&run, Name::SOLID, None).map(drop).unwrap_err();
         match &error {
             LinkError::Incompatible { service, reason } => {
                 assert_eq!(service, channel);
