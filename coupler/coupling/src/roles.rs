@@ -11,7 +11,7 @@ use halfstep_wire::failure::RoleName;
 pub fn build(role: RoleName, scene: &Scene, isa: Isa) -> Option<Box<dyn Role>> {
     match role {
         RoleName::Fluid => Fluid::<2>::new(scene, isa).map(|f| Box::new(f) as Box<dyn Role>),
-        RoleName::Solid => Solid::<2>::new(scene, isa).map(|s| Box::new(s) as Box<dyn Role>),
+        RoleName::Solid => Solid::<2>::new(scene, 0, isa).map(|s| Box::new(s) as Box<dyn Role>),
         RoleName::Coupler => None,
     }
 }
