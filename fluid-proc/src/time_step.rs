@@ -26,10 +26,11 @@ impl Limits {
         if fluid.viscosity > 0.0 {
             limits.fixed = 0.125 * h * h * fluid.density / fluid.viscosity;
         }
-        let Some(solid) = scene.solids.first() else { return limits };
-        match scene.interface.treatment {
-            Treatment::MovingWall => limits.courant /= (fluid.density / solid.density).sqrt().max(1.0),
-            Treatment::PhaseBlind => {
+        let mut lightest = 1.0_f64;
+        for solid in &scene.solids {
+            if scene.interface.treatment == Treatment::MovingWall {
+                lightest = lightest.max((fluid.density / solid.density).sqrt());
+            } else {
                 let c = scene.interface.cross_viscosity * 0.5 * (fluid.sound_speed + solid.sound_speed());
                 let mean = 0.5 * (fluid.density + solid.density);
                 if c > 0.0 {
@@ -37,6 +38,7 @@ impl Limits {
                 }
             }
         }
+        limits.courant /= lightest;
         limits
     }
 

@@ -1,31 +1,50 @@
 //! The solid's effects: what takes part in a scene with solid, and why.
 
 use crate::sleep::TOLERANCE;
-use halfstep_scene::{Decision, Derived, EffectName, Phase, Scene, SolidModelName};
+use halfstep_scene::{Decision, Derived, EffectName, Scene, Shape, SolidModelName};
 
-/// What a scene with solid decides about each of its effects.
+const EFFECTS: [EffectName; 6] = [
+    EffectName::ArtificialStress,
+    EffectName::RenormalisedGradient,
+    EffectName::ClampFace,
+    EffectName::WallClamp,
+    EffectName::WallContact,
+    EffectName::SleepingSolid,
+];
+
+/// What a scene decides about each of the effects of its solids: an effect takes part where one of them has it.
 pub fn decide(scene: &Scene) -> Vec<Decision> {
-    [
-        EffectName::ArtificialStress,
-        EffectName::RenormalisedGradient,
-        EffectName::ClampFace,
-        EffectName::WallClamp,
-        EffectName::WallContact,
-        EffectName::SleepingSolid,
-    ]
-    .map(|effect| Decision::new(scene, effect, derive(scene, effect)))
-    .into()
+    let solids = 0..scene.solids.len().max(1);
+    let summary = |effect| {
+        let each: Vec<Decision> = solids.clone().map(|solid| decision(scene, solid, effect)).collect();
+        let why = match each.iter().all(|d| d.why == each[0].why) {
+            true => each[0].why.clone(),
+            false => {
+                let of =
+                    each.iter().zip(&scene.solids).map(|(d, solid)| format!("{}: {}", solid.name, d.why));
+                of.collect::<Vec<_>>().join("; ")
+            }
+        };
+        Decision { effect, on: each.iter().any(|d| d.on), why }
+    };
+    EFFECTS.map(summary).into()
 }
 
-/// An effect of the solid takes part.
-pub(crate) fn takes_part(scene: &Scene, effect: EffectName) -> bool {
-    Decision::new(scene, effect, derive(scene, effect)).on
+/// What a scene decides about an effect of its solid of that index.
+pub fn decision(scene: &Scene, solid: usize, effect: EffectName) -> Decision {
+    Decision::new(scene, effect, derive(scene, solid, effect))
 }
 
-fn derive(scene: &Scene, effect: EffectName) -> Derived {
-    let Some(solid) = scene.solids.first() else {
+/// An effect of the scene's solid of that index takes part.
+pub(crate) fn takes_part(scene: &Scene, solid: usize, effect: EffectName) -> bool {
+    decision(scene, solid, effect).on
+}
+
+fn derive(scene: &Scene, k: usize, effect: EffectName) -> Derived {
+    let Some(solid) = scene.solids.get(k) else {
         return Derived::Impossible("the scene has no solid".into());
     };
+    let mut shapes = scene.shapes.iter().filter(|s| s.solid == Some(k));
     let hypoelastic = solid.model == SolidModelName::Hypoelastic;
     match effect {
         EffectName::ArtificialStress if !hypoelastic => {
@@ -50,7 +69,7 @@ fn derive(scene: &Scene, effect: EffectName) -> Derived {
         EffectName::WallClamp if !hypoelastic => {
             Derived::Impossible("only the hypoelastic solid's clamps carry stress".into())
         }
-        EffectName::ClampFace | EffectName::WallClamp if scene.shapes.iter().all(|s| s.clamp.is_empty()) => {
+        EffectName::ClampFace | EffectName::WallClamp if shapes.all(|s| s.clamp.is_empty()) => {
             Derived::Impossible("nothing is clamped".into())
         }
         EffectName::ClampFace => Derived::On("clamps hold at their boxes' faces".into()),
@@ -58,7 +77,7 @@ fn derive(scene: &Scene, effect: EffectName) -> Derived {
         EffectName::SleepingSolid if scene.fluid.is_none() => {
             Derived::Impossible("no fluid that could wake it".into())
         }
-        EffectName::SleepingSolid if !begins_at_rest(scene) => Derived::Impossible(
+        EffectName::SleepingSolid if !shapes.all(begins_at_rest) => Derived::Impossible(
             "a solid that is not clamped, or that starts with a velocity, moves by itself".into(),
         ),
         EffectName::SleepingSolid => Derived::On(format!(
@@ -70,8 +89,7 @@ fn derive(scene: &Scene, effect: EffectName) -> Derived {
     }
 }
 
-/// Every solid shape is clamped somewhere and starts with no velocity.
-fn begins_at_rest(scene: &Scene) -> bool {
-    let mut solids = scene.shapes.iter().filter(|s| s.phase == Phase::Solid);
-    solids.all(|s| !s.clamp.is_empty() && s.velocity == [0.0; 3] && s.cantilever_mode.is_none())
+/// A shape that is clamped somewhere and starts with no velocity.
+fn begins_at_rest(shape: &Shape) -> bool {
+    !shape.clamp.is_empty() && shape.velocity == [0.0; 3] && shape.cantilever_mode.is_none()
 }

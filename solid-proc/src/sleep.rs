@@ -130,7 +130,7 @@ mod tests {
     fn it_falls_asleep_after_half_a_period_and_wakes_at_a_force() {
         let scene = scene();
         let solid = scene.solids[0].clone();
-        let model = Hypoelastic::<2>::new(&scene, Isa::detect()).unwrap();
+        let model = Hypoelastic::<2>::new(&scene, 0, Isa::detect()).unwrap();
         let mut sleep = Sleep::new(&scene, &solid, &model);
         let window = 0.5 * slowest_period(&solid, 0.08, 0.01);
         let [first, second] = HalfStep::begin(0, 0.0).lasting(0.6 * window).both();

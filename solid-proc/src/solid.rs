@@ -44,23 +44,23 @@ enum Measurement {
 }
 
 impl<const D: usize> Solid<D> {
-    /// The solid of a scene that has one, with the model that it names.
-    pub fn new(scene: &Scene, isa: Isa) -> Option<Self> {
-        let solid = scene.solids.first()?;
-        let model: Box<dyn SolidModel<D>> = match solid.model {
-            SolidModelName::Hypoelastic => Box::new(Hypoelastic::<D>::new(scene, isa)?),
-            SolidModelName::TotalLagrangian => Box::new(TotalLagrangian::<D>::new(scene, isa)?),
+    /// The scene's solid of that index, with the model that it names.
+    pub fn new(scene: &Scene, solid: usize, isa: Isa) -> Option<Self> {
+        let model: Box<dyn SolidModel<D>> = match scene.solids.get(solid)?.model {
+            SolidModelName::Hypoelastic => Box::new(Hypoelastic::<D>::new(scene, solid, isa)?),
+            SolidModelName::TotalLagrangian => Box::new(TotalLagrangian::<D>::new(scene, solid, isa)?),
         };
-        Some(Self::with_model(scene, isa, model))
+        Some(Self::with_model(scene, solid, isa, model))
     }
 
     /// With any model.
-    pub fn with_model(scene: &Scene, isa: Isa, model: Box<dyn SolidModel<D>>) -> Self {
+    pub fn with_model(scene: &Scene, solid: usize, isa: Isa, model: Box<dyn SolidModel<D>>) -> Self {
         let phase_blind = scene.interface.treatment == Treatment::PhaseBlind;
-        let interface = Parameters::<D>::new(scene, 0, isa).filter(|_| phase_blind).map(Interface::new);
+        let interface = Parameters::<D>::new(scene, solid, isa).filter(|_| phase_blind).map(Interface::new);
         let probes = scene
             .probes
             .iter()
+            .filter(|p| p.solid == Some(solid))
             .filter_map(|p| match p.kind {
                 ProbeKind::Displacement { at } => {
                     let references = (0..model.particles() as u32).map(|p| model.reference(p));
@@ -77,10 +77,11 @@ impl<const D: usize> Solid<D> {
                 _ => None,
             })
             .collect();
-        let sleep = takes_part(scene, EffectName::SleepingSolid)
-            .then(|| scene.solids.first().map(|solid| Sleep::new(scene, solid, model.as_ref())))
+        let material = scene.solids.get(solid);
+        let sleep = takes_part(scene, solid, EffectName::SleepingSolid)
+            .then(|| material.map(|material| Sleep::new(scene, material, model.as_ref())))
             .flatten();
-        let name = scene.solids.first().and_then(|solid| solid.name.parse().ok()).unwrap_or(Name::SOLID);
+        let name = material.and_then(|solid| solid.name.parse().ok()).unwrap_or(Name::SOLID);
         Self {
             name,
             sleep,
@@ -89,9 +90,9 @@ impl<const D: usize> Solid<D> {
             model,
             interface,
             probes,
-            sub_steps: SubStepping::of(scene),
+            sub_steps: SubStepping::of(scene, solid),
             taken: 1,
-            density: scene.solids.first().map_or(1.0, |s| s.density),
+            density: material.map_or(1.0, |s| s.density),
             cross_pairs: 0,
         }
     }

@@ -10,12 +10,12 @@ pub struct SubStepping {
 }
 
 impl SubStepping {
-    /// What a scene asks for.
-    pub fn of(scene: &Scene) -> Self {
+    /// What a scene asks for of its solid of that index.
+    pub fn of(scene: &Scene, solid: usize) -> Self {
         // Phase-blind, a particle close to the interface is as stiff as the solid; without fluid there is nothing to
         // sub-step under: the solid's own limit is the time step.
         let single = scene.interface.treatment == Treatment::PhaseBlind || scene.fluid.is_none();
-        let wanted = match scene.solids.first() {
+        let wanted = match scene.solids.get(solid) {
             Some(solid) if !single => solid.sub_steps,
             _ => SubSteps::Fixed(1),
         };

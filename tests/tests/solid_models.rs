@@ -16,7 +16,7 @@ macro_rules! conformance {
             const MODEL: Make = Make { build, keys: $keys };
 
             fn build(scene: &Scene, isa: Isa) -> Option<Box<dyn SolidModel<2>>> {
-                Some(Box::new($model::<2>::new(scene, isa)?))
+                Some(Box::new($model::<2>::new(scene, 0, isa)?))
             }
 
             $(

@@ -16,7 +16,10 @@ pub fn build(place: usize, scene: &Scene, isa: Isa) -> Option<Box<dyn Role>> {
     let participants = scene.participants();
     match participants.get(place)?.phase {
         Phase::Fluid => Fluid::<2>::new(scene, isa).map(|f| Box::new(f) as Box<dyn Role>),
-        Phase::Solid => Solid::<2>::new(scene, isa).map(|s| Box::new(s) as Box<dyn Role>),
+        Phase::Solid => {
+            let solid = place - usize::from(scene.fluid.is_some());
+            Solid::<2>::new(scene, solid, isa).map(|s| Box::new(s) as Box<dyn Role>)
+        }
         Phase::Wall => None,
     }
 }

@@ -52,7 +52,7 @@ pub fn describe(scene: &Scene, isa: Isa) -> String {
         format!("{dt:.3e} s: {:.0} steps to t = {} s", (scene.end_time / dt).ceil(), scene.end_time),
     );
     if let (Some(limit), true) = (solid_limit, scene.fluid.is_some()) {
-        let stepping = SubStepping::of(scene);
+        let stepping = SubStepping::of(scene, 0);
         let own = limit / f64::from(stepping.most());
         line("solid sub-steps", format!("{} (one is stable to {own:.3e} s)", stepping.choose(dt, own)));
     }

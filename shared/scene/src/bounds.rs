@@ -48,9 +48,9 @@ impl Bounds {
         Some(Self { density: fluid.density, density_change: 0.3, speed })
     }
 
-    /// Of a scene's solid.
-    pub fn of_solid(scene: &Scene) -> Option<Self> {
-        let solid = scene.solids.first()?;
+    /// Of the scene's solid of that index.
+    pub fn of_solid(scene: &Scene, solid: usize) -> Option<Self> {
+        let solid = scene.solids.get(solid)?;
         let speed = 0.25 * solid.pressure_wave_speed() + 3.0 * flow_speed(scene);
         Some(Self { density: solid.density, density_change: 0.5, speed })
     }
@@ -96,10 +96,11 @@ pub fn flow_speed(scene: &Scene) -> f64 {
     let domain = geometry::domain(scene);
     let fall: f64 = (0..3).map(|a| scene.gravity[a].abs() * (domain.max[a] - domain.min[a])).sum();
     let sound = scene.fluid.as_ref().map_or(0.0, |f| 0.1 * f.sound_speed);
-    let swing = scene.solids.first().map_or(0.0, |solid| {
-        let fractions = scene.shapes.iter().filter_map(|s| s.cantilever_mode).map(|m| m.fraction.abs());
-        solid.sound_speed() * fractions.fold(0.0, f64::max)
+    let swings = scene.shapes.iter().filter_map(|shape| {
+        let (mode, solid) = (shape.cantilever_mode?, scene.solids.get(shape.solid?)?);
+        Some(solid.sound_speed() * mode.fraction.abs())
     });
+    let swing = swings.fold(0.0, f64::max);
     scene
         .shapes
         .iter()
@@ -154,9 +155,9 @@ mod tests {
             crate::parse(&text, path, &[]).unwrap()
         };
         // nu = 0: c_P = sqrt(E / rho); U = 5 m/s.
-        let stiff = Bounds::of_solid(&scene(1.6e7)).unwrap();
+        let stiff = Bounds::of_solid(&scene(1.6e7), 0).unwrap();
         assert!((stiff.speed - (0.25 * 126.491_106 + 15.0)).abs() < 1e-5, "{stiff:?}");
-        let soft = Bounds::of_solid(&scene(1e3)).unwrap();
+        let soft = Bounds::of_solid(&scene(1e3), 0).unwrap();
         assert!((soft.speed - 15.25).abs() < 1e-9, "as fast as it started it may go: {soft:?}");
         assert_eq!(Bounds::of_fluid(&scene(1e3)), None);
     }

@@ -80,6 +80,12 @@ pub struct Layout<const D: usize> {
 }
 
 impl<const D: usize> Layout<D> {
+    /// Without the particles of all solids of the scene but one.
+    pub fn with_solid(mut self, scene: &Scene, solid: usize) -> Self {
+        self.solid.retain(|p| scene.shapes[p.body as usize].solid == Some(solid));
+        self
+    }
+
     /// How many there are.
     pub fn counts(&self) -> Counts {
         let [fluid, solid, wall] = [self.fluid.len(), self.solid.len(), self.wall.len()].map(|n| n as u64);
@@ -240,7 +246,8 @@ fn solid_point<const D: usize>(
 ) -> SolidPoint<D> {
     let clamped = shape.clamp.iter().any(|block| holds(block, &position, TOLERANCE * scene.resolution));
     let mut velocity = truncated(shape.velocity);
-    if let (Some(mode), Some(solid)) = (&shape.cantilever_mode, scene.solids.first()) {
+    let solid = shape.solid.and_then(|k| scene.solids.get(k));
+    if let (Some(mode), Some(solid)) = (&shape.cantilever_mode, solid) {
         velocity[1] += cantilever_velocity(mode, solid.sound_speed(), position[0]);
     }
     SolidPoint { position, velocity: if clamped { [0.0; D] } else { velocity }, clamped, body: index as u32 }

@@ -65,21 +65,21 @@ pub struct Hypoelastic<const D: usize> {
 }
 
 impl<const D: usize> Hypoelastic<D> {
-    /// The solid of a scene that has one.
-    pub fn new(scene: &Scene, isa: Isa) -> Option<Self> {
-        let material = scene.solids.first()?.clone();
-        let layout = geometry::layout::<D>(scene);
+    /// The scene's solid of that index.
+    pub fn new(scene: &Scene, solid: usize, isa: Isa) -> Option<Self> {
+        let material = scene.solids.get(solid)?.clone();
+        let layout = geometry::layout::<D>(scene).with_solid(scene, solid);
         let h = material.smoothing_ratio * scene.resolution;
         let n = layout.solid.len();
         let exponent = material.artificial_stress.exponent.round() as u32;
-        let artificial = takes_part(scene, EffectName::ArtificialStress);
-        let walls = takes_part(scene, EffectName::WallContact)
+        let artificial = takes_part(scene, solid, EffectName::ArtificialStress);
+        let walls = takes_part(scene, solid, EffectName::WallContact)
             .then(|| Walls::new(&layout.wall, (2.0 + SKIN) * h))
             .flatten();
         let domain = geometry::domain(scene);
         let now = State::new(&layout.solid, material.density);
         let mut model = Self {
-            bounds: Bounds::of_solid(scene)?,
+            bounds: Bounds::of_solid(scene, solid)?,
             kernel: scene.numerics.kernel,
             isa,
             smoothing_length: h,
@@ -87,8 +87,8 @@ impl<const D: usize> Hypoelastic<D> {
             resolution: scene.resolution,
             gravity: std::array::from_fn(|d| scene.gravity[d]),
             domain: (std::array::from_fn(|d| domain.min[d]), std::array::from_fn(|d| domain.max[d])),
-            renormalised: takes_part(scene, EffectName::RenormalisedGradient),
-            wall_clamp: takes_part(scene, EffectName::WallClamp).then(WallClamp::default),
+            renormalised: takes_part(scene, solid, EffectName::RenormalisedGradient),
+            wall_clamp: takes_part(scene, solid, EffectName::WallClamp).then(WallClamp::default),
             artificial_stress: artificial.then_some(exponent),
             mass: material.density * scene.resolution.powi(D as i32),
             material,

@@ -29,7 +29,7 @@ fn block(overrides: &[&str]) -> Scene {
 
 /// The block with a velocity field.
 fn moving(overrides: &[&str], v: impl Fn([f64; 2]) -> [f64; 2]) -> Hypoelastic<2> {
-    let mut solid = Hypoelastic::<2>::new(&block(overrides), Isa::detect()).unwrap();
+    let mut solid = Hypoelastic::<2>::new(&block(overrides), 0, Isa::detect()).unwrap();
     solid.set_velocity(v);
     solid
 }

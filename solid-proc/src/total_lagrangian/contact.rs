@@ -54,9 +54,15 @@ pub(super) struct Present<const D: usize> {
 
 impl<const D: usize> Contact<D> {
     /// `None` where nothing can touch. `body` has a number for each particle's body.
-    pub(super) fn new(scene: &Scene, solid: &Solid, layout: &Layout<D>, body: &[u32]) -> Option<Self> {
+    pub(super) fn new(
+        scene: &Scene,
+        solid: usize,
+        material: &Solid,
+        layout: &Layout<D>,
+        body: &[u32],
+    ) -> Option<Self> {
         let h = scene.smoothing_ratio * scene.resolution;
-        let walls = takes_part(scene, EffectName::WallContact)
+        let walls = takes_part(scene, solid, EffectName::WallContact)
             .then(|| Walls::new(&layout.wall, (2.0 + SKIN) * h))
             .flatten();
         let several = body.iter().any(|&b| b != body[0]);
@@ -71,11 +77,11 @@ impl<const D: usize> Contact<D> {
         };
         let n = id.len();
         let domain = geometry::domain(scene);
-        let modulus = solid.density * solid.pressure_wave_speed().powi(2);
+        let modulus = material.density * material.pressure_wave_speed().powi(2);
         let mut contact = Self {
             position: std::array::from_fn(|d| column(&|p| p.position[d])),
             velocity: vectors(n),
-            density: vec![solid.density; n],
+            density: vec![material.density; n],
             pressure: vec![0.0; n],
             body: id.iter().map(|&p| f64::from(body[p as usize])).collect(),
             listed: vectors(0),
@@ -89,7 +95,7 @@ impl<const D: usize> Contact<D> {
             domain: (std::array::from_fn(|d| domain.min[d]), std::array::from_fn(|d| domain.max[d])),
             gravity: std::array::from_fn(|d| scene.gravity[d]),
             stiffness: 0.5 * modulus * scene.resolution.powi(D as i32 - 2),
-            mass: solid.density * scene.resolution.powi(D as i32),
+            mass: material.density * scene.resolution.powi(D as i32),
             id,
         };
         contact.sort();

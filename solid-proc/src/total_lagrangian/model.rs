@@ -101,10 +101,10 @@ pub struct TotalLagrangian<const D: usize> {
 }
 
 impl<const D: usize> TotalLagrangian<D> {
-    /// The solid of a scene that has one.
-    pub fn new(scene: &Scene, isa: Isa) -> Option<Self> {
-        let material = scene.solids.first()?.clone();
-        let layout = geometry::layout::<D>(scene);
+    /// The scene's solid of that index.
+    pub fn new(scene: &Scene, solid: usize, isa: Isa) -> Option<Self> {
+        let material = scene.solids.get(solid)?.clone();
+        let layout = geometry::layout::<D>(scene).with_solid(scene, solid);
         let points = &layout.solid;
         let dx = scene.resolution;
         let h = material.smoothing_ratio * dx;
@@ -132,14 +132,14 @@ impl<const D: usize> TotalLagrangian<D> {
                 velocity[d][slot] = point.velocity[d];
             }
         }
-        let rigid_clamps = takes_part(scene, EffectName::ClampFace);
+        let rigid_clamps = takes_part(scene, solid, EffectName::ClampFace);
         let excess_gain = if rigid_clamps {
             clamp::excess_gain(scene, points, &id, &list, reach)
         } else {
             vec![0.0; slots]
         };
         let body = bodies(&position, &id, &list, reach);
-        let contact = Contact::new(scene, &material, &layout, &body);
+        let contact = Contact::new(scene, solid, &material, &layout, &body);
         let alpha = material.hourglass.unwrap_or_else(|| {
             with_kernel!(scene.numerics.kernel, h, D, |k| hourglass::from_bending(
                 k,
@@ -180,7 +180,7 @@ impl<const D: usize> TotalLagrangian<D> {
             id,
             slot_of,
             contact,
-            bounds: Bounds::of_solid(scene)?,
+            bounds: Bounds::of_solid(scene, solid)?,
             failure: None,
             pair_evaluations: 0,
         };

@@ -37,7 +37,7 @@ const RING: &str = "ring = { center = [0.0, 0.0], inner = 0.05, outer = 0.1 }";
 const MATERIALS: [&str; 2] = ["solid.material=\"st-venant-kirchhoff\"", "solid.material=\"neo-hookean\""];
 
 fn solid(shape: &str, overrides: &[&str]) -> TotalLagrangian<2> {
-    TotalLagrangian::new(&scene(shape, overrides), Isa::detect()).expect("a solid")
+    TotalLagrangian::new(&scene(shape, overrides), 0, Isa::detect()).expect("a solid")
 }
 
 impl TotalLagrangian<2> {

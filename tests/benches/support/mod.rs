@@ -70,7 +70,7 @@ impl Running {
 
     pub(crate) fn solid(scene: &Scene) -> Self {
         Self {
-            role: Box::new(halfstep_solid::Solid::<2>::new(scene, Isa::detect()).expect("a solid")),
+            role: Box::new(halfstep_solid::Solid::<2>::new(scene, 0, Isa::detect()).expect("a solid")),
             step: 0,
         }
     }
