@@ -1,6 +1,7 @@
 //! The folder of a run: what may be in it, and what of it may be removed.
 
 use super::{OutputError, series};
+use halfstep_wire::Name;
 use std::path::{Path, PathBuf};
 
 /// Files that a run leaves in its folder, beside the frames.
@@ -36,14 +37,16 @@ impl RunDirectory {
         let this = Self { path: dir.into() };
         let frames = this.frames();
         std::fs::create_dir_all(&frames).map_err(OutputError::io("create", &frames))?;
+        let stems = stems(&frames)?;
+        let is_frame = |name: &str| is_frame_file(name, &stems);
         let mut found = files(dir, is_run_file)?;
-        found.extend(files(&frames, is_frame_file)?);
+        found.extend(files(&frames, is_frame)?);
         if let (Some(first), false) = (found.first(), force) {
             let found = first.strip_prefix(dir).unwrap_or(first).display().to_string();
             return Err(OutputError::Occupied { dir: dir.into(), found });
         }
         found.extend(files(dir, |name| is_temporary(name, is_run_file))?);
-        found.extend(files(&frames, |name| is_temporary(name, is_frame_file))?);
+        found.extend(files(&frames, |name| is_temporary(name, is_frame))?);
         for file in found {
             std::fs::remove_file(&file).map_err(OutputError::io("remove", &file))?;
         }
@@ -80,12 +83,24 @@ fn files(folder: &Path, wanted: impl Fn(&str) -> bool) -> Result<Vec<PathBuf>, O
     Ok(found)
 }
 
-/// Whether a file in the folder of the frames is a frame or an index.
-fn is_frame_file(name: &str) -> bool {
-    ["fluid", "solid"].iter().any(|stem| {
+/// Participants whose frames are in a folder: those with an index, and those that every run may have.
+fn stems(frames: &Path) -> Result<Vec<String>, OutputError> {
+    let is_index =
+        |name: &str| name.strip_suffix(series::INDEX_SUFFIX).is_some_and(|stem| stem.parse::<Name>().is_ok());
+    let indexed = files(frames, is_index)?;
+    let stem =
+        |path: &PathBuf| path.file_name()?.to_str()?.strip_suffix(series::INDEX_SUFFIX).map(str::to_owned);
+    let mut stems = vec![Name::FLUID.to_string(), Name::SOLID.to_string()];
+    stems.extend(indexed.iter().filter_map(stem));
+    Ok(stems)
+}
+
+/// Whether a file in the folder of the frames is a frame or an index of one of these participants.
+fn is_frame_file(name: &str, stems: &[String]) -> bool {
+    stems.iter().any(|stem| {
         name == series::index_name(stem)
             || name
-                .strip_prefix(stem)
+                .strip_prefix(stem.as_str())
                 .and_then(|rest| rest.strip_prefix('_')?.strip_suffix(".hdf"))
                 .is_some_and(|digits| digits.len() >= 6 && digits.bytes().all(|b| b.is_ascii_digit()))
     })
@@ -148,6 +163,8 @@ mod tests {
             dir.path(),
             &["frames/fluid_000000.hdf", "frames/solid_1234567.hdf", "frames/fluid.hdf.series"],
         );
+        // A participant of another name has an index, which strangers' files lack.
+        touch(dir.path(), &["frames/gate-2_000000.hdf", "frames/gate-2.hdf.series", "report-gate-2.json"]);
         touch(dir.path(), &[".run.json.tmp", "frames/.fluid_000001.hdf.tmp", "frames/.solid.hdf.series.tmp"]);
         touch(dir.path(), &FOREIGN);
         fs::create_dir(dir.path().join("frames/solid_000009.hdf")).unwrap();

@@ -42,9 +42,12 @@ pub fn frame_name(stem: &str, number: u32) -> String {
     format!("{stem}_{number:06}.hdf")
 }
 
+/// What the name of an index ends with.
+pub(crate) const INDEX_SUFFIX: &str = ".hdf.series";
+
 /// File name of the index of `stem`.
 pub fn index_name(stem: &str) -> String {
-    format!("{stem}.hdf.series")
+    format!("{stem}{INDEX_SUFFIX}")
 }
 
 impl Series {

@@ -41,7 +41,7 @@ impl Instant {
 
 /// Draws `dir/contact.png` from the frames on disk; `None` where there are none.
 pub fn draw_contact(scene: &Scene, dir: &Path) -> Result<Option<PathBuf>, OutputError> {
-    let instants = instants(dir)?;
+    let instants = instants(scene, dir)?;
     let Some(view) = View::of(scene, &instants) else { return Ok(None) };
     let path = dir.join("contact.png");
     let limits = Limits::of(&instants);
@@ -85,14 +85,14 @@ pub fn draw_contact(scene: &Scene, dir: &Path) -> Result<Option<PathBuf>, Output
 }
 
 /// Up to [`MOST`] instants evenly over the announced frames, the first and the last among them.
-fn instants(dir: &Path) -> Result<Vec<Instant>, OutputError> {
-    let [fluid, solid] = [Series::of_run(dir, "fluid")?, Series::of_run(dir, "solid")?];
-    // An interrupted run may have written more frames of one side than of the other.
-    let (leading, other) = if solid.is_empty() || (!fluid.is_empty() && fluid.len() <= solid.len()) {
-        (fluid, solid)
-    } else {
-        (solid, fluid)
-    };
+fn instants(scene: &Scene, dir: &Path) -> Result<Vec<Instant>, OutputError> {
+    let participants = scene.participants();
+    let series = participants.iter().map(|participant| Series::of_run(dir, &participant.name));
+    let mut series = series.collect::<Result<Vec<_>, OutputError>>()?;
+    series.retain(|frames| !frames.is_empty());
+    // An interrupted run may have written more frames of one participant than of another: the shortest leads.
+    let Some(shortest) = (0..series.len()).min_by_key(|&k| series[k].len()) else { return Ok(Vec::new()) };
+    let leading = series.remove(shortest);
     let shown = leading.len().min(MOST);
     (0..shown)
         .map(|k| {
@@ -101,8 +101,10 @@ fn instants(dir: &Path) -> Result<Vec<Instant>, OutputError> {
             let nearest = |(_, a): &&(PathBuf, f64), (_, b): &&(PathBuf, f64)| {
                 f64::total_cmp(&(a - time).abs(), &(b - time).abs())
             };
-            if let Some((path, _)) = other.iter().min_by(nearest) {
-                frames.push(vtkhdf::read(path)?);
+            for other in &series {
+                if let Some((path, _)) = other.iter().min_by(nearest) {
+                    frames.push(vtkhdf::read(path)?);
+                }
             }
             Ok(Instant { time: *time, frames })
         })
