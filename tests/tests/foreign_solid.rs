@@ -62,7 +62,7 @@ fn a_block_on_a_spring_in_python_swings_as_the_formula_says() {
 fn a_block_started_by_hand_moves_as_one_that_the_run_starts() {
     let started = scene("spring-block").until(0.05).argument("--solid").argument(command()).run();
     let _machine = whole_machine();
-    let running = scene("spring-block").until(0.05).argument("--solid").start();
+    let running = scene("spring-block").until(0.05).argument("--await-solid").start();
     let launcher = running.pid();
     let variables = running.dir().join("solid.env");
     eventually(30.0, "the variables of the solid", || variables.exists());
@@ -75,7 +75,7 @@ fn a_block_started_by_hand_moves_as_one_that_the_run_starts() {
     assert_eq!(run.state_hash(), started.state_hash());
     let said = &run.outcome.stderr;
     let told = line.split(" && ").next().unwrap();
-    assert!(said.contains("waiting up to 60 s for a solid") && said.contains(told), "{said}");
+    assert!(said.contains("waiting up to 60 s for the solid;") && said.contains(told), "{said}");
     assert!(said.contains("the solid is connected"), "{said}");
     assert!(!variables.exists(), "they belong to a run that is over");
     assert_eq!(leftovers(launcher), Vec::<String>::new());
@@ -84,7 +84,7 @@ fn a_block_started_by_hand_moves_as_one_that_the_run_starts() {
 #[test]
 fn a_solid_that_nobody_starts_is_missed_by_name() {
     let outcome =
-        scene("spring-block").argument("--solid").argument("--solid-wait").argument("0.5").outcome();
+        scene("spring-block").argument("--await-solid").argument("--solid-wait").argument("0.5").outcome();
     assert_eq!(outcome.code(), Some(2));
     let error = outcome.report().error.unwrap();
     assert_eq!(error, "no solid came within 0.5 s (--solid-wait)");
@@ -94,7 +94,7 @@ fn a_solid_that_nobody_starts_is_missed_by_name() {
 #[test]
 fn waiting_for_a_solid_can_be_stopped() {
     let _machine = whole_machine();
-    let running = scene("spring-block").argument("--solid").start();
+    let running = scene("spring-block").argument("--await-solid").start();
     eventually(30.0, "the variables of the solid", || running.dir().join("solid.env").exists());
     kill(running.pid(), libc::SIGINT);
     let outcome = running.wait();
