@@ -1,19 +1,19 @@
 """A rigid block on a spring along x as the solid of a run: `spring_block.py STIFFNESS` (N/m). See docs/protocol.md."""
 import ctypes, itertools, json, os, sys
-import iceoryx2 as iox2
-import numpy as np
+import iceoryx2 as iox2, numpy as np
 def wire(name, size, **fields):  # of each field: type, byte offset
     t = type(name, (ctypes.Structure,), {"_fields_": [("words", ctypes.c_uint64 * (size // 8))]})
-    t.type_name, (formats, offsets) = staticmethod(lambda: f"halfstep.{name}.1"), zip(*fields.values())
+    t.type_name, (formats, offsets) = staticmethod(lambda: f"halfstep.{name}"), zip(*fields.values())
     t.dtype = np.dtype({"names": list(fields), "formats": formats, "offsets": offsets, "itemsize": size})
     return t
 def view(address, t, count=1): return np.frombuffer((t * count).from_address(address), t.dtype)
-State = wire("StateRecord", 128, id=("u4", 0), position=("3f8", 8), velocity=("3f8", 32), density=("f8", 56), mass=("f8", 72))
-Force = wire("ForceRecord", 56, viscous=("3f8", 8), stress=("3f8", 32))
-StateHead = wire("StateHeader", 504, run_id=("u8", 0), schema=("u8", 8), protocol=("u4", 16), status=("u4", 20), step=("u8", 24),
+State = wire("StateRecord.1", 128, id=("u4", 0), position=("3f8", 8), velocity=("3f8", 32), density=("f8", 56), mass=("f8", 72))
+Force = wire("ForceRecord.1", 56, viscous=("3f8", 8), stress=("3f8", 32))
+StateHead = wire("StateHeader.2", 224, run_id=("u8", 0), schema=("u8", 8), protocol=("u4", 16), status=("u4", 20), step=("u8", 24),
                  stage=("u4", 32), count=("u4", 36), time=("f8", 48), dt=("f8", 56), dt_limit=("f8", 64))
-ForceHead = wire("ForceHeader", 80, order=("u4", 20), step=("u8", 24), stage=("u4", 32), dt=("f8", 56), next_time=("f8", 64))
+ForceHead = wire("ForceHeader.2", 88, order=("u4", 20), step=("u8", 24), stage=("u4", 32), dt=("f8", 56), next_time=("f8", 64))
 env, stiffness = {k[9:]: v for k, v in os.environ.items() if k.startswith("HALFSTEP_")}, float(sys.argv[1])
+name, partners = env["NAME"], len({pair.split(":")[1] for pair in env["PROCESSES"].split(",")})  # of fluid and coupler
 scene = json.load(open(env["SCENE"]))
 box = next(shape["geometry"]["box"] for shape in scene["shapes"] if shape["phase"] == "solid")
 dx, dimension, density = scene["resolution"], scene["dimension"], scene["solid"]["density"]
@@ -23,29 +23,29 @@ config, same = iox2.config.default(), iox2.AttributeVerifier.new()
 config.global_cfg.prefix, config.global_cfg.root_path = iox2.FileName.new(env["PREFIX"]), iox2.Path.new(env["ROOT"])
 node = iox2.NodeBuilder.new().config(config).signal_handling_mode(iox2.SignalHandlingMode.Disabled).create(iox2.ServiceType.Ipc)
 for key in ("schema", "protocol"): same = same.require(iox2.AttributeKey.new("halfstep." + key), iox2.AttributeValue.new(env[key.upper()]))
-def event(role):
-    service = node.service_builder(iox2.ServiceName.new(f"halfstep/{role}/wake")).event()
-    return service.max_listeners(1).max_notifiers(2).max_nodes(3).open_or_create_with_attributes(same)
-def channel(name, readers, record, header):
-    s = node.service_builder(iox2.ServiceName.new("halfstep/" + name)).publish_subscribe(iox2.Slice[record]).user_header(header)
+def event(process, callers):
+    service = node.service_builder(iox2.ServiceName.new(f"halfstep/{process}/wake")).event()
+    return service.max_listeners(1).max_notifiers(callers).max_nodes(callers + 1).open_or_create_with_attributes(same)
+def channel(kind, readers, record, header):
+    s = node.service_builder(iox2.ServiceName.new(f"halfstep/{name}/{kind}")).publish_subscribe(iox2.Slice[record]).user_header(header)
     s = s.enable_safe_overflow(False).history_size(0).subscriber_max_buffer_size(2).subscriber_max_borrowed_samples(2)
     return s.max_publishers(1).max_subscribers(readers).max_nodes(readers + 1).open_or_create_with_attributes(same)
 def wait(condition):
     while not (found := condition()): listener.timed_wait(iox2.Duration.from_millis(5))
     return found
-events, forces = [event("solid"), event("fluid"), event("coupler")], channel("solid/force", 1, Force, ForceHead)
+events, forces = [event(name, 2), event("fluid", partners), event("coupler", partners)], channel("force", 1, Force, ForceHead)
 listener, inbox = events[0].listener_builder().create(), forces.subscriber_builder().create()
-outbox = channel("solid/state", 2, State, StateHead).publisher_builder().initial_max_slice_len(int(env["SOLID_CAPACITY"])).create()
+outbox = channel("state", 2, State, StateHead).publisher_builder().initial_max_slice_len(int(env["CAPACITY"])).create()
 wait(lambda: forces.dynamic_config.number_of_publishers and (inbox.has_samples() or True))  # which also connects
 notifiers = [service.notifier_builder().create() for service in events[1:]]
 wait(lambda: events[0].dynamic_config.number_of_notifiers == 2)
 def send(count, **fields):
     sample, (ids, at, speed) = outbox.loan_slice_uninit(count), (np.arange(count), rest[:count] + (x_mid, 0, 0), (v_mid, 0, 0))
-    ctypes.memset(sample.user_header_ptr, 0, 504), ctypes.memset(sample.payload_ptr, 0, 128 * count)
+    ctypes.memset(sample.user_header_ptr, 0, 224), ctypes.memset(sample.payload_ptr, 0, 128 * count)
     head, state = view(sample.user_header_ptr, StateHead), view(sample.payload_ptr, State, count)
     state["id"], state["position"], state["velocity"], state["density"], state["mass"] = ids, at, speed, density, mass
     fields |= {key: int(env[key.upper()]) for key in ("run_id", "schema", "protocol")} | {"count": count}
-    for name, value in fields.items(): head[name] = value
+    for field, value in fields.items(): head[field] = value
     sample.assume_init().send(), [notifier.notify() for notifier in notifiers]
 x = v = x_mid = v_mid = dt = time = 0.0  # displacement and velocity: at step n; at the stage
 for step, stage in ((half // 2, half % 2) for half in itertools.count()):

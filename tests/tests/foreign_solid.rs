@@ -75,7 +75,7 @@ fn a_block_started_by_hand_moves_as_one_that_the_run_starts() {
     assert_eq!(run.state_hash(), started.state_hash());
     let said = &run.outcome.stderr;
     let told = line.split(" && ").next().unwrap();
-    assert!(said.contains("waiting up to 60 s for a solid") && said.contains(told), "{said}");
+    assert!(said.contains("waiting up to 60 s for the solid;") && said.contains(told), "{said}");
     assert!(said.contains("the solid is connected"), "{said}");
     assert!(!variables.exists(), "they belong to a run that is over");
     assert_eq!(leftovers(launcher), Vec::<String>::new());

@@ -1,34 +1,41 @@
 //! The tables of docs/protocol.md say what the program does.
 
-use halfstep_link::{LinkConfig, PhaseLink, Processes};
-use halfstep_tests::conformance::link::raw::RawRole;
+use halfstep_link::{LinkConfig, Participant, ProcessLink, Processes, Slot};
 use halfstep_tests::conformance::link::{Run, eventually};
-use halfstep_wire::failure::{Quantity, RoleName};
-use halfstep_wire::protocol::{ForceHeader, ForceRecord, LAYOUT, MAX_PROBE_VALUES};
-use halfstep_wire::protocol::{StateHeader, StateRecord, order, status};
-use iceoryx2::prelude::PortFactory;
+use halfstep_wire::Name;
+use halfstep_wire::failure::Quantity;
+use halfstep_wire::protocol::{ForceHeader, ForceRecord, LAYOUT, PROTOCOL, Plain, ProbeHeader};
+use halfstep_wire::protocol::{StateHeader, StateRecord, ability, order, status};
+use iceoryx2::prelude::*;
 use std::collections::BTreeMap;
 use std::mem::offset_of;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 const PAGE: &str = include_str!("../../docs/protocol.md");
+/// Headings of the two tables of places.
+const CHANNELS: &str = "Places in the publish-subscribe services";
+const WAKE_UPS: &str = "Places in the wake-up services";
 
-/// Rows of the table under a heading that begins so, cells trimmed of spaces and backticks.
-fn table(heading: &str) -> Vec<Vec<String>> {
-    let rows: Vec<Vec<String>> = PAGE
+/// Lines of the table under a heading that begins so, its own heading included; cells without spaces and backticks.
+fn lines(heading: &str) -> Vec<Vec<String>> {
+    let lines: Vec<Vec<String>> = PAGE
         .lines()
         .skip_while(|line| !line.starts_with(heading))
         .skip_while(|line| !line.starts_with('|'))
         .take_while(|line| line.starts_with('|'))
-        .skip(2)
         .map(|line| {
             let cells = line.trim_matches('|').split('|');
             cells.map(|cell| cell.trim().trim_matches('`').to_owned()).collect()
         })
         .collect();
-    assert!(!rows.is_empty(), "no table under {heading}");
-    rows
+    assert!(lines.len() > 2, "no table under {heading}");
+    lines
+}
+
+/// Rows of the table under a heading that begins so.
+fn table(heading: &str) -> Vec<Vec<String>> {
+    lines(heading).split_off(2)
 }
 
 fn size(kind: &str) -> usize {
@@ -39,132 +46,258 @@ fn size(kind: &str) -> usize {
     count * if base.ends_with("32") { 4 } else { 8 }
 }
 
-/// Compares a struct's table with the struct: offsets, and that no field is missing in between.
-macro_rules! check {
-    ($structure:ident { $($field:ident),* $(,)? }) => {{
-        let name = stringify!($structure);
-        let heading = format!("### {name}: {} bytes", size_of::<$structure>());
-        let rows = table(&heading);
-        let documented: Vec<(usize, &str)> =
-            rows.iter().map(|row| (row[0].parse().unwrap(), row[1].as_str())).collect();
-        let actual = vec![$((offset_of!($structure, $field), stringify!($field))),*];
-        assert_eq!(documented, actual, "{name}");
-        let mut end = 0;
-        for row in &rows {
-            assert_eq!(row[0].parse::<usize>().unwrap(), end, "{name}.{}", row[1]);
-            end += size(&row[2]);
-        }
-        assert_eq!(end, size_of::<$structure>(), "{name}");
-        let layout: Vec<String> = rows.iter().map(|row| format!("{}:{}", row[1], row[2])).collect();
-        let layout = format!("{name}{{{}}}", layout.join(","));
-        assert!(LAYOUT.contains(&layout), "{layout} is not what the schema number stands for");
-    }};
+/// A table of fields as the schema number spells it: those of an inner structure in braces behind its name.
+fn spelt(name: &str, rows: &[Vec<String>]) -> String {
+    let outer = |row: &[String]| row[1].split_once('.').map(|(outer, _)| outer.to_owned());
+    let groups = rows.chunk_by(|a, b| outer(a).is_some() && outer(a) == outer(b));
+    let groups = groups.map(|group| {
+        let field = |row: &Vec<String>| format!("{}:{}", row[1].rsplit('.').next().unwrap(), row[2]);
+        let fields = group.iter().map(field).collect::<Vec<_>>().join(",");
+        outer(&group[0]).map_or(fields.clone(), |outer| format!("{outer}:{{{fields}}}"))
+    });
+    format!("{name}{{{}}}", groups.collect::<Vec<_>>().join(","))
+}
+
+/// Compares a structure's table with the structure: offsets, and that no field is missing in between. Returns the
+/// layout that the table spells.
+fn compare(name: &str, length: usize, actual: &[(usize, String)]) -> String {
+    let rows = table(&format!("### {name}: {length} bytes"));
+    let documented: Vec<(usize, String)> =
+        rows.iter().map(|row| (row[0].parse().unwrap(), row[1].clone())).collect();
+    assert_eq!(documented, actual, "{name}");
+    let mut end = 0;
+    for row in &rows {
+        assert_eq!(row[0].parse::<usize>().unwrap(), end, "{name}.{}", row[1]);
+        end += size(&row[2]);
+    }
+    assert_eq!(end, length, "{name}");
+    spelt(name, &rows)
+}
+
+/// [`compare`] with the fields of a structure; those of inner structures by their paths.
+macro_rules! layout {
+    ($structure:ident { $($($field:ident).+),* $(,)? }) => {
+        compare(
+            stringify!($structure),
+            size_of::<$structure>(),
+            &[$((offset_of!($structure, $($field).+), [$(stringify!($field)),+].join("."))),*],
+        )
+    };
 }
 
 #[test]
 fn byte_offsets() {
-    check!(StateRecord { id, flags, position, velocity, density, pressure, mass, deviatoric_stress });
-    check!(ForceRecord { id, flags, cross_viscosity, stress_force });
-    check!(StateHeader {
-        run_id,
-        schema,
-        protocol,
-        status,
-        step,
-        stage,
-        count,
-        epoch,
-        time,
-        dt,
-        dt_limit,
-        displacement,
-        sub_steps,
-        frames_safe,
-        failure_quantity,
-        failure_particle,
-        failure_value,
-        failure_position,
-        state_hash,
-        seconds,
-        audit,
-        particles,
-        probe_count,
-        probes,
-    });
-    check!(ForceHeader {
-        run_id,
-        schema,
-        protocol,
-        order,
-        step,
-        stage,
-        count,
-        epoch,
-        time,
-        dt,
-        next_time,
-        frame,
-    });
-    assert_eq!(LAYOUT.split(';').count(), 4);
-    assert!(PAGE.contains(&format!("at most {MAX_PROBE_VALUES} |")));
+    let layouts = [
+        layout!(StateRecord { id, flags, position, velocity, density, pressure, mass, deviatoric_stress }),
+        layout!(ForceRecord { id, flags, cross_viscosity, stress_force }),
+        layout!(StateHeader {
+            run_id,
+            schema,
+            protocol,
+            status,
+            step,
+            stage,
+            count,
+            epoch,
+            time,
+            dt,
+            dt_limit,
+            displacement,
+            sub_steps,
+            frames_safe,
+            abilities,
+            reserved,
+            failure.participant,
+            failure.quantity,
+            failure.particle,
+            failure.reserved,
+            failure.value,
+            failure.position,
+            audit.momentum,
+            audit.kinetic_energy,
+            audit.mass,
+            audit.density_error,
+            audit.gap,
+            audit.stored_energy,
+            state_hash,
+            particles,
+        }),
+        layout!(ForceHeader {
+            run_id,
+            schema,
+            protocol,
+            order,
+            step,
+            stage,
+            count,
+            epoch,
+            time,
+            dt,
+            next_time,
+            frame,
+            checkpoint,
+        }),
+        layout!(ProbeHeader { run_id, schema, protocol, count, step, time }),
+    ];
+    assert_eq!(layouts.join(";"), LAYOUT, "what the schema number stands for");
+    for name in [
+        StateRecord::NAME,
+        StateHeader::NAME,
+        ForceRecord::NAME,
+        ForceHeader::NAME,
+        ProbeHeader::NAME,
+        f64::NAME,
+    ] {
+        assert!(PAGE.contains(&format!("`{name}`")), "{name}");
+    }
 }
 
 #[test]
 fn environment() {
     let documented: Vec<String> = table("## Start").into_iter().map(|mut row| row.remove(0)).collect();
-    let mut actual: Vec<&str> = LinkConfig::new(1, 1).to_env().into_iter().map(|(key, _)| key).collect();
+    let config = LinkConfig::of_two(1, 1);
+    let variables = config.to_env_of(&config.participants[1]);
+    let mut actual: Vec<&str> = variables.into_iter().map(|(key, _)| key).collect();
     actual.push("HALFSTEP_SCENE");
     assert_eq!(documented, actual);
+    assert!(PAGE.contains(&format!("The version of the protocol is {PROTOCOL}.")));
 }
 
-/// The services that the link makes have the options of the table.
+/// Three solids in two processes.
+fn several_solids() -> Run {
+    let participant = |name: &str, process: &str, probes: u32| Participant {
+        name: name.parse().unwrap(),
+        process: process.parse().unwrap(),
+        capacity: 5,
+        probes,
+    };
+    let participants = vec![
+        participant("fluid", "fluid", 0),
+        participant("a", "solid", 2),
+        participant("b", "b", 0),
+        participant("c", "solid", 0),
+    ];
+    let config = LinkConfig::new(participants);
+    Run(LinkConfig { handshake_seconds: 20.0, patience_seconds: 20.0, ..config })
+}
+
+/// What a row of places says of three solids in two processes.
+fn places(heading: &str, service: &str) -> Vec<usize> {
+    let rows = table(heading);
+    let row = rows.iter().find(|row| row[0].starts_with(service)).expect(service);
+    let number = |term: &str| -> usize {
+        match term {
+            "S" => 3,
+            "P" => 2,
+            number => number.parse().expect(number),
+        }
+    };
+    row[1..].iter().map(|cell| cell.split(" + ").map(number).sum()).collect()
+}
+
+/// Enters a run by the settings that the page tells.
+fn node(config: &LinkConfig) -> Node<Processes> {
+    let mut transport = Config::default();
+    transport.global.prefix = FileName::new(config.prefix.as_bytes()).unwrap();
+    transport.global.set_root_path(&Path::new(config.root.to_str().unwrap().as_bytes()).unwrap());
+    NodeBuilder::new()
+        .signal_handling_mode(SignalHandlingMode::Disabled)
+        .config(&transport)
+        .create::<Processes>()
+        .unwrap()
+}
+
+/// The attributes that the page tells, with this run's values.
+fn attributes(config: &LinkConfig) -> AttributeVerifier {
+    let variables = config.to_env();
+    table("Attributes of every service").iter().fold(AttributeVerifier::new(), |verifier, row| {
+        let value = &variables.iter().find(|(key, _)| *key == row[1]).unwrap().1;
+        let (key, value) = (row[0].as_str().try_into().unwrap(), value.as_str().try_into().unwrap());
+        verifier.require(&key, &value).unwrap()
+    })
+}
+
+/// Opened once it exists, whatever it tells.
+fn existing<T, E>(service: &str, open: impl Fn(&ServiceName) -> Result<T, E>) -> T {
+    let name: ServiceName = service.try_into().unwrap();
+    let mut found = None;
+    eventually(20.0, service, || {
+        found = open(&name).ok();
+        found.is_some()
+    });
+    found.unwrap()
+}
+
+/// Checks a channel that somebody has made against the row for `documented`.
+fn check_channel<R: Plain, H: Plain>(
+    node: &Node<Processes>,
+    attributes: &AttributeVerifier,
+    documented: &str,
+    service: &str,
+) {
+    let channel = existing(service, |name| {
+        let builder = node.service_builder(name).publish_subscribe::<[Slot<R>]>().user_header::<Slot<H>>();
+        builder.open_with_attributes(attributes)
+    });
+    let actual = channel.static_config();
+    let told: BTreeMap<String, String> =
+        table("Options of every").into_iter().map(|row| (row[0].clone(), row[1].clone())).collect();
+    let found = [
+        ("enable_safe_overflow", actual.has_safe_overflow().to_string()),
+        ("history_size", actual.history_size().to_string()),
+        ("subscriber_max_buffer_size", actual.subscriber_max_buffer_size().to_string()),
+        ("subscriber_max_borrowed_samples", actual.subscriber_max_borrowed_samples().to_string()),
+    ]
+    .map(|(name, value)| (name.to_owned(), value));
+    assert_eq!(told, BTreeMap::from(found), "{service}");
+    let found = [actual.max_publishers(), actual.max_subscribers(), actual.max_nodes()];
+    assert_eq!(places(CHANNELS, documented), found, "{service}");
+}
+
+/// The services that the link makes have the options of the tables.
 #[test]
 fn services() {
-    let rows = table("The names of the types are");
-    let documented = |column: usize| -> Vec<(String, String)> {
-        let told = rows.iter().filter(|row| !row[column].is_empty() && !row[0].starts_with("attribute"));
-        told.map(|row| (row[0].clone(), row[column].clone())).collect()
-    };
-    let run = Run::new(5, 5);
+    let run = several_solids();
     let abort = Arc::new(AtomicBool::new(false));
     std::thread::scope(|threads| {
         let flag = Some(Arc::clone(&abort));
-        threads.spawn(|| PhaseLink::<Processes>::open(&run, RoleName::Solid, flag).map(drop).unwrap_err());
-        // Its messages' memory comes last.
-        eventually(20.0, "the solid's ports", || run.leftovers().iter().any(|name| name.ends_with(".data")));
-        // Opened with the least demands, so that what is found is what the solid asked for.
-        let role = RawRole::<Processes>::enter(&run, "fluid");
-        for (channel, column) in [("solid/state", 1), ("fluid/state", 1), ("solid/force", 2)] {
-            let actual = if column == 1 {
-                *role.channel::<StateRecord, StateHeader>(channel, 1).static_config()
-            } else {
-                *role.channel::<ForceRecord, ForceHeader>(channel, 1).static_config()
-            };
-            let actual = [
-                ("enable_safe_overflow", actual.has_safe_overflow().to_string()),
-                ("history_size", actual.history_size().to_string()),
-                ("subscriber_max_buffer_size", actual.subscriber_max_buffer_size().to_string()),
-                ("subscriber_max_borrowed_samples", actual.subscriber_max_borrowed_samples().to_string()),
-                ("max_publishers", actual.max_publishers().to_string()),
-                ("max_subscribers", actual.max_subscribers().to_string()),
-                ("max_nodes", actual.max_nodes().to_string()),
-            ]
-            .map(|(name, value)| (name.to_owned(), value));
-            assert_eq!(documented(column), actual, "{channel}");
+        threads.spawn(|| ProcessLink::<Processes>::open(&run, Name::SOLID, flag).map(drop).unwrap_err());
+        eventually(20.0, "the solids' ports", || run.leftovers().iter().any(|name| name.ends_with(".data")));
+        {
+            let (node, attributes) = (node(&run), attributes(&run));
+            let state = check_channel::<StateRecord, StateHeader>;
+            state(&node, &attributes, "halfstep/fluid/state", "halfstep/fluid/state");
+            state(&node, &attributes, "halfstep/SOLID/state", "halfstep/a/state");
+            let force = check_channel::<ForceRecord, ForceHeader>;
+            force(&node, &attributes, "halfstep/NAME/force", "halfstep/a/force");
+            check_channel::<f64, ProbeHeader>(
+                &node,
+                &attributes,
+                "halfstep/NAME/probes",
+                "halfstep/a/probes",
+            );
+            for (documented, process) in [("fluid", "fluid"), ("PROCESS", "solid"), ("coupler", "coupler")] {
+                let service = existing(&format!("halfstep/{process}/wake"), |name| {
+                    node.service_builder(name).event().open_with_attributes(&attributes)
+                });
+                let actual = service.static_config();
+                let found = [actual.max_listeners(), actual.max_notifiers(), actual.max_nodes()];
+                assert_eq!(places(WAKE_UPS, &format!("halfstep/{documented}/wake")), found, "{process}");
+            }
         }
-        let actual = role.wake_options("coupler");
-        let actual =
-            ["max_listeners", "max_notifiers", "max_nodes"].map(str::to_owned).into_iter().zip(actual);
-        assert_eq!(documented(3), actual.collect::<Vec<_>>());
         abort.store(true, Ordering::Relaxed);
     });
-    for row in table("Services, each opened") {
-        assert!(row[0].starts_with("halfstep/"), "{row:?}");
-    }
+    assert_eq!(lines(CHANNELS)[0], ["service", "max_publishers", "max_subscribers", "max_nodes"]);
+    assert_eq!(lines(WAKE_UPS)[0], ["service", "max_listeners", "max_notifiers", "max_nodes"]);
+    let mut all: Vec<String> =
+        table("Services, each opened").into_iter().map(|mut row| row.remove(0)).collect();
+    assert_eq!(all.pop().as_deref(), Some("halfstep/PROCESS/wake"));
+    let channels: Vec<String> = table(CHANNELS).into_iter().map(|mut row| row.remove(0)).collect();
+    assert_eq!(all, channels);
 }
 
 #[test]
-fn orders_and_statuses() {
+fn orders_abilities_and_statuses() {
     let numbers = |heading: &str| -> BTreeMap<String, u32> {
         table(heading).into_iter().map(|row| (row[1].clone(), row[0].parse().unwrap())).collect()
     };
@@ -178,6 +311,15 @@ fn orders_and_statuses() {
             ("write frame", order::WRITE_FRAME),
             ("write checkpoint", order::WRITE_CHECKPOINT),
             ("stop", order::STOP),
+            ("send probes", order::SEND_PROBES),
+        ])
+    );
+    assert_eq!(
+        numbers("**Abilities**"),
+        expected(&[
+            ("checkpoints", ability::CHECKPOINTS),
+            ("walls and contacts", ability::WALLS_AND_CONTACTS),
+            ("probes", ability::PROBES),
         ])
     );
     assert_eq!(
@@ -189,8 +331,10 @@ fn orders_and_statuses() {
             ("finished", status::FINISHED),
         ])
     );
-    for row in table("and ends. Of such a message") {
+    let quantities = table("`failure.quantity` is one of");
+    for row in &quantities {
         let quantity = Quantity::from_wire(row[0].parse().unwrap()).unwrap().to_string();
         assert!(row[1].starts_with(&quantity), "{quantity}: {}", row[1]);
     }
+    assert_eq!(Quantity::from_wire(quantities.len() as u32 + 1), None, "one is missing on the page");
 }

@@ -1,10 +1,10 @@
 //! A solid that shares no code with halfstep: a block on a spring, written in Python against docs/protocol.md.
 
 use halfstep_coupling::supervise::Children;
-use halfstep_link::{Claim, CouplerLink, Expect, LinkConfig, PhaseLink, Processes};
+use halfstep_link::{Claim, CouplerLink, Expect, FLUID, LinkConfig, Port, ProcessLink, Processes};
 use halfstep_scene::{Block, Geometry};
 use halfstep_tests::conformance::link::Run;
-use halfstep_wire::failure::RoleName::{Fluid, Solid};
+use halfstep_wire::Name;
 use halfstep_wire::half_step::{HalfStep, Stage};
 use halfstep_wire::protocol::{
     ForceHeader, ForceRecord, LAST_STAGE, StateHeader, StateRecord, order, status,
@@ -13,6 +13,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
+/// Place of the block among the participants.
+const SOLID: usize = 1;
 const RESOLUTION: f64 = 0.01;
 const SOLID_DENSITY: f64 = 1200.0;
 const STIFFNESS: f64 = 4.0e4;
@@ -57,18 +59,18 @@ fn hydrostatic(record: &StateRecord) -> ForceRecord {
 
 /// A fluid that says nothing of interest, on time.
 fn fluid(config: &LinkConfig) {
-    let mut link = PhaseLink::<Processes>::open(config, Fluid, None).unwrap();
+    let mut link = ProcessLink::<Processes>::open(config, Name::FLUID, None).unwrap();
+    let (mut states, mut forces) = (Vec::new(), Vec::new());
     let mut half_step = HalfStep::begin(0, 0.0);
     loop {
         let (expect, header) = (Expect::of(&half_step), half_step.state_header());
-        drop(link.receive_peer(&expect.dt(header.dt)).unwrap());
+        link.receive_peer(0, 0, &expect.dt(header.dt), &mut states).unwrap();
         let header = StateHeader { dt_limit: 1.0, ..header };
-        link.send_state(&header, &[]).unwrap();
-        let forces = link.receive_forces(&expect).unwrap();
-        let answer = forces.header();
+        link.send_state(0, &header, &[]).unwrap();
+        let answer = link.receive_forces(0, &expect, &mut forces).unwrap();
         if answer.order & order::STOP != 0 {
-            link.send_state(&StateHeader { stage: LAST_STAGE, status: status::FINISHED, ..header }, &[])
-                .unwrap();
+            let last = StateHeader { stage: LAST_STAGE, status: status::FINISHED, ..header };
+            link.send_state(0, &last, &[]).unwrap();
             return;
         }
         half_step = half_step.told(answer.dt, answer.next_time).next();
@@ -86,9 +88,9 @@ fn coupler(config: &LinkConfig, steps: u64, dt: f64) -> Vec<(f64, f64)> {
             let expect = Expect::of(&half_step).dt(half_step.state_header().dt);
             let order = if stops { order::STOP } else { order::GO };
             let header = ForceHeader { order, ..half_step.force_header() };
-            drop(link.receive_state(Fluid, &expect).unwrap());
-            link.send_forces(Fluid, &header, &[]).unwrap();
-            let solid = link.receive_state(Solid, &expect).unwrap();
+            drop(link.receive_state(FLUID, &expect).unwrap());
+            link.send_forces(FLUID, &header, &[]).unwrap();
+            let solid = link.receive_state(SOLID, &expect).unwrap();
             let records = solid.records();
             assert_eq!(records.len(), 50);
             if half_step.stage == Stage::First {
@@ -97,10 +99,10 @@ fn coupler(config: &LinkConfig, steps: u64, dt: f64) -> Vec<(f64, f64)> {
             let answer = |record: &StateRecord| hydrostatic(record);
             let forces: Vec<ForceRecord> =
                 if stops { Vec::new() } else { records.iter().map(answer).collect() };
-            link.send_forces(Solid, &header, &forces).unwrap();
+            link.send_forces(SOLID, &header, &forces).unwrap();
             if stops {
-                for role in [Fluid, Solid] {
-                    let last = link.receive_state(role, &Expect::last(step)).unwrap();
+                for place in [FLUID, SOLID] {
+                    let last = link.receive_state(place, &Expect::last(step)).unwrap();
                     assert_eq!(last.header().status, status::FINISHED);
                 }
                 return curve;
@@ -138,7 +140,7 @@ fn a_python_block_swings_about_its_equilibrium() {
     let claim = Claim::new(config).unwrap();
     let mut children = Children::new(&log);
     let line = format!("'{}' '{}' {STIFFNESS}", python.display(), script.display());
-    children.spawn_shell(Solid, &line, config, &scene_path).unwrap();
+    children.spawn_shell(&config.participants[SOLID], &line, config, &scene_path).unwrap();
 
     let mass = SOLID_DENSITY * WIDTH * HEIGHT;
     let load = 0.5 * BOTTOM_PRESSURE * HEIGHT;
