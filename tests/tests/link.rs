@@ -24,6 +24,11 @@ macro_rules! conformance {
             }
 
             #[test]
+            fn several_solids() {
+                suite::several_solids::<$transport>();
+            }
+
+            #[test]
             fn role_taken() {
                 suite::role_taken::<$transport>();
             }

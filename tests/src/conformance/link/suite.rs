@@ -4,10 +4,12 @@ use super::end::End;
 use super::play;
 use super::raw::{RawPhase, RawRole, identified};
 use super::{Run, eventually};
-use halfstep_link::{Claim, CouplerLink, Expect, LinkConfig, LinkError, Transport};
+use halfstep_link::{
+    Claim, CouplerLink, Expect, LinkConfig, LinkError, Participant, Port, ProcessLink, Transport,
+};
 use halfstep_wire::Name;
 use halfstep_wire::half_step::Stage::{First, Second};
-use halfstep_wire::protocol::{Failure, StateHeader, StateRecord, status};
+use halfstep_wire::protocol::{Failure, ForceHeader, ForceRecord, StateHeader, StateRecord, order, status};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{scope, sleep};
@@ -300,4 +302,75 @@ pub fn strangers<S: Transport>() {
     let stranger = RawRole::<S>::enter(&run, "fluid");
     let _service = stranger.channel::<f64, StateHeader>("fluid/state", 2);
     is_refused("halfstep/fluid/state", "IncompatibleTypes");
+}
+
+/// Two solids in one process, a third in its own: states, forces and probe values arrive at the right participant, step
+/// by step.
+pub fn several_solids<S: Transport>() {
+    let [a, b, c]: [Name; 3] = ["a", "b", "c"].map(|name| name.parse().unwrap());
+    let mut run = Run::new(100, 100);
+    let solid = |name, process| Participant { name, process, capacity: 10, probes: 2 };
+    run.0.participants.splice(1.., [solid(a, Name::SOLID), solid(b, Name::SOLID), solid(c, c)]);
+    run.0.participants[0].probes = 1;
+    let run = &*run;
+    let names = run.names();
+    let record = |place: usize, step: u64| StateRecord {
+        id: place as u32,
+        position: [place as f64, step as f64, 0.0],
+        ..StateRecord::default()
+    };
+    let serve = |process: Name| {
+        let mut link = ProcessLink::<S>::open(run, process, None).unwrap();
+        let places = run.members(process);
+        assert_eq!(link.members(), places.iter().map(|&k| names[k]).collect::<Vec<_>>());
+        let (mut states, mut forces) = (Vec::new(), Vec::new());
+        for step in 0..50 {
+            let expect = Expect::new(step, First);
+            for (member, &place) in places.iter().enumerate() {
+                let header = StateHeader { step, dt_limit: 1.0, ..StateHeader::default() };
+                link.send_state(member, &header, &[record(place, step)]).unwrap();
+            }
+            for (member, &place) in places.iter().enumerate() {
+                for (peer, other) in run.peers(place).into_iter().enumerate() {
+                    assert_eq!(link.peers(member)[peer], names[other]);
+                    link.receive_peer(member, peer, &expect, &mut states).unwrap();
+                    assert_eq!(states, [record(other, step)]);
+                }
+                let answer = link.receive_forces(member, &expect, &mut forces).unwrap();
+                assert_eq!(forces[0].stress_force, [10.0 * place as f64, step as f64, 0.0]);
+                if answer.order & order::SEND_PROBES != 0 {
+                    let values = [step as f64, place as f64];
+                    let count = run.participants[place].probes as usize;
+                    link.send_probes(member, step, 0.5, &values[..count]).unwrap();
+                }
+            }
+        }
+    };
+    scope(|threads| {
+        for process in run.processes() {
+            let serve = &serve;
+            threads.spawn(move || serve(process));
+        }
+        let mut coupler = CouplerLink::<S>::open(run, None).unwrap();
+        for step in 0..50 {
+            for place in 0..names.len() {
+                let state = coupler.receive_state(place, &Expect::new(step, First)).unwrap();
+                assert_eq!(state.records(), [record(place, step)], "{}", names[place]);
+            }
+            let row = step % 7 == 0;
+            for place in 0..names.len() {
+                let orders = order::GO | if row { order::SEND_PROBES } else { 0 };
+                let header = ForceHeader { step, order: orders, dt: 1.0, ..ForceHeader::default() };
+                let stress_force = [10.0 * place as f64, step as f64, 0.0];
+                let force = ForceRecord { id: place as u32, stress_force, ..ForceRecord::default() };
+                coupler.send_forces(place, &header, &[force]).unwrap();
+            }
+            for place in (0..names.len()).filter(|_| row) {
+                let sample = coupler.receive_probes(place, step).unwrap().expect("it has probes");
+                let expected = [step as f64, place as f64];
+                assert_eq!(sample.values(), &expected[..run.participants[place].probes as usize]);
+                assert_eq!((sample.header().step, sample.header().time), (step, 0.5));
+            }
+        }
+    });
 }
