@@ -1,155 +1,220 @@
-//! The fluid's effects: what takes part in the pair pass, decided once by the scene.
+//! The fluid's effects: what each of them is to the fluid, and the list of those that the program knows.
 //!
-//! [`halfstep_scene::fluid_effects`] is the list. A pass is compiled for the compositions named in
-//! [`Effects::composition`]; there an absent effect does not exist. Any other composition runs the complete law, which
-//! asks for each effect whether it is there.
+//! [`halfstep_scene::fluid_effects`] is the list; each line names the file in this folder that holds all of the effect:
+//! when it takes part, its memory, its own pass, its share of a pair. A program that uses this crate may add one more
+//! effect, the parameter `X` of [`crate::Fluid`].
 
-use crate::density_diffusion::{DeltaSph, Diffusion, Hydrostatic, Simple};
-use crate::density_gradient;
-use crate::fluid::Fluid;
+use crate::columns::Shown;
+use crate::composition::{NoShare, Shares};
 use crate::rates::PairEffect;
-use crate::wall_guard;
-use halfstep_interface::{non_negative_pressure, thin_plate_screen};
-use halfstep_scene::{Decision, EffectName, Scene};
+use crate::walls::Walls;
+use halfstep_role::role::fastest;
+use halfstep_scene::{Decision, Scene};
+use halfstep_sph::kernel::Kernel;
+use halfstep_sph::lane::{Isa, LANES};
+use halfstep_sph::neighbours::ClusterList;
+use halfstep_wire::half_step::Stage;
 
-/// An effect of the list.
-pub trait FluidEffect<const D: usize> {
-    /// What it adds to a pair.
+/// An effect on the fluid.
+pub trait FluidEffect<const D: usize>: Send + Sync + Sized + 'static {
+    /// Its name in scenes and reports.
+    const NAME: &'static str;
+    /// What it adds to a pair of fluid particles; [`NoShare`] where it acts in another way.
     type Pair<'a>: PairEffect<D>;
-    /// Whether it takes part in a scene with fluid.
+    /// What it adds to a pair of a fluid and a wall particle.
+    type AtWall<'a>: PairEffect<D>;
+
+    /// Whether it takes part in a scene with fluid, and why.
     fn decide(scene: &Scene) -> Decision;
-    /// Memory of its own, bytes a particle, where it takes part in this scene.
-    fn bytes(_: &Scene) -> usize {
+    /// Memory of its own where it takes part, bytes a particle.
+    fn bytes_per_particle(_: &Scene) -> usize {
         0
     }
-    /// Its share of the pass, where it takes part.
-    fn pair(fluid: &Fluid<D>) -> Self::Pair<'_>;
+    /// Fits its columns to the slots of the fluid and of the walls, after each sort. What the columns held belongs to
+    /// the order before.
+    fn resize(&mut self, _slots: usize, _walls: Option<&Walls<D>>) {}
+    /// Its own pass, before the pass that gives the rates at a stage. Returns the number of pairs that it evaluated.
+    fn prepare<K: Kernel<D>>(&mut self, _: Stage, _: &Neighbourhood<'_, K, D>) -> u64 {
+        0
+    }
+    /// Its share of a pair of fluid particles.
+    fn pair(&self) -> Option<Self::Pair<'_>> {
+        None
+    }
+    /// Its share of a pair of a fluid and a wall particle.
+    fn at_wall(&self) -> Option<Self::AtWall<'_>> {
+        None
+    }
+    /// Bytes allocated for its columns.
+    fn bytes(&self) -> usize {
+        0
+    }
 }
 
-macro_rules! compose {
+/// An effect of the program's own list.
+pub trait Listed<const D: usize>: FluidEffect<D> {
+    /// With what it needs of a scene with fluid.
+    fn of(scene: &Scene) -> Option<Self>;
+}
+
+/// What an effect's own pass sees.
+#[derive(Clone, Copy, Debug)]
+pub struct Neighbourhood<'a, K, const D: usize> {
+    /// Kernel.
+    pub kernel: K,
+    /// Instruction set of the passes.
+    pub isa: Isa,
+    /// The fluid.
+    pub fluid: &'a Shown<D>,
+    /// The fluid around the fluid.
+    pub list: &'a ClusterList,
+    /// What the walls show, and the walls around the fluid.
+    pub walls: Option<(&'a Shown<D>, &'a ClusterList)>,
+}
+
+/// Pairs that a pass over a list evaluates.
+pub fn evaluations(list: &ClusterList) -> u64 {
+    (list.entries() * LANES) as u64
+}
+
+/// Effects of a list that take part, `(Option<A>, (Option<B>, ()))`; `None`: absent.
+pub trait Effects<const D: usize>: Send + Sync {
+    /// Shares of a pair of fluid particles.
+    type Pairs<'a>: Shares<D>
+    where
+        Self: 'a;
+    /// Shares of a pair of a fluid and a wall particle.
+    type AtWalls<'a>: Shares<D>
+    where
+        Self: 'a;
+
+    /// See [`FluidEffect::resize`].
+    fn resize(&mut self, slots: usize, walls: Option<&Walls<D>>);
+    /// See [`FluidEffect::prepare`].
+    fn prepare<K: Kernel<D>>(&mut self, stage: Stage, around: &Neighbourhood<'_, K, D>) -> u64;
+    /// The shares of a pair of fluid particles, but for the effect of this name.
+    fn pairs_without(&self, name: &str) -> Self::Pairs<'_>;
+    /// The shares of a pair of fluid particles.
+    fn pairs(&self) -> Self::Pairs<'_> {
+        self.pairs_without("")
+    }
+    /// The shares of a pair of a fluid and a wall particle.
+    fn at_walls(&self) -> Self::AtWalls<'_>;
+    /// Adds name and seconds of the own pass, in the mean of both stages, of each effect with a share of a pair of
+    /// fluid particles.
+    fn measure<K: Kernel<D>>(&mut self, around: &Neighbourhood<'_, K, D>, own: &mut Vec<(&'static str, f64)>);
+    /// Bytes allocated.
+    fn bytes(&self) -> usize;
+}
+
+impl<const D: usize> Effects<D> for () {
+    type Pairs<'a> = ();
+    type AtWalls<'a> = ();
+    fn resize(&mut self, _: usize, _: Option<&Walls<D>>) {}
+    fn prepare<K: Kernel<D>>(&mut self, _: Stage, _: &Neighbourhood<'_, K, D>) -> u64 {
+        0
+    }
+    fn pairs_without(&self, _: &str) {}
+    fn at_walls(&self) {}
+    fn measure<K: Kernel<D>>(&mut self, _: &Neighbourhood<'_, K, D>, _: &mut Vec<(&'static str, f64)>) {}
+    fn bytes(&self) -> usize {
+        0
+    }
+}
+
+impl<const D: usize, E: FluidEffect<D>, R: Effects<D>> Effects<D> for (Option<E>, R) {
+    type Pairs<'a>
+        = (Option<E::Pair<'a>>, R::Pairs<'a>)
+    where
+        Self: 'a;
+    type AtWalls<'a>
+        = (Option<E::AtWall<'a>>, R::AtWalls<'a>)
+    where
+        Self: 'a;
+
+    fn resize(&mut self, slots: usize, walls: Option<&Walls<D>>) {
+        if let Some(effect) = &mut self.0 {
+            effect.resize(slots, walls);
+        }
+        self.1.resize(slots, walls);
+    }
+    fn prepare<K: Kernel<D>>(&mut self, stage: Stage, around: &Neighbourhood<'_, K, D>) -> u64 {
+        let own = self.0.as_mut().map_or(0, |effect| effect.prepare(stage, around));
+        own + self.1.prepare(stage, around)
+    }
+    fn pairs_without(&self, name: &str) -> Self::Pairs<'_> {
+        let effect = self.0.as_ref().filter(|_| E::NAME != name);
+        (effect.and_then(E::pair), self.1.pairs_without(name))
+    }
+    fn at_walls(&self) -> Self::AtWalls<'_> {
+        (self.0.as_ref().and_then(E::at_wall), self.1.at_walls())
+    }
+    fn measure<K: Kernel<D>>(
+        &mut self,
+        around: &Neighbourhood<'_, K, D>,
+        own: &mut Vec<(&'static str, f64)>,
+    ) {
+        if let Some(effect) = self.0.as_mut().filter(|effect| effect.pair().is_some()) {
+            let seconds =
+                [Stage::First, Stage::Second].map(|stage| fastest(|| _ = effect.prepare(stage, around)));
+            own.push((E::NAME, 0.5 * (seconds[0] + seconds[1])));
+        }
+        self.1.measure(around, own);
+    }
+    fn bytes(&self) -> usize {
+        self.0.as_ref().map_or(0, E::bytes) + self.1.bytes()
+    }
+}
+
+/// No effect beside those of the list.
+impl<const D: usize> FluidEffect<D> for () {
+    const NAME: &'static str = "none";
+    type Pair<'a> = NoShare;
+    type AtWall<'a> = NoShare;
+    fn decide(_: &Scene) -> Decision {
+        Decision { name: "none", on: false, why: "no further effect".into() }
+    }
+}
+
+macro_rules! list {
     ($($(#[$doc:meta])* $effect:ident $name:literal $module:ident,)*) => {
-        /// The effects of a scene's pair pass; `None`: absent.
-        #[derive(Clone, Copy)]
-        pub struct Effects<'a, const D: usize> {
-            $($(#[$doc])* pub $module: Option<<crate::$module::$effect as FluidEffect<D>>::Pair<'a>>,)*
+        $(pub mod $module;)*
+
+        /// The effects of the list with one more, `X`.
+        pub type List<const D: usize, X> = chain!(D, X, $($module::$effect)*);
+
+        /// The effects that take part in a scene; `more` is added to the list.
+        pub(crate) fn of_scene<const D: usize, X>(scene: &Scene, more: Option<X>) -> List<D, X> {
+            chain!(of D, scene, more, $($module::$effect)*)
         }
 
-        impl<'a, const D: usize> Effects<'a, D> {
-            /// None at all.
-            pub fn none() -> Self {
-                Self { $($module: None,)* }
-            }
-
-            /// Those that take part.
-            pub(crate) fn of(fluid: &'a Fluid<D>) -> Self {
-                Self {
-                    $($module: fluid
-                        .takes_part(EffectName::$effect)
-                        .then(|| <crate::$module::$effect as FluidEffect<D>>::pair(fluid)),)*
-                }
-            }
-
-            /// The same without one.
-            pub fn without(mut self, effect: EffectName) -> Self {
-                match effect {
-                    $(EffectName::$effect => self.$module = None,)*
-                    _ => {}
-                }
-                self
-            }
-
-            fn on(&self) -> usize {
-                [$(self.$module.is_some(),)*].into_iter().filter(|&on| on).count()
-            }
-
-            /// All effects with a question whether each is there.
-            #[allow(clippy::type_complexity)]
-            fn complete(self) -> chain!(type D, 'a $($module::$effect)*) {
-                chain!(self $($module)*)
-            }
-        }
-
-        /// The effects of the list.
-        pub const LIST: &[EffectName] = &[$(EffectName::$effect,)*];
-
-        /// Memory that an effect of the list takes where it takes part, bytes a particle.
-        pub fn bytes(scene: &Scene, effect: EffectName) -> usize {
-            match effect {
-                $(EffectName::$effect => <crate::$module::$effect as FluidEffect<2>>::bytes(scene),)*
-                _ => 0,
-            }
-        }
-
-        fn of_the_list(scene: &Scene) -> Vec<Decision> {
-            vec![$(<crate::$module::$effect as FluidEffect<2>>::decide(scene),)*]
+        /// What a scene with fluid decides about each effect of the list, with the memory that the effect has of its
+        /// own, bytes a particle.
+        pub fn decide<const D: usize>(scene: &Scene) -> Vec<(Decision, usize)> {
+            vec![$(decide_one::<$module::$effect<D>, D>(scene),)*]
         }
     };
 }
 
 macro_rules! chain {
-    (type $D:ident, $a:lifetime) => { () };
-    (type $D:ident, $a:lifetime $module:ident::$effect:ident $($rest:tt)*) => {
-        (Option<<crate::$module::$effect as FluidEffect<$D>>::Pair<$a>>, chain!(type $D, $a $($rest)*))
+    ($D:ident, $X:ident,) => { (Option<$X>, ()) };
+    ($D:ident, $X:ident, $module:ident::$effect:ident $($rest:tt)*) => {
+        (Option<$module::$effect<$D>>, chain!($D, $X, $($rest)*))
     };
-    ($effects:ident) => { () };
-    ($effects:ident $module:ident $($rest:tt)*) => { ($effects.$module, chain!($effects $($rest)*)) };
+    (of $D:ident, $scene:ident, $more:ident,) => { ($more, ()) };
+    (of $D:ident, $scene:ident, $more:ident, $module:ident::$effect:ident $($rest:tt)*) => {
+        (taking_part::<$module::$effect<$D>, $D>($scene), chain!(of $D, $scene, $more, $($rest)*))
+    };
 }
 
-halfstep_scene::fluid_effects!(compose);
-
-/// What a scene with fluid decides about each of the fluid's effects.
-pub fn decide(scene: &Scene) -> Vec<Decision> {
-    let mut decisions = of_the_list(scene);
-    decisions.push(density_gradient::decide(scene));
-    decisions.push(wall_guard::decide(scene));
-    decisions.push(non_negative_pressure(scene));
-    decisions.push(thin_plate_screen(scene));
-    decisions
+fn decide_one<E: FluidEffect<D>, const D: usize>(scene: &Scene) -> (Decision, usize) {
+    let decision = E::decide(scene);
+    let bytes = if decision.on { E::bytes_per_particle(scene) } else { 0 };
+    (decision, bytes)
 }
 
-/// A pass over whatever composition it is given.
-pub trait Pass<const D: usize> {
-    /// Runs it.
-    fn run<E: PairEffect<D>>(self, effects: E);
+fn taking_part<E: Listed<D>, const D: usize>(scene: &Scene) -> Option<E> {
+    E::decide(scene).on.then(|| E::of(scene)).flatten()
 }
 
-impl<'a, const D: usize> Effects<'a, D> {
-    /// Runs a pass compiled for exactly these effects, or the complete law. Returns the composition's name.
-    pub fn composition(self, pass: impl Pass<D>) -> &'static str {
-        let Self { artificial_viscosity: damping, density_diffusion: diffusion, viscosity, .. } = self;
-        match (self.on(), damping, diffusion, viscosity) {
-            (1, Some(damping), None, None) => {
-                pass.run((damping, ()));
-                "artificial viscosity"
-            }
-            (2, Some(damping), Some(Diffusion::Simple(diffusion)), None) => {
-                pass.run::<(_, (Simple, ()))>((damping, (diffusion, ())));
-                "artificial viscosity, simple diffusion"
-            }
-            (2, Some(damping), Some(Diffusion::Hydrostatic(diffusion)), None) => {
-                pass.run::<(_, (Hydrostatic<D>, ()))>((damping, (diffusion, ())));
-                "artificial viscosity, hydrostatic diffusion"
-            }
-            (2, Some(damping), Some(Diffusion::DeltaSph(diffusion)), None) => {
-                pass.run::<(_, (DeltaSph<'a, D>, ()))>((damping, (diffusion, ())));
-                "artificial viscosity, delta-SPH diffusion"
-            }
-            (3, Some(damping), Some(Diffusion::Simple(diffusion)), Some(stress)) => {
-                pass.run((damping, (diffusion, (stress, ()))));
-                "artificial viscosity, simple diffusion, viscosity"
-            }
-            (2, None, Some(Diffusion::DeltaSph(diffusion)), Some(stress)) => {
-                pass.run((diffusion, (stress, ())));
-                "delta-SPH diffusion, viscosity"
-            }
-            (3, Some(damping), Some(Diffusion::DeltaSph(diffusion)), Some(stress)) => {
-                pass.run((damping, (diffusion, (stress, ()))));
-                "artificial viscosity, delta-SPH diffusion, viscosity"
-            }
-            _ => {
-                pass.run(self.complete());
-                "complete law"
-            }
-        }
-    }
-}
+halfstep_scene::fluid_effects!(list);

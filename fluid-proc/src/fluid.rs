@@ -1,22 +1,20 @@
 //! The fluid as a [`Role`]: what happens in a half-step, and which effects take part.
 
-use crate::artificial_viscosity::ArtificialViscosity;
 use crate::columns::{Columns, fit};
-use crate::density_diffusion::Strength;
-use crate::effects::{self};
+use crate::composition::Shares;
+use crate::effects::non_negative_wall_pressure::NonNegativeWallPressure;
+use crate::effects::{self, Effects, FluidEffect, List};
 use crate::interface::Coupling;
 use crate::midpoint::{self, Conditions, Extremes};
-use crate::moving_wall::motions;
 use crate::rates::RateSum;
 use crate::time_step::Limits;
-use crate::viscosity::StressTerm;
-use crate::wall::{Damping, Walls};
-use crate::wall_guard::{self, GUARD};
-use halfstep_interface::{Parameters, non_negative_pressure};
+use crate::walls::Walls;
+use crate::walls::moving::motions;
+use halfstep_interface::Parameters;
 use halfstep_role::role::{Costs, CoverageError, Peer, Role};
 use halfstep_scene::bounds::Bounds;
 use halfstep_scene::geometry;
-use halfstep_scene::{DensityDiffusion, EffectName, KernelName, Phase, ProbeKind, Scene};
+use halfstep_scene::{KernelName, Phase, ProbeKind, Scene};
 use halfstep_sph::lane::{Isa, LANES};
 use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_sph::state_equation::StateEquation;
@@ -30,8 +28,8 @@ use halfstep_wire::protocol::{Audit, ForceRecord, StateRecord};
 /// Margin of the neighbour lists over h: lists are renewed when two particles may have come that much closer.
 const SKIN: f64 = 0.3;
 
-/// The fluid and the walls around it.
-pub struct Fluid<const D: usize> {
+/// The fluid and the walls around it, with the effects of the program's list and one more, `X`.
+pub struct Fluid<const D: usize, X: FluidEffect<D> = ()> {
     pub(crate) columns: Columns<D>,
     pub(crate) walls: Option<Walls<D>>,
     pub(crate) coupling: Option<Coupling<D>>,
@@ -47,27 +45,16 @@ pub struct Fluid<const D: usize> {
     bounds: Bounds,
     pub(crate) isa: Isa,
     limits: Limits,
-    /// The effects that take part.
-    pub(crate) effects: Vec<EffectName>,
-    pub(crate) diffusion: DensityDiffusion,
-    pub(crate) strength: Strength,
-    pub(crate) artificial_viscosity: ArtificialViscosity,
-    pub(crate) quadratic: f64,
-    pub(crate) viscosity: f64,
+    pub(crate) effects: List<D, X>,
+    /// Name of the composition that the rate pass runs.
+    composition: String,
+    /// The stage of the next sums.
+    pub(crate) stage: Stage,
     domain: ([f64; D], [f64; D]),
     pub(crate) fluid_list: ClusterList,
     pub(crate) wall_list: ClusterList,
     pub(crate) list_of_walls: ClusterList,
     pub(crate) sums: Vec<RateSum<D>>,
-    /// Renormalised density gradient of each cluster's particles.
-    pub(crate) gradient: Vec<[[f64; D]; LANES]>,
-    /// Computed once a step.
-    pub(crate) frozen: bool,
-    /// Name of the composition that the rate pass ran last.
-    pub(crate) composition: Option<&'static str>,
-    /// The gradient belongs to this step and order.
-    pub(crate) gradient_known: bool,
-    pub(crate) stress: StressTerm<D>,
     displacement: f64,
     largest_speed: f64,
     largest_acceleration: f64,
@@ -78,6 +65,17 @@ pub struct Fluid<const D: usize> {
 impl<const D: usize> Fluid<D> {
     /// The fluid of a scene that has one.
     pub fn new(scene: &Scene, isa: Isa) -> Option<Self> {
+        Self::build(scene, isa, None)
+    }
+}
+
+impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
+    /// The fluid of a scene that has one, with a further effect where that takes part ([`FluidEffect::decide`]).
+    pub fn with_effect(scene: &Scene, isa: Isa, effect: X) -> Option<Self> {
+        Self::build(scene, isa, Some(effect).filter(|_| X::decide(scene).on))
+    }
+
+    fn build(scene: &Scene, isa: Isa, more: Option<X>) -> Option<Self> {
         let fluid = scene.fluid.as_ref()?;
         let layout = geometry::layout::<D>(scene);
         let h = scene.smoothing_ratio * scene.resolution;
@@ -85,16 +83,10 @@ impl<const D: usize> Fluid<D> {
         let volume = scene.resolution.powi(D as i32);
         let state = StateEquation::new(fluid.density, fluid.sound_speed, fluid.background_pressure);
         let columns = Columns::new(&layout.fluid, &state, volume);
-        let non_negative = non_negative_pressure(scene).on;
-        let effects: Vec<EffectName> =
-            effects::decide(scene).into_iter().filter(|d| d.on).map(|d| d.effect).collect();
-        let acts = f64::from(u8::from(effects.contains(&EffectName::ArtificialViscosity)));
-        let plain = acts * fluid.artificial_viscosity.linear;
-        let guarded = if wall_guard::decide(scene).on { plain.max(GUARD) } else { plain };
-        let damping = Damping { free_slip: guarded * fluid.sound_speed, plain: plain * fluid.sound_speed };
-        let walls = (!layout.wall.is_empty()).then(|| {
-            Walls::new(&layout.wall, &state, volume, 2.0 * h + skin, non_negative, damping, &motions(scene))
-        });
+        let non_negative = NonNegativeWallPressure::<D>::decide(scene).on;
+        let walls = (!layout.wall.is_empty())
+            .then(|| Walls::new(&layout.wall, &state, volume, 2.0 * h + skin, non_negative, &motions(scene)));
+        let effects = effects::of_scene(scene, more);
         let domain = geometry::domain(scene);
         let coupled =
             (0..scene.solids.len()).filter_map(|solid| Parameters::new(scene, solid, isa)).collect();
@@ -115,26 +107,14 @@ impl<const D: usize> Fluid<D> {
                 bounds: Bounds::of_fluid(scene)?,
                 isa,
                 limits: Limits::new(scene),
+                composition: effects.pairs().composition(),
                 effects,
-                diffusion: fluid.density_diffusion,
-                strength: Strength(fluid.density_diffusion_coefficient * h * fluid.sound_speed),
-                artificial_viscosity: ArtificialViscosity::new(
-                    fluid.artificial_viscosity,
-                    fluid.sound_speed,
-                    h,
-                ),
-                quadratic: acts * fluid.artificial_viscosity.quadratic,
-                viscosity: fluid.viscosity,
+                stage: Stage::First,
                 domain: (std::array::from_fn(|d| domain.min[d]), std::array::from_fn(|d| domain.max[d])),
                 fluid_list: ClusterList::default(),
                 wall_list: ClusterList::default(),
                 list_of_walls: ClusterList::default(),
                 sums: Vec::new(),
-                gradient: Vec::new(),
-                frozen: crate::density_gradient::decide(scene).on,
-                gradient_known: false,
-                composition: None,
-                stress: StressTerm::default(),
                 displacement: 0.0,
                 largest_speed: 0.0,
                 largest_acceleration: 0.0,
@@ -180,13 +160,7 @@ impl<const D: usize> Fluid<D> {
         }
         let clusters = self.fluid_list.clusters();
         fit(&mut self.sums, clusters, RateSum::default());
-        if self.needs_gradient() {
-            fit(&mut self.gradient, clusters, [[0.0; D]; LANES]);
-            self.gradient_known = false;
-        }
-        if self.takes_part(EffectName::Viscosity) {
-            fit(&mut self.stress.0, self.columns.slots(), [[0.0; D]; D]);
-        }
+        self.effects.resize(self.columns.slots(), self.walls.as_ref());
         self.displacement = 0.0;
         self.sorted = true;
     }
@@ -219,18 +193,9 @@ impl<const D: usize> Fluid<D> {
             position: halfstep_wire::wide(position),
         })
     }
-
-    /// An effect of the list takes part.
-    pub(crate) fn takes_part(&self, effect: EffectName) -> bool {
-        self.effects.contains(&effect)
-    }
-
-    pub(crate) fn needs_gradient(&self) -> bool {
-        self.diffusion == DensityDiffusion::DeltaSph && self.takes_part(EffectName::DensityDiffusion)
-    }
 }
 
-impl<const D: usize> Role for Fluid<D> {
+impl<const D: usize, X: FluidEffect<D>> Role for Fluid<D, X> {
     fn name(&self) -> Name {
         Name::FLUID
     }
@@ -295,9 +260,7 @@ impl<const D: usize> Role for Fluid<D> {
                 );
             }
         }
-        if half_step.stage == Stage::Second {
-            self.gradient_known = false;
-        }
+        self.stage = half_step.next().stage;
         let conditions = Conditions::new(half_step, self.gravity, &self.state, &self.bounds);
         let extremes = midpoint::advance(&mut self.columns, &self.sums, conditions);
         self.remember(&extremes);
@@ -327,13 +290,13 @@ impl<const D: usize> Role for Fluid<D> {
         Some(self.allocated())
     }
 
-    fn composition(&self) -> Option<&'static str> {
-        self.composition
+    fn composition(&self) -> Option<&str> {
+        Some(&self.composition)
     }
 
     fn costs(&mut self) -> Costs {
         let before = self.pair_evaluations;
-        let costs = with_kernel!(self.kernel, self.smoothing_length, D, |kernel| Fluid::costs(self, kernel));
+        let costs = with_kernel!(self.kernel, self.smoothing_length, D, |kernel| Self::costs(self, kernel));
         self.pair_evaluations = before;
         costs
     }

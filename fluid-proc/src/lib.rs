@@ -3,10 +3,8 @@
 //! Midpoint steps (Kayaki's eqs. 30 and 31) over particles sorted into rows; each physical or numerical effect is a type
 //! that adds its share to one pass over the neighbours.
 
-pub mod artificial_viscosity;
 pub mod columns;
-pub mod density_diffusion;
-pub mod density_gradient;
+pub mod composition;
 pub mod effects;
 pub mod fluid;
 #[cfg(test)]
@@ -16,14 +14,11 @@ pub mod measure;
 mod memory;
 pub mod midpoint;
 pub mod momentum;
-pub mod moving_wall;
 mod passes;
 pub mod rates;
 #[cfg(test)]
 mod term_tests;
 pub mod time_step;
-pub mod viscosity;
-pub mod wall;
-pub mod wall_guard;
+pub mod walls;
 
 pub use fluid::Fluid;

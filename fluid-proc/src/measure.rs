@@ -1,6 +1,7 @@
 //! Probes, integral quantities, output and hash of the fluid.
 
 use crate::columns::Source;
+use crate::effects::FluidEffect;
 use crate::fluid::Fluid;
 use halfstep_scene::{Phase, ProbeKind};
 use halfstep_sph::neighbours::PADDING;
@@ -9,7 +10,7 @@ use halfstep_wire::protocol::Audit;
 use halfstep_wire::wide;
 use xxhash_rust::xxh3::Xxh3;
 
-impl<const D: usize> Fluid<D> {
+impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
     fn real_slots(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.columns.slots()).filter(|&s| self.columns.id[s] != PADDING)
     }

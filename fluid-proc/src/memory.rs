@@ -1,8 +1,9 @@
 //! Memory of the fluid.
 
 use crate::columns::{Columns, Shown};
+use crate::effects::{Effects, FluidEffect};
 use crate::fluid::Fluid;
-use crate::wall::Walls;
+use crate::walls::Walls;
 
 fn of<T>(column: &Vec<T>) -> usize {
     column.capacity() * size_of::<T>()
@@ -36,13 +37,12 @@ impl<const D: usize> Walls<D> {
             + of_each(&self.own_velocity)
             + of_each(&self.normal)
             + of(&self.reverse_all)
-            + of(&self.damping)
             + self.moving.as_ref().map_or(0, |m| of(&m.shape) + of_each(&m.initial) + of_each(&m.surface))
             + self.rows.bytes()
     }
 }
 
-impl<const D: usize> Fluid<D> {
+impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
     /// Bytes allocated for particles, sums, walls and neighbour lists.
     pub(crate) fn allocated(&self) -> usize {
         self.columns.bytes()
@@ -53,7 +53,6 @@ impl<const D: usize> Fluid<D> {
                 .iter()
                 .sum::<usize>()
             + of(&self.sums)
-            + of(&self.gradient)
-            + of(&self.stress.0)
+            + self.effects.bytes()
     }
 }

@@ -1,6 +1,7 @@
 //! The one pass that gives acceleration and density rate: pressure, continuity and whatever effects the scene calls for.
 
 use crate::columns::Shown;
+use crate::composition::Composition;
 use crate::momentum::pressure_and_continuity;
 use halfstep_sph::artificial_viscosity::damping;
 use halfstep_sph::kernel::Kernel;
@@ -59,6 +60,13 @@ pub trait PairEffect<const D: usize>: Copy + Send + Sync {
     fn own(&self, slot: usize) -> Self::Own;
     /// Adds the share of source `j`.
     fn add<A: Arch>(&self, own: &Self::Own, j: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>);
+    /// Enters a composition. A share that calls [`Composition::with`] has passes compiled for it: it doubles their
+    /// number.
+    fn enter<C: Composition<D>>(self, composition: C) {
+        composition.complete();
+    }
+    /// What the name of a composition says of it.
+    fn labels(_: &mut Vec<&'static str>) {}
 }
 
 impl<const D: usize> PairEffect<D> for () {
@@ -81,6 +89,10 @@ impl<const D: usize, E: PairEffect<D>, F: PairEffect<D>> PairEffect<D> for (E, F
         self.0.add::<A>(&own.0, j, pair, rates);
         self.1.add::<A>(&own.1, j, pair, rates);
     }
+    fn labels(labels: &mut Vec<&'static str>) {
+        E::labels(labels);
+        F::labels(labels);
+    }
 }
 
 /// An effect of which only the run knows whether it takes part.
@@ -96,6 +108,9 @@ impl<const D: usize, E: PairEffect<D>> PairEffect<D> for Option<E> {
         if let (Some(effect), Some(own)) = (self, own) {
             effect.add::<A>(own, j, pair, rates);
         }
+    }
+    fn labels(labels: &mut Vec<&'static str>) {
+        *labels = vec!["complete law"];
     }
 }
 

@@ -1,11 +1,11 @@
 //! Each term of the fluid's pass against values computed by hand, and the symmetries that they must keep.
 
-use crate::artificial_viscosity::ArtificialViscosity;
 use crate::columns::Shown;
-use crate::density_diffusion::{DeltaSph, Hydrostatic, Simple, Strength};
-use crate::density_gradient::{GradientLaw, GradientSum};
+use crate::effects::artificial_viscosity::ArtificialViscosity;
+use crate::effects::density_diffusion::gradient::{GradientLaw, GradientSum};
+use crate::effects::density_diffusion::{DeltaSph, Hydrostatic, Simple, Strength};
+use crate::effects::viscosity::{self, StressTerm, VelocityGradient, ViscousStress};
 use crate::rates::{PairEffect, RateLaw, RateSum};
-use crate::viscosity::{self, StressTerm, VelocityGradient, ViscousStress};
 use halfstep_scene::ArtificialViscosity as Coefficients;
 use halfstep_sph::kernel::{CubicSpline, Kernel};
 use halfstep_sph::lane::{Fused, Isa, LANES, Lane};

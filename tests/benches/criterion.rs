@@ -3,6 +3,7 @@
 mod support;
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
+use halfstep_fluid::composition::Shares;
 use halfstep_sph::lane::Isa;
 use halfstep_sph::neighbours::{ClusterList, Rows};
 use support::{Patch, Running, tank};
@@ -11,7 +12,7 @@ fn passes(c: &mut Criterion) {
     let mut group = c.benchmark_group("pass");
     group.throughput(Throughput::Elements(14_000));
     let mut patch = Patch::new();
-    group.bench_function("engine", |b| b.iter(|| Patch::effects().composition(&mut patch)));
+    group.bench_function("engine", |b| b.iter(|| Patch::effects().run(&mut patch)));
     let patch = Patch::new();
     group.bench_function("naive", |b| b.iter(|| patch.pass.run(&patch.naive, &patch.grid)));
     group.finish();

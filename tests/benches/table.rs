@@ -6,6 +6,7 @@
 
 mod support;
 
+use halfstep_fluid::composition::Shares;
 use halfstep_role::serve::on_threads;
 use halfstep_sph::lane::Isa;
 use serde_json::{Value, json};
@@ -39,7 +40,7 @@ fn line(what: &str, text: String) {
 fn passes(report: &mut Value) {
     println!("pair pass, 14 000 particles, pressure + artificial viscosity + simple diffusion, one thread");
     let mut patch = Patch::new();
-    Patch::effects().composition(&mut patch);
+    Patch::effects().run(&mut patch);
     let difference = patch.difference();
     // The engine softens distances by 1e-12 h².
     assert!(difference < 1e-11, "the engine and the naive pass agree: {difference}");
@@ -67,7 +68,7 @@ fn passes(report: &mut Value) {
         work.push(Box::new(move || {
             let mut patch = cell.borrow_mut();
             patch.isa = isa;
-            Patch::effects().composition(&mut *patch);
+            Patch::effects().run(&mut *patch);
         }));
     }
     let seconds = medians(Clock::Cpu, 41, &mut work);

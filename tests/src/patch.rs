@@ -1,7 +1,7 @@
 //! Fluid particles in the engine's order, outside any run: what instruction counts and benchmarks work on.
 
 use halfstep_fluid::columns::Shown;
-use halfstep_fluid::effects::Pass;
+use halfstep_fluid::composition::Pass;
 use halfstep_fluid::rates::{PairEffect, RateLaw, RateSum};
 use halfstep_sph::kernel::{CubicSpline, Kernel};
 use halfstep_sph::lane::Isa;

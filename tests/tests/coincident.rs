@@ -1,8 +1,8 @@
 //! Particles at one place: scenes cannot make them, and where a flow brings two together every force stays finite.
 
-use halfstep_fluid::artificial_viscosity::ArtificialViscosity;
-use halfstep_fluid::density_diffusion::{Diffusion, Simple, Strength};
-use halfstep_fluid::effects::Effects;
+use halfstep_fluid::composition::Shares;
+use halfstep_fluid::effects::artificial_viscosity::ArtificialViscosity;
+use halfstep_fluid::effects::density_diffusion::{Diffusion, Simple, Strength};
 use halfstep_fluid::rates::RateSum;
 use halfstep_interface::cross_viscosity::CrossViscosity;
 use halfstep_interface::{Interface, Parameters};
@@ -18,11 +18,10 @@ use std::path::Path;
 fn rates(particles: &[Particle]) -> Vec<[f64; 3]> {
     let patch = Patch::new(particles, 2.3 * H);
     let mut sums = vec![RateSum::default(); patch.list.clusters()];
-    let mut effects = Effects::none();
     let coefficients = Coefficients { linear: 1.0, quadratic: 2.0 };
-    effects.artificial_viscosity = Some(ArtificialViscosity::new(coefficients, 10.0, H));
-    effects.density_diffusion = Some(Diffusion::Simple(Simple(Strength(1.0))));
-    effects.composition(RatePass(&patch, &mut sums));
+    let damping = ArtificialViscosity::<2>::new(coefficients, 10.0, H);
+    let diffusion = Diffusion::<2>::Simple(Simple(Strength(1.0)));
+    (Some(damping), (Some(diffusion), ())).run(RatePass(&patch, &mut sums));
     let mut rates = vec![[0.0; 3]; particles.len()];
     for (slot, &id) in patch.id.iter().enumerate().filter(|(_, id)| **id != PADDING) {
         let (sum, k) = (&sums[slot / LANES], slot % LANES);

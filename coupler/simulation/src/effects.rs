@@ -25,7 +25,7 @@ pub(crate) fn ledger(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
         why,
         ..EffectReport::default()
     };
-    let decided = |d: Decision| row(d.effect.name(), d.on, d.why);
+    let decided = |d: Decision| row(d.name, d.on, d.why);
     let (fluid, solid) = (scene.fluid.is_some(), !scene.solids.is_empty());
     let moving = scene.gravity.iter().any(|&g| g != 0.0);
     let mut list = vec![
@@ -42,10 +42,9 @@ pub(crate) fn ledger(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
         ),
     ];
     if fluid {
-        list.extend(halfstep_fluid::effects::decide(scene).into_iter().map(|d| {
-            let bytes = halfstep_fluid::effects::bytes(scene, d.effect);
-            let bytes_per_particle = (d.on && bytes > 0).then_some(bytes as f64);
-            EffectReport { bytes_per_particle, ..decided(d) }
+        list.extend(halfstep_fluid::effects::decide::<2>(scene).into_iter().map(|(decision, bytes)| {
+            let bytes_per_particle = (bytes > 0).then_some(bytes as f64);
+            EffectReport { bytes_per_particle, ..decided(decision) }
         }));
     }
     list.push(row(

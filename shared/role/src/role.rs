@@ -97,8 +97,8 @@ pub trait Role: Send {
     fn bytes(&self) -> Option<usize> {
         None
     }
-    /// Which compiled composition of pair effects ran last, where there are several.
-    fn composition(&self) -> Option<&'static str> {
+    /// Which compiled composition of pair effects runs, where there are several.
+    fn composition(&self) -> Option<&str> {
         None
     }
     /// What each effect costs, measured on the present state, which does not change. For the end of a run.

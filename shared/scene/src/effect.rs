@@ -4,8 +4,8 @@
 use super::Scene;
 use serde::{Deserialize, Serialize};
 
-/// The pair effects of the fluid, one line each: documentation, type, name in the scene, module in the fluid's crate.
-/// Hands the list to another macro; the fluid composes its neighbour pass from it.
+/// The effects of the fluid, one line each: documentation, type, name in the scene, module in the fluid's crate
+/// (`fluid-proc/src/effects`). Hands the list to another macro; the fluid takes its effects and passes from it.
 #[macro_export]
 macro_rules! fluid_effects {
     ($then:ident) => {
@@ -16,6 +16,14 @@ macro_rules! fluid_effects {
             DensityDiffusion "density-diffusion" density_diffusion,
             /// Physical viscosity of the fluid.
             Viscosity "viscosity" viscosity,
+            /// The renormalised density gradient of delta-SPH is computed once a step.
+            FrozenDiffusion "frozen-diffusion" frozen_diffusion,
+            /// Artificial viscosity of at least A = 1 between fluid and free-slip walls.
+            WallGuard "wall-guard" wall_guard,
+            /// Pressure shown by walls, and by the solid as moving wall, is never negative.
+            NonNegativeWallPressure "non-negative-wall-pressure" non_negative_wall_pressure,
+            /// Thin plates show the fluid on each face a pressure of its own.
+            ThinPlateScreen "thin-plate-screen" thin_plate_screen,
         }
     };
 }
@@ -24,12 +32,6 @@ macro_rules! effect_names {
     ($($(#[$doc:meta])* $effect:ident $name:literal $module:ident,)*) => {
         names! {
             $($(#[$doc])* $effect $name,)*
-            /// The renormalised density gradient of delta-SPH is computed once a step.
-            FrozenDiffusion "frozen-diffusion",
-            /// Artificial viscosity of at least A = 1 between fluid and free-slip walls.
-            WallGuard "wall-guard",
-            /// Pressure shown by walls, and by the solid as moving wall, is never negative.
-            NonNegativeWallPressure "non-negative-wall-pressure",
             /// Artificial stress in the solid.
             ArtificialStress "artificial-stress",
             /// Renormalised velocity gradient in the solid.
@@ -42,8 +44,6 @@ macro_rules! effect_names {
             WallContact "wall-contact",
             /// A solid that rests is not computed until fluid comes near.
             SleepingSolid "sleeping-solid",
-            /// Thin plates show the fluid on each face a pressure of its own.
-            ThinPlateScreen "thin-plate-screen",
         }
     };
 }
@@ -62,7 +62,7 @@ macro_rules! names {
             pub const ALL: &[Self] = &[$(Self::$effect,)*];
 
             /// Its name in scenes and reports.
-            pub fn name(self) -> &'static str {
+            pub const fn name(self) -> &'static str {
                 match self {
                     $(Self::$effect => $name,)*
                 }
@@ -88,8 +88,8 @@ pub enum Switch {
 /// Whether an effect takes part, and why.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Decision {
-    /// Which.
-    pub effect: EffectName,
+    /// The effect's name.
+    pub name: &'static str,
     /// It takes part.
     pub on: bool,
     /// The scene's key or the fact that decided.
@@ -118,7 +118,7 @@ impl Decision {
             (Derived::On(why), Switch::Auto) => (true, why),
             (Derived::Off(why), Switch::Auto) => (false, why),
         };
-        Self { effect, on, why }
+        Self { name: effect.name(), on, why }
     }
 }
 

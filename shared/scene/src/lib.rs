@@ -88,7 +88,7 @@ pub struct Scene {
     /// Numbers that a study compares.
     #[serde(default)]
     pub metrics: Vec<Metric>,
-    /// Effects that the user forces on or off; those absent are `auto`.
+    /// Effects that the user or the preset forces on or off; those absent are `auto`.
     pub effects: BTreeMap<EffectName, Switch>,
     /// Numerical parameters that are no physics.
     pub numerics: Numerics,

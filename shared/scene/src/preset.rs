@@ -18,6 +18,7 @@ pub(super) struct Defaults {
     pub(super) cross_viscosity: f64,
     pub(super) kernel: KernelName,
     pub(super) lattice: Lattice,
+    pub(super) effects: &'static [(EffectName, Switch)],
 }
 
 impl Defaults {
@@ -36,6 +37,7 @@ impl Defaults {
             cross_viscosity: 1.0,
             kernel: KernelName::CubicSpline,
             lattice: Lattice::Centred,
+            effects: &[],
         };
         match preset {
             None => own,
@@ -54,6 +56,8 @@ impl Defaults {
                 cross_viscosity: 1.0,
                 kernel: KernelName::CubicSpline,
                 lattice: Lattice::Nodal,
+                // Kayaki's scheme evaluates everything at both stages.
+                effects: &[(EffectName::FrozenDiffusion, Switch::Off)],
             },
         }
     }

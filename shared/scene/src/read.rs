@@ -72,7 +72,7 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report) -> Draft {
             top.tables("reference").into_iter().filter_map(|r| read_probe::reference(r, folder)).collect()
         },
         metrics: top.tables("metric").into_iter().filter_map(read_metric::metric).collect(),
-        effects: effects(&top),
+        effects: effects(&top, &defaults),
         numerics,
     };
     top.finish();
@@ -169,9 +169,9 @@ fn output(section: Section<'_>, end_time: f64) -> Output {
     output
 }
 
-fn effects(top: &Section<'_>) -> BTreeMap<EffectName, Switch> {
+fn effects(top: &Section<'_>, defaults: &Defaults) -> BTreeMap<EffectName, Switch> {
     const SWITCHES: [(&str, Switch); 3] = [("auto", Switch::Auto), ("on", Switch::On), ("off", Switch::Off)];
-    let mut effects = BTreeMap::new();
+    let mut effects: BTreeMap<_, _> = defaults.effects.iter().copied().collect();
     let section = top.section("effects");
     let Some(table) = top.node("effects").and_then(Node::table) else { return effects };
     for (key, entry) in table {

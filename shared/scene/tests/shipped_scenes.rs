@@ -1,7 +1,7 @@
 //! The scenes that come with the program load, and their particles are where their comments say.
 
 use halfstep_scene::geometry::{estimate, layout};
-use halfstep_scene::{Scene, Treatment, load};
+use halfstep_scene::{EffectName, Scene, Switch, Treatment, load};
 use std::path::{Path, PathBuf};
 
 fn scenes() -> PathBuf {
@@ -76,6 +76,14 @@ fn the_presets_counts_are_the_papers() {
     let gate = shipped("elastic-gate", &["preset=kayaki", "shape.plate.box.max=[0.106,0.099]"]);
     let row = halfstep_scene::geometry::layout::<2>(&gate).solid;
     assert_eq!(row.iter().filter(|p| p.position[1] < 0.0015).count(), 5);
+}
+
+#[test]
+fn a_preset_forces_effects_and_keys_override_it() {
+    let switch = |overrides: &[&str]| shipped("elastic-gate", overrides).switch(EffectName::FrozenDiffusion);
+    assert_eq!(switch(&[]), Switch::Auto);
+    assert_eq!(switch(&["preset=kayaki"]), Switch::Off);
+    assert_eq!(switch(&["preset=kayaki", "effects.frozen-diffusion=on"]), Switch::On);
 }
 
 #[test]

@@ -5,9 +5,9 @@
 pub(crate) mod naive;
 
 use halfstep_fluid::Fluid;
-use halfstep_fluid::artificial_viscosity::ArtificialViscosity;
-use halfstep_fluid::density_diffusion::{Diffusion, Simple, Strength};
-use halfstep_fluid::effects::{Effects, Pass};
+use halfstep_fluid::composition::{Pass, Shares};
+use halfstep_fluid::effects::artificial_viscosity::ArtificialViscosity;
+use halfstep_fluid::effects::density_diffusion::{Diffusion, Simple, Strength};
 use halfstep_fluid::rates::{PairEffect, RateLaw, RateSum};
 use halfstep_role::role::Role;
 use halfstep_scene::{self as scene, ArtificialViscosity as Coefficients, Scene};
@@ -147,12 +147,10 @@ impl Patch {
     }
 
     /// The effects of the pass.
-    pub(crate) fn effects() -> Effects<'static, 2> {
+    pub(crate) fn effects() -> impl Shares<2> {
         let coefficients = Coefficients { linear: 1.0, quadratic: 0.0 };
-        let mut effects = Effects::none();
-        effects.artificial_viscosity = Some(ArtificialViscosity::new(coefficients, LINEAR, H));
-        effects.density_diffusion = Some(Diffusion::Simple(Simple(Strength(DIFFUSION))));
-        effects
+        let damping = ArtificialViscosity::<2>::new(coefficients, LINEAR, H);
+        (Some(damping), (Some(Diffusion::<2>::Simple(Simple(Strength(DIFFUSION)))), ()))
     }
 
     /// Largest difference of the engine's accelerations from the naive pass's, over the largest acceleration.

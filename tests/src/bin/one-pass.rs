@@ -2,9 +2,10 @@
 //! of a run, from the list of effects to a compiled composition; `alone` is a pass that was never told of any other
 //! effect.
 
-use halfstep_fluid::artificial_viscosity::ArtificialViscosity;
-use halfstep_fluid::density_diffusion::{DeltaSph, Diffusion, Simple, Strength};
-use halfstep_fluid::effects::{Effects, Pass};
+use halfstep_fluid::composition::{Pass, Shares};
+use halfstep_fluid::effects::artificial_viscosity::ArtificialViscosity;
+use halfstep_fluid::effects::density_diffusion::{DeltaSph, Diffusion, Simple, Strength};
+use halfstep_fluid::effects::viscosity::ViscousStress;
 use halfstep_fluid::rates::RateSum;
 use halfstep_scene::ArtificialViscosity as Coefficients;
 use halfstep_tests::patch::{Particle, Patch, RatePass, SMOOTHING_LENGTH as H};
@@ -33,19 +34,14 @@ fn main() -> ExitCode {
     let damping = ArtificialViscosity::new(Coefficients { linear: 0.1, quadratic: 0.0 }, 10.0, H);
     let simple = Simple(Strength(0.1));
     let full = DeltaSph { strength: Strength(0.1), gradient: &gradient };
-    let chosen = |density_diffusion| {
-        let mut effects = Effects::none();
-        effects.artificial_viscosity = Some(damping);
-        effects.density_diffusion = density_diffusion;
-        effects
-    };
+    let chosen = |diffusion| (Some(damping), (diffusion, (None::<ViscousStress<'_, 2>>, ())));
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match arguments[..] {
-        ["damping", "chosen"] => println!("{}", chosen(None).composition(pass)),
+        ["damping", "chosen"] => chosen(None).run(pass),
         ["damping", "alone"] => pass.run(damping),
-        ["simple", "chosen"] => println!("{}", chosen(Some(Diffusion::Simple(simple))).composition(pass)),
+        ["simple", "chosen"] => chosen(Some(Diffusion::Simple(simple))).run(pass),
         ["simple", "alone"] => pass.run((damping, simple)),
-        ["delta-sph", "chosen"] => println!("{}", chosen(Some(Diffusion::DeltaSph(full))).composition(pass)),
+        ["delta-sph", "chosen"] => chosen(Some(Diffusion::DeltaSph(full))).run(pass),
         ["delta-sph", "alone"] => pass.run((damping, full)),
         ["complete"] => pass.run((Some(damping), (Some(Diffusion::Simple(simple)), ()))),
         _ => {

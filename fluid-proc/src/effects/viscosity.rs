@@ -3,15 +3,17 @@
 //! of each particle from a first pass, then (tau_i / rho_i² + tau_j / rho_j²) . grad W in the momentum equation. A wall
 //! particle takes part in the gradient with the velocity it shows and repeats the stress of its fluid neighbour.
 
-use crate::artificial_viscosity::ArtificialViscosity;
-use crate::columns::{Shown, four};
-use crate::effects::FluidEffect;
-use crate::fluid::Fluid;
+use super::artificial_viscosity::ArtificialViscosity;
+use super::{FluidEffect, Listed, Neighbourhood, evaluations};
+use crate::columns::{Shown, fit, four};
+use crate::composition::Composition;
 use crate::rates::{FluidPair, PairEffect, PairRates};
+use crate::walls::Walls;
 use halfstep_scene::{Decision, Derived, EffectName, Scene};
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::{Arch, LANES, Lane};
-use halfstep_sph::pair::{PairLaw, distance};
+use halfstep_sph::pair::{self, PairLaw, distance};
+use halfstep_wire::half_step::Stage;
 
 /// tau_ab / rho² of each slot.
 #[derive(Clone, Debug, Default)]
@@ -120,7 +122,7 @@ pub const SMALLEST_SHARE: f64 = 0.01;
 /// one, `None` without fluid or without physical one.
 pub fn share_of_artificial(scene: &Scene) -> Option<f64> {
     let fluid = scene.fluid.as_ref().filter(|f| f.viscosity > 0.0)?;
-    if !<ArtificialViscosity as FluidEffect<2>>::decide(scene).on {
+    if !ArtificialViscosity::<2>::decide(scene).on {
         return Some(f64::INFINITY);
     }
     let h = scene.smoothing_ratio * scene.resolution;
@@ -128,12 +130,25 @@ pub fn share_of_artificial(scene: &Scene) -> Option<f64> {
     Some(fluid.viscosity / fluid.density / artificial)
 }
 
-/// The effect in the list.
-#[derive(Clone, Copy, Debug)]
-pub struct Viscosity;
+/// The effect.
+#[derive(Clone, Debug)]
+pub struct Viscosity<const D: usize> {
+    /// mu, Pa s.
+    viscosity: f64,
+    stress: StressTerm<D>,
+}
 
-impl<const D: usize> FluidEffect<D> for Viscosity {
+impl<const D: usize> Listed<D> for Viscosity<D> {
+    fn of(scene: &Scene) -> Option<Self> {
+        let viscosity = scene.fluid.as_ref()?.viscosity;
+        Some(Self { viscosity, stress: StressTerm::default() })
+    }
+}
+
+impl<const D: usize> FluidEffect<D> for Viscosity<D> {
+    const NAME: &'static str = EffectName::Viscosity.name();
     type Pair<'a> = ViscousStress<'a, D>;
+    type AtWall<'a> = ViscosityAtWall<'a, D>;
     fn decide(scene: &Scene) -> Decision {
         let derived = match share_of_artificial(scene) {
             None => Derived::Impossible("fluid.viscosity is zero".into()),
@@ -146,11 +161,34 @@ impl<const D: usize> FluidEffect<D> for Viscosity {
         };
         Decision::new(scene, EffectName::Viscosity, derived)
     }
-    fn bytes(_: &Scene) -> usize {
+    fn bytes_per_particle(_: &Scene) -> usize {
         size_of::<[[f64; D]; D]>()
     }
-    fn pair(fluid: &Fluid<D>) -> ViscousStress<'_, D> {
-        ViscousStress(&fluid.stress)
+    fn resize(&mut self, slots: usize, _: Option<&Walls<D>>) {
+        fit(&mut self.stress.0, slots, [[0.0; D]; D]);
+    }
+    fn prepare<K: Kernel<D>>(&mut self, _: Stage, around: &Neighbourhood<'_, K, D>) -> u64 {
+        let (kernel, fluid, viscosity) = (around.kernel, around.fluid, self.viscosity);
+        let law = GradientLaw { kernel, targets: fluid, sources: fluid };
+        let finish = |slot, sum: &VelocityGradient<D>| sum.stress(viscosity, fluid.densities(slot));
+        let (out, _) = self.stress.0.as_chunks_mut();
+        if let Some((walls, list)) = around.walls {
+            let at_walls = GradientLaw { kernel, targets: fluid, sources: walls };
+            pair::pass_both_into(around.isa, (&law, around.list), (&at_walls, list), finish, out);
+            evaluations(around.list) + evaluations(list)
+        } else {
+            pair::pass_into(around.isa, &law, around.list, finish, out);
+            evaluations(around.list)
+        }
+    }
+    fn pair(&self) -> Option<ViscousStress<'_, D>> {
+        Some(ViscousStress(&self.stress))
+    }
+    fn at_wall(&self) -> Option<ViscosityAtWall<'_, D>> {
+        Some(ViscosityAtWall(&self.stress))
+    }
+    fn bytes(&self) -> usize {
+        self.stress.0.capacity() * size_of::<[[f64; D]; D]>()
     }
 }
 
@@ -170,6 +208,12 @@ impl<const D: usize> PairEffect<D> for ViscousStress<'_, D> {
         let other = &self.0.0[j];
         add_stress::<D, A>(|a, b| own[a][b] + Lane::splat(other[a.min(b)][a.max(b)]), &pair.dx, rates);
     }
+    fn enter<C: Composition<D>>(self, composition: C) {
+        composition.with(self);
+    }
+    fn labels(labels: &mut Vec<&'static str>) {
+        labels.push("viscosity");
+    }
 }
 
 /// The effect between fluid and wall.
@@ -186,5 +230,11 @@ impl<const D: usize> PairEffect<D> for ViscosityAtWall<'_, D> {
     #[inline(always)]
     fn add<A: Arch>(&self, own: &Self::Own, _: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
         add_stress::<D, A>(|a, b| own[a][b] + own[a][b], &pair.dx, rates);
+    }
+    fn enter<C: Composition<D>>(self, composition: C) {
+        composition.with(self);
+    }
+    fn labels(labels: &mut Vec<&'static str>) {
+        labels.push("viscosity");
     }
 }

@@ -5,34 +5,11 @@
 //! (det M < 0.05) the gradient is zero and the diffusion falls back to the simple one.
 
 use crate::columns::Shown;
-use crate::density_diffusion::DensityDiffusion as Diffusion;
-use crate::effects::FluidEffect;
-use halfstep_scene::{Decision, DensityDiffusion, Derived, EffectName, Preset, Scene};
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::{Arch, LANES, Lane};
 use halfstep_sph::pair::{PairLaw, distance};
 use halfstep_sph::tensor::moment_inverse;
 use nalgebra::{SMatrix, SVector};
-
-/// Whether the gradient is computed at stage 0 only and used at both stages: unless the scene asks for Kayaki's scheme,
-/// which evaluates everything at both. The diffusion itself is evaluated at both in any case. (Antuono, Colagrossi and
-/// Marrone 2012 freeze the whole diffusive term over a step.)
-pub fn decide(scene: &Scene) -> Decision {
-    let derived = match &scene.fluid {
-        Some(fluid)
-            if fluid.density_diffusion == DensityDiffusion::DeltaSph
-                && <Diffusion as FluidEffect<2>>::decide(scene).on =>
-        {
-            if scene.preset == Some(Preset::Kayaki) {
-                Derived::Off("preset = \"kayaki\" evaluates everything at both stages".into())
-            } else {
-                Derived::On("the density gradient of delta-SPH changes little in half a step".into())
-            }
-        }
-        _ => Derived::Impossible("only delta-SPH diffusion needs the density gradient".into()),
-    };
-    Decision::new(scene, EffectName::FrozenDiffusion, derived)
-}
 
 /// Raw gradient and moment matrix of four particles.
 #[derive(Clone, Copy, Debug)]

@@ -5,16 +5,23 @@
 //! - hydrostatic (Fourtakas et al. 2019, linearised): 2 (rho_i - rho_j - rho0 g . x_ij / c0²);
 //! - delta-SPH (Antuono et al. 2010; Marrone et al. 2011, Kayaki's eqs. 18 to 21):
 //!   2 (rho_i - rho_j) - ({grad rho}_i + {grad rho}_j) . x_ij, with the renormalised gradient of
-//!   [`crate::density_gradient`]. (Printed with a difference of the gradients in Kayaki's eq. (19); only the sum cancels a
+//!   [`gradient`]. (Printed with a difference of the gradients in Kayaki's eq. (19); only the sum cancels a
 //!   linear field.)
 
-use crate::columns::four;
-use crate::effects::FluidEffect;
-use crate::fluid::Fluid;
+pub mod gradient;
+
+use super::frozen_diffusion::FrozenDiffusion;
+use super::{FluidEffect, Listed, Neighbourhood, evaluations};
+use crate::columns::{fit, four};
+use crate::composition::{Composition, NoShare};
 use crate::rates::{FluidPair, PairEffect, PairRates};
+use crate::walls::Walls;
+use gradient::{GradientLaw, GradientSum};
 use halfstep_scene::{Decision, DensityDiffusion as Variant, Derived, EffectName, Scene};
-use halfstep_sph::lane::{Arch, Lane};
-use halfstep_sph::pair::dot;
+use halfstep_sph::kernel::Kernel;
+use halfstep_sph::lane::{Arch, LANES, Lane};
+use halfstep_sph::pair::{self, dot};
+use halfstep_wire::half_step::Stage;
 
 /// delta h c0, m²/s.
 #[derive(Clone, Copy, Debug)]
@@ -53,12 +60,41 @@ pub enum Diffusion<'a, const D: usize> {
     DeltaSph(DeltaSph<'a, D>),
 }
 
-/// The effect in the list.
-#[derive(Clone, Copy, Debug)]
-pub struct DensityDiffusion;
+/// The effect.
+#[derive(Clone, Debug)]
+pub struct DensityDiffusion<const D: usize> {
+    variant: Variant,
+    strength: Strength,
+    /// rho0 g / c0²: the density gradient at rest, kg/m⁴.
+    at_rest: [f64; D],
+    /// Renormalised density gradient of each cluster's particles, kg/m⁴; only delta-SPH has it.
+    gradient: Vec<[[f64; D]; LANES]>,
+    /// The gradient is computed at the first stage of a step only.
+    frozen: bool,
+    /// The gradient was computed since the last sort.
+    known: bool,
+}
 
-impl<const D: usize> FluidEffect<D> for DensityDiffusion {
+impl<const D: usize> Listed<D> for DensityDiffusion<D> {
+    fn of(scene: &Scene) -> Option<Self> {
+        let fluid = scene.fluid.as_ref()?;
+        let h = scene.smoothing_ratio * scene.resolution;
+        let scale = fluid.density / fluid.sound_speed.powi(2);
+        Some(Self {
+            variant: fluid.density_diffusion,
+            strength: Strength(fluid.density_diffusion_coefficient * h * fluid.sound_speed),
+            at_rest: std::array::from_fn(|d| scale * scene.gravity[d]),
+            gradient: Vec::new(),
+            frozen: FrozenDiffusion::<D>::decide(scene).on,
+            known: false,
+        })
+    }
+}
+
+impl<const D: usize> FluidEffect<D> for DensityDiffusion<D> {
+    const NAME: &'static str = EffectName::DensityDiffusion.name();
     type Pair<'a> = Diffusion<'a, D>;
+    type AtWall<'a> = NoShare;
     fn decide(scene: &Scene) -> Decision {
         let derived =
             match scene.fluid.as_ref().map(|f| (f.density_diffusion, f.density_diffusion_coefficient)) {
@@ -77,22 +113,42 @@ impl<const D: usize> FluidEffect<D> for DensityDiffusion {
             };
         Decision::new(scene, EffectName::DensityDiffusion, derived)
     }
-    fn bytes(scene: &Scene) -> usize {
+    fn bytes_per_particle(scene: &Scene) -> usize {
         let renormalised = scene.fluid.as_ref().is_some_and(|f| f.density_diffusion == Variant::DeltaSph);
         if renormalised { size_of::<[f64; D]>() } else { 0 }
     }
-    fn pair(fluid: &Fluid<D>) -> Diffusion<'_, D> {
-        let strength = fluid.strength;
-        match fluid.diffusion {
-            Variant::DeltaSph => {
-                Diffusion::DeltaSph(DeltaSph { strength, gradient: fluid.gradient.as_flattened() })
-            }
-            Variant::Hydrostatic => {
-                let scale = fluid.state.density / fluid.state.sound_speed.powi(2);
-                Diffusion::Hydrostatic(Hydrostatic { strength, gradient: fluid.gravity.map(|g| scale * g) })
-            }
-            Variant::Simple | Variant::None => Diffusion::Simple(Simple(strength)),
+    fn resize(&mut self, slots: usize, _: Option<&Walls<D>>) {
+        if self.variant == Variant::DeltaSph {
+            fit(&mut self.gradient, slots / LANES, [[0.0; D]; LANES]);
+            self.known = false;
         }
+    }
+    fn prepare<K: Kernel<D>>(&mut self, stage: Stage, around: &Neighbourhood<'_, K, D>) -> u64 {
+        let stays = self.frozen && self.known && stage == Stage::Second;
+        if self.variant != Variant::DeltaSph || stays {
+            return 0;
+        }
+        self.known = true;
+        let law = GradientLaw { kernel: around.kernel, fluid: around.fluid };
+        let solve = |_, sum: &GradientSum<D>| sum.solve();
+        pair::pass_into(around.isa, &law, around.list, solve, &mut self.gradient);
+        evaluations(around.list)
+    }
+    fn pair(&self) -> Option<Diffusion<'_, D>> {
+        let strength = self.strength;
+        match self.variant {
+            Variant::None => None,
+            Variant::Simple => Some(Diffusion::Simple(Simple(strength))),
+            Variant::Hydrostatic => {
+                Some(Diffusion::Hydrostatic(Hydrostatic { strength, gradient: self.at_rest }))
+            }
+            Variant::DeltaSph => {
+                Some(Diffusion::DeltaSph(DeltaSph { strength, gradient: self.gradient.as_flattened() }))
+            }
+        }
+    }
+    fn bytes(&self) -> usize {
+        self.gradient.capacity() * size_of::<[[f64; D]; LANES]>()
     }
 }
 
@@ -111,6 +167,13 @@ impl<const D: usize> PairEffect<D> for Diffusion<'_, D> {
             Self::Simple(d) => d.add::<A>(&(), j, pair, rates),
             Self::Hydrostatic(d) => d.add::<A>(&(), j, pair, rates),
             Self::DeltaSph(d) => d.add::<A>(own, j, pair, rates),
+        }
+    }
+    fn enter<C: Composition<D>>(self, composition: C) {
+        match self {
+            Self::Simple(share) => composition.with(share),
+            Self::Hydrostatic(share) => composition.with(share),
+            Self::DeltaSph(share) => composition.with(share),
         }
     }
 }
@@ -133,6 +196,9 @@ impl<const D: usize> PairEffect<D> for Simple {
     fn add<A: Arch>(&self, _: &(), _: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
         diffuse::<D, A>(self.0, twice_difference(pair), rates);
     }
+    fn labels(labels: &mut Vec<&'static str>) {
+        labels.push("simple diffusion");
+    }
 }
 
 impl<const D: usize> PairEffect<D> for Hydrostatic<D> {
@@ -143,6 +209,9 @@ impl<const D: usize> PairEffect<D> for Hydrostatic<D> {
     fn add<A: Arch>(&self, _: &(), _: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
         let rest = dot::<D, A>(self.gradient.map(|g| Lane::splat(2.0 * g)), pair.dx);
         diffuse::<D, A>(self.strength, twice_difference(pair) - rest, rates);
+    }
+    fn labels(labels: &mut Vec<&'static str>) {
+        labels.push("hydrostatic diffusion");
     }
 }
 
@@ -157,5 +226,8 @@ impl<const D: usize> PairEffect<D> for DeltaSph<'_, D> {
         let gradient = &self.gradient[j];
         let sum: [Lane; D] = std::array::from_fn(|d| own[d] + Lane::splat(gradient[d]));
         diffuse::<D, A>(self.strength, twice_difference(pair) - dot::<D, A>(sum, pair.dx), rates);
+    }
+    fn labels(labels: &mut Vec<&'static str>) {
+        labels.push("delta-SPH diffusion");
     }
 }

@@ -7,8 +7,9 @@
 //! state's at p_w, the mass rho0 V. Without fluid around: p_w = 0, rho0, u_w. Of a wall that moves by prescription, g is
 //! less its own acceleration.
 
+pub mod moving;
+
 use crate::columns::{Columns, Shown, Source, Vectors, fit, vectors};
-use crate::moving_wall::Moving;
 use halfstep_scene::Motion;
 use halfstep_scene::geometry::WallPoint;
 use halfstep_sph::columns::bounds;
@@ -18,15 +19,7 @@ use halfstep_sph::lane::{Arch, LANES, Lane};
 use halfstep_sph::neighbours::Rows;
 use halfstep_sph::pair::PairLaw;
 use halfstep_sph::state_equation::StateEquation;
-
-/// A c0 of the artificial viscosity toward the fluid, m/s.
-#[derive(Clone, Copy, Debug)]
-pub struct Damping {
-    /// Where the wall shows the fluid's own tangential velocity.
-    pub free_slip: f64,
-    /// In corners and along no-slip walls.
-    pub plain: f64,
-}
+use moving::Moving;
 
 /// The wall particles, sorted once, or with the fluid where some of them move.
 #[derive(Clone, Debug)]
@@ -40,8 +33,6 @@ pub struct Walls<const D: usize> {
     pub(crate) normal: Vectors<D>,
     /// 1 where all components are reversed (corner or no slip), else 0.
     pub(crate) reverse_all: Vec<f64>,
-    /// A c0 of the artificial viscosity toward the fluid, m/s.
-    pub damping: Vec<f64>,
     /// Order of the slots.
     pub rows: Rows<D>,
     pub(crate) moving: Option<Moving<D>>,
@@ -57,7 +48,6 @@ impl<const D: usize> Walls<D> {
         volume: f64,
         height: f64,
         non_negative: bool,
-        damping: Damping,
         motions: &[Option<Motion>],
     ) -> Self {
         let n = points.len();
@@ -67,7 +57,6 @@ impl<const D: usize> Walls<D> {
             own_velocity: vectors(n),
             normal: vectors(n),
             reverse_all: vec![0.0; n],
-            damping: vec![0.0; n],
             rows: Rows::default(),
             moving: Moving::new(points, motions),
             height,
@@ -81,7 +70,6 @@ impl<const D: usize> Walls<D> {
             }
             let reversed = p.corner || !p.free_slip;
             walls.reverse_all[i] = f64::from(u8::from(reversed));
-            walls.damping[i] = if reversed { damping.plain } else { damping.free_slip };
         }
         walls.sort();
         (0..walls.slots()).for_each(|slot| walls.shown.sources[slot] = walls.alone(slot, state));
@@ -98,7 +86,6 @@ impl<const D: usize> Walls<D> {
             self.rows.permute(&mut self.normal[d]);
         }
         self.rows.permute(&mut self.reverse_all);
-        self.rows.permute(&mut self.damping);
         if let Some(moving) = &mut self.moving {
             moving.permute(&mut self.rows);
         }
@@ -122,6 +109,11 @@ impl<const D: usize> Walls<D> {
         self.id.len()
     }
 
+    /// A slot shows the reverse of all components of the fluid's velocity: it lies in a corner or does not let slip.
+    pub fn reverses_all(&self, slot: usize) -> bool {
+        self.reverse_all[slot] > 0.0
+    }
+
     /// What the four wall particles at `slot..slot + 4` show, from the sums over the fluid.
     // Inlined, its scalar arithmetic would break up the vectors of the loop before it.
     #[inline(never)]
@@ -139,7 +131,7 @@ impl<const D: usize> Walls<D> {
             along_normal += (v[d] - u[d]) * self.normal[d][slot];
         }
         let velocity = std::array::from_fn(|d| {
-            if self.reverse_all[slot] > 0.0 {
+            if self.reverses_all(slot) {
                 2.0 * u[d] - v[d]
             } else {
                 v[d] - 2.0 * along_normal * self.normal[d][slot]

@@ -1,0 +1,48 @@
+//! Laminar viscosity, Morris, Fox and Zhu 1997, eq. (22), with one mu for all particles: the acceleration gets
+//!   sum_j m_j 2 mu / (rho_i rho_j) (x_ij . grad W) / r² v_ij = sum_j m_j 2 mu / (rho_i rho_j) F v_ij,
+//! since grad W = F x_ij. It keeps linear momentum and needs no pass of its own. At a wall it acts with the velocity
+//! that the wall shows.
+
+use halfstep_fluid::effects::FluidEffect;
+use halfstep_fluid::rates::{FluidPair, PairEffect, PairRates};
+use halfstep_scene::{Decision, Scene};
+use halfstep_sph::lane::{Arch, Lane};
+
+/// The effect, and its share of a pair.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LaminarViscosity {
+    /// mu, Pa s.
+    pub(crate) viscosity: f64,
+}
+
+impl<const D: usize> FluidEffect<D> for LaminarViscosity {
+    const NAME: &'static str = "laminar-viscosity";
+    type Pair<'a> = Self;
+    type AtWall<'a> = Self;
+
+    fn decide(_: &Scene) -> Decision {
+        Decision { name: <Self as FluidEffect<D>>::NAME, on: true, why: "the program has it".into() }
+    }
+    fn pair(&self) -> Option<Self> {
+        Some(*self)
+    }
+    fn at_wall(&self) -> Option<Self> {
+        Some(*self)
+    }
+}
+
+impl<const D: usize> PairEffect<D> for LaminarViscosity {
+    type Own = ();
+    const VECTOR: bool = true;
+
+    #[inline(always)]
+    fn own(&self, _: usize) {}
+
+    #[inline(always)]
+    fn add<A: Arch>(&self, _: &(), _: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
+        let factor = Lane::splat(2.0 * self.viscosity) / (pair.density_i * pair.density_j);
+        for d in 0..D {
+            rates.vector[d] = A::mul_add(factor, pair.dv[d], rates.vector[d]);
+        }
+    }
+}
