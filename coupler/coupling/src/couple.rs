@@ -236,6 +236,7 @@ impl<S: Transport, const D: usize> Coupler<S, D> {
                     foreign.write(self.frame - 1, tick.time, state.records())?;
                 }
                 if self.abilities[place] & ability::PROBES == 0 {
+                    // At every step: the first one fixes what displacements are measured from.
                     values.extend_from_slice(foreign.measure(state.records(), forces));
                     continue;
                 }

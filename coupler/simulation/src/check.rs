@@ -31,7 +31,7 @@ pub fn describe(scene: &Scene, isa: Isa) -> String {
     line("scene", format!("{} ({})", scene.name, scene.path.display()));
     line("particles", format!("{} fluid, {} solid, {} wall", counts.fluid, counts.solid, counts.wall));
     let mut limit = f64::INFINITY;
-    let mut solid_limit = None;
+    let mut solid_limits = Vec::new();
     let mut built = Vec::new();
     for place in 0..scene.participants().len() {
         let Some(role) = roles::build(place, scene, isa) else { continue };
@@ -39,7 +39,7 @@ pub fn describe(scene: &Scene, isa: Isa) -> String {
         line(&format!("{} dt limit", role.name()), format!("{own:.3e} s"));
         limit = limit.min(own);
         if role.phase() == Phase::Solid {
-            solid_limit = Some(own);
+            solid_limits.push((role.name(), own));
         }
         built.push(role);
     }
@@ -51,10 +51,13 @@ pub fn describe(scene: &Scene, isa: Isa) -> String {
         "time step",
         format!("{dt:.3e} s: {:.0} steps to t = {} s", (scene.end_time / dt).ceil(), scene.end_time),
     );
-    if let (Some(limit), true) = (solid_limit, scene.fluid.is_some()) {
-        let stepping = SubStepping::of(scene, 0);
+    for (solid, (name, limit)) in solid_limits.iter().enumerate().filter(|_| scene.fluid.is_some()) {
+        let stepping = SubStepping::of(scene, solid);
         let own = limit / f64::from(stepping.most());
-        line("solid sub-steps", format!("{} (one is stable to {own:.3e} s)", stepping.choose(dt, own)));
+        line(
+            &format!("{name} sub-steps"),
+            format!("{} (one is stable to {own:.3e} s)", stepping.choose(dt, own)),
+        );
     }
     line("memory", format!("about {:.1} MB", scene::memory_needed(&counts) as f64 / 1e6));
     if scene.fluid.is_some() && !scene.solids.is_empty() {

@@ -44,6 +44,18 @@ pub(crate) fn participants(scene: &Scene, foreign: &[Name]) -> Result<Vec<Partic
             probes: roles::probe_values(scene, place) as u32,
         });
     }
+    let shared = |k: &usize| {
+        let own = &participants[*k];
+        foreign.contains(&own.name)
+            && participants.iter().any(|other| other.name != own.name && other.process == own.process)
+    };
+    if let Some(k) = (0..participants.len()).find(shared) {
+        let name = participants[k].name;
+        return Err(RunError::System(format!(
+            "the solid `{name}` of another program needs the process `{name}` for itself, but other solids run in it: \
+             give them another `process`"
+        )));
+    }
     // A ribbon of about four layers on each side of the solids' surfaces, and room for compression.
     let ribbon = (24 * all_solids).max(4096).min(fluid);
     let capacity = scene.numerics.interface_capacity.map_or(ribbon, u64::from);

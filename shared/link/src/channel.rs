@@ -1,4 +1,4 @@
-//! The ends of a channel: one publisher, up to two readers, whole messages.
+//! The ends of a channel: one publisher, its readers, whole messages.
 
 use super::config::FLUID;
 use super::hub::{Hub, Presence, Watch, attributes, port_error, service_name};

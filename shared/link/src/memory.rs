@@ -12,7 +12,7 @@ use std::path::Path;
 
 /// Where POSIX shared memory lies.
 pub(super) const SHM: &str = "/dev/shm";
-/// Messages of a channel that can exist at once: two that the slower reader holds, two in its queue, one that is being
+/// Messages of a channel that can exist at once: two that the slowest reader holds, two in its queue, one that is being
 /// filled, one spare. Lock-step needs fewer, so the transport's worst case for independent readers is not reserved.
 pub(super) const SAMPLES: usize = 6;
 /// Generous size of the transport's own header of a message, and of its bookkeeping for a channel.
