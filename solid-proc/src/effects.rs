@@ -25,7 +25,7 @@ pub fn decide(scene: &Scene) -> Vec<Decision> {
                 of.collect::<Vec<_>>().join("; ")
             }
         };
-        Decision { effect, on: each.iter().any(|d| d.on), why }
+        Decision { name: effect.name(), on: each.iter().any(|d| d.on), why }
     };
     EFFECTS.map(summary).into()
 }

@@ -10,7 +10,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("wire", &["sph"]),
     ("link", &["wire"]),
     ("interface", &["sph", "scene", "wire"]),
-    ("role", &["scene", "wire", "link"]),
+    ("role", &["sph", "scene", "wire", "link"]),
     ("output", &["scene", "wire"]),
     ("fluid", &["sph", "scene", "wire", "interface", "role"]),
     ("solid", &["sph", "scene", "wire", "interface", "role"]),

@@ -1,11 +1,9 @@
-//! The participants of a scene as owners of particles: the one place where the dimension becomes a type.
+//! The participants of a scene as owners of particles.
 
-use halfstep_fluid::Fluid;
 use halfstep_output::FrameWriter;
 use halfstep_role::lockstep::{Member, RoleError};
 use halfstep_role::role::Role;
 use halfstep_scene::Scene;
-use halfstep_solid::Solid;
 use halfstep_sph::Phase;
 use halfstep_sph::lane::Isa;
 use halfstep_wire::frame::FrameSink;
@@ -15,11 +13,8 @@ use std::path::Path;
 pub fn build(place: usize, scene: &Scene, isa: Isa) -> Option<Box<dyn Role>> {
     let participants = scene.participants();
     match participants.get(place)?.phase {
-        Phase::Fluid => Fluid::<2>::new(scene, isa).map(|f| Box::new(f) as Box<dyn Role>),
-        Phase::Solid => {
-            let solid = place - usize::from(scene.fluid.is_some());
-            Solid::<2>::new(scene, solid, isa).map(|s| Box::new(s) as Box<dyn Role>)
-        }
+        Phase::Fluid => halfstep_fluid::role(scene, isa),
+        Phase::Solid => halfstep_solid::role(scene, place - usize::from(scene.fluid.is_some()), isa),
         Phase::Wall => None,
     }
 }

@@ -120,10 +120,10 @@ mod tests {
         fn add<A: Arch>(&self, _: &(), _: usize, _: &FluidPair<2>, _: &mut PairRates<2>) {}
     }
 
-    fn composition<X: FluidEffect<2>>(scene: &Scene, effect: X) -> &'static str {
+    fn composition<X: FluidEffect<2>>(scene: &Scene, effect: X) -> String {
         let mut fluid = Fluid::with_effect(scene, Isa::detect(), effect).unwrap();
         fluid.own_sums();
-        fluid.composition().unwrap()
+        fluid.composition().unwrap().to_owned()
     }
 
     #[test]

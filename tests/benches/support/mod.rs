@@ -4,7 +4,6 @@
 
 pub(crate) mod naive;
 
-use halfstep_fluid::Fluid;
 use halfstep_fluid::composition::{Pass, Shares};
 use halfstep_fluid::effects::artificial_viscosity::ArtificialViscosity;
 use halfstep_fluid::effects::density_diffusion::{Diffusion, Simple, Strength};
@@ -65,14 +64,11 @@ pub(crate) struct Running {
 
 impl Running {
     pub(crate) fn fluid(scene: &Scene, isa: Isa) -> Self {
-        Self { role: Box::new(Fluid::<2>::new(scene, isa).expect("a fluid")), step: 0 }
+        Self { role: halfstep_fluid::role(scene, isa).expect("a fluid"), step: 0 }
     }
 
     pub(crate) fn solid(scene: &Scene) -> Self {
-        Self {
-            role: Box::new(halfstep_solid::Solid::<2>::new(scene, 0, Isa::detect()).expect("a solid")),
-            step: 0,
-        }
+        Self { role: halfstep_solid::role(scene, 0, Isa::detect()).expect("a solid"), step: 0 }
     }
 
     pub(crate) fn particles(&self) -> f64 {
