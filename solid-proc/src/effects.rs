@@ -1,16 +1,11 @@
 //! The solid's effects: what takes part in a scene with solid, and why.
 
+use crate::models::own_effects;
 use crate::sleep::TOLERANCE;
 use halfstep_scene::{Decision, Derived, EffectName, Scene, Shape, SolidModelName};
 
-const EFFECTS: [EffectName; 6] = [
-    EffectName::ArtificialStress,
-    EffectName::RenormalisedGradient,
-    EffectName::ClampFace,
-    EffectName::WallClamp,
-    EffectName::WallContact,
-    EffectName::SleepingSolid,
-];
+/// Effects that every model has.
+const COMMON: [EffectName; 2] = [EffectName::WallContact, EffectName::SleepingSolid];
 
 /// What a scene decides about each of the effects of its solids: an effect takes part where one of them has it.
 pub fn decide(scene: &Scene) -> Vec<Decision> {
@@ -27,7 +22,10 @@ pub fn decide(scene: &Scene) -> Vec<Decision> {
         };
         Decision { name: effect.name(), on: each.iter().any(|d| d.on), why }
     };
-    EFFECTS.map(summary).into()
+    let owned = SolidModelName::ALL.iter().flat_map(|(_, model)| own_effects(*model).list);
+    let mut all: Vec<EffectName> = owned.map(|(effect, _)| *effect).chain(COMMON).collect();
+    all.sort_unstable();
+    all.into_iter().map(summary).collect()
 }
 
 /// What a scene decides about an effect of its solid of that index.
@@ -44,40 +42,22 @@ fn derive(scene: &Scene, k: usize, effect: EffectName) -> Derived {
     let Some(solid) = scene.solids.get(k) else {
         return Derived::Impossible("the scene has no solid".into());
     };
-    let mut shapes = scene.shapes.iter().filter(|s| s.solid == Some(k));
-    let hypoelastic = solid.model == SolidModelName::Hypoelastic;
+    let model = solid.model.name();
+    for (_, owner) in SolidModelName::ALL {
+        let own = own_effects(*owner);
+        if let Some((_, elsewhere)) = own.list.iter().find(|(e, _)| *e == effect) {
+            return if *owner == model {
+                (own.derive)(scene, k, effect)
+            } else {
+                Derived::Impossible((*elsewhere).into())
+            };
+        }
+    }
     match effect {
-        EffectName::ArtificialStress if !hypoelastic => {
-            Derived::Impossible("neighbours of the reference configuration: no tensile instability".into())
-        }
-        EffectName::ArtificialStress if solid.artificial_stress.strength == 0.0 => {
-            Derived::Impossible("solid.artificial_stress.strength is zero".into())
-        }
-        EffectName::ArtificialStress => Derived::On(format!(
-            "the hypoelastic solid is unstable in tension; strength {}",
-            solid.artificial_stress.strength
-        )),
-        EffectName::RenormalisedGradient if hypoelastic => {
-            Derived::Off("the plain gradient is the method's own".into())
-        }
-        EffectName::RenormalisedGradient => {
-            Derived::Impossible("part of the total-Lagrangian solid, corrected once for all".into())
-        }
-        EffectName::ClampFace if hypoelastic => {
-            Derived::Impossible("only the total-Lagrangian solid corrects its clamps".into())
-        }
-        EffectName::WallClamp if !hypoelastic => {
-            Derived::Impossible("only the hypoelastic solid's clamps carry stress".into())
-        }
-        EffectName::ClampFace | EffectName::WallClamp if shapes.all(|s| s.clamp.is_empty()) => {
-            Derived::Impossible("nothing is clamped".into())
-        }
-        EffectName::ClampFace => Derived::On("clamps hold at their boxes' faces".into()),
-        EffectName::WallClamp => Derived::Off("clamped rows carry the solid's own stress".into()),
         EffectName::SleepingSolid if scene.fluid.is_none() => {
             Derived::Impossible("no fluid that could wake it".into())
         }
-        EffectName::SleepingSolid if !shapes.all(begins_at_rest) => Derived::Impossible(
+        EffectName::SleepingSolid if !shapes(scene, k).all(begins_at_rest) => Derived::Impossible(
             "a solid that is not clamped, or that starts with a velocity, moves by itself".into(),
         ),
         EffectName::SleepingSolid => Derived::On(format!(
@@ -87,6 +67,16 @@ fn derive(scene: &Scene, k: usize, effect: EffectName) -> Derived {
         _ if scene.shapes.iter().any(|s| s.contact) => Derived::On("a wall has contact = true".into()),
         _ => Derived::Impossible("no wall has contact = true".into()),
     }
+}
+
+/// The shapes of the scene's solid of that index.
+fn shapes(scene: &Scene, solid: usize) -> impl Iterator<Item = &Shape> {
+    scene.shapes.iter().filter(move |s| s.solid == Some(solid))
+}
+
+/// Something of the scene's solid of that index is clamped.
+pub(crate) fn is_clamped(scene: &Scene, solid: usize) -> bool {
+    shapes(scene, solid).any(|s| !s.clamp.is_empty())
 }
 
 /// A shape that is clamped somewhere and starts with no velocity.

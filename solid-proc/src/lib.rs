@@ -4,6 +4,7 @@ mod columns;
 pub mod effects;
 pub mod hypoelastic;
 pub mod model;
+mod models;
 mod sleep;
 pub mod solid;
 mod sub_steps;
@@ -11,7 +12,7 @@ mod surface;
 pub mod total_lagrangian;
 mod wall;
 
-pub use model::{Load, SolidModel};
+pub use model::{Load, OuterRates, Particles, SolidModel};
 pub use solid::Solid;
 pub use sub_steps::SubStepping;
 

@@ -2,26 +2,67 @@
 
 use halfstep_role::role::Costs;
 use halfstep_sph::quantity::Quantity;
-use halfstep_wire::frame::{Frame, FramePoint};
 use halfstep_wire::half_step::HalfStep;
 use halfstep_wire::protocol::StateRecord;
 
-/// What the fluid does to the solid during one stage. One entry for each of the model's particles, by particle number;
-/// particles outside the interface set have zeros.
+/// Forces on a model's particles from outside during one stage: one entry for each, by particle number.
 #[derive(Clone, Debug)]
 pub struct Load<const D: usize> {
     /// Force, N (2D: N/m).
     pub force: Vec<[f64; D]>,
-    /// Rate of density by fluid neighbours, kg/(m³ s); empty but for phase-blind coupling.
-    pub density_rate: Vec<f64>,
-    /// dv_a/dx_b by fluid neighbours, 1/s; empty but for phase-blind coupling.
-    pub gradient: Vec<[[f64; D]; D]>,
 }
 
 impl<const D: usize> Load<D> {
     /// No load on `n` particles.
     pub fn none(n: usize) -> Self {
-        Self { force: vec![[0.0; D]; n], density_rate: Vec::new(), gradient: Vec::new() }
+        Self { force: vec![[0.0; D]; n] }
+    }
+}
+
+/// What neighbours outside of the model add to the strain rate of one of its particles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OuterRates<const D: usize> {
+    /// Rate of density, kg/(m³ s).
+    pub density: f64,
+    /// dv_a/dx_b, 1/s.
+    pub gradient: [[f64; D]; D],
+}
+
+impl<const D: usize> OuterRates<D> {
+    /// Nothing.
+    pub const ZERO: Self = Self { density: 0.0, gradient: [[0.0; D]; D] };
+}
+
+/// All particles of a model in their present state: one entry for each, by particle number.
+#[derive(Clone, Copy, Debug)]
+pub struct Particles<'a, const D: usize> {
+    /// Position in the reference configuration, m.
+    pub reference: &'a [[f64; D]],
+    /// Position, m.
+    pub position: &'a [[f64; D]],
+    /// Velocity, m/s. (A record may show the mean over sub-steps instead.)
+    pub velocity: &'a [[f64; D]],
+    /// Density, kg/m³.
+    pub density: &'a [f64],
+    /// Mass, kg (2D: kg/m).
+    pub mass: &'a [f64],
+}
+
+impl<const D: usize> Particles<'_, D> {
+    /// How many.
+    pub fn len(&self) -> usize {
+        self.reference.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.reference.is_empty()
+    }
+
+    /// Sum over all particles of m v² / 2, J (2D: J/m).
+    pub fn kinetic_energy(&self) -> f64 {
+        let of = |(m, v): (&f64, &[f64; D])| 0.5 * m * v.iter().map(|v| v * v).sum::<f64>();
+        self.mass.iter().zip(self.velocity).map(of).sum()
     }
 }
 
@@ -40,26 +81,15 @@ pub struct OutOfBounds {
 
 /// A deformable solid made of particles.
 ///
-/// Particle numbers run from 0 to `particles()` - 1 and never change. A step from n to n + 1 is `advance` with its
+/// Particle numbers run from 0 to n - 1 and never change. A step from n to n + 1 is `advance` with its
 /// first stage (to n + 1/2, under the load of n) and then with its second (from n to n + 1, under the load of n + 1/2).
 pub trait SolidModel<const D: usize>: Send {
-    /// Number of particles.
-    fn particles(&self) -> usize;
+    /// The particles.
+    fn particles(&self) -> Particles<'_, D>;
     /// Numbers of the interface set S: particles within 2h of the surface in the reference configuration, ascending.
     fn interface_set(&self) -> &[u32];
-    /// Present state of a particle for the wire.
-    fn record(&self, particle: u32) -> StateRecord;
-    /// Position of a particle, m.
-    fn position(&self, particle: u32) -> [f64; D] {
-        let record = self.record(particle);
-        std::array::from_fn(|d| record.position[d])
-    }
-    /// Density of a particle, kg/m³.
-    fn density(&self, particle: u32) -> f64 {
-        self.record(particle).density
-    }
-    /// Velocity of a particle, m/s. (The record may show the mean over sub-steps instead.)
-    fn velocity(&self, particle: u32) -> [f64; D];
+    /// Appends the present state of these particles as the wire has it.
+    fn records(&self, particles: &[u32], out: &mut Vec<StateRecord>);
     /// Largest stable time step of one sub-step, s.
     fn sub_step_limit(&self) -> f64;
     /// Goes from n over the half-step's span, to n + 1/2 or to n + 1. The load is the force of the stage's own state.
@@ -67,18 +97,12 @@ pub trait SolidModel<const D: usize>: Send {
     /// # Errors
     /// The particle that is farthest out of bounds.
     fn advance(&mut self, half_step: &HalfStep, sub_steps: u32, load: &Load<D>) -> Result<(), OutOfBounds>;
-    /// Position in the reference configuration, m.
-    fn reference(&self, particle: u32) -> [f64; D];
-    /// Mass of a particle, kg (2D: kg/m).
-    fn mass(&self, particle: u32) -> f64;
+    /// Takes over what neighbours outside of the model add to its strain rates, by particle number, for all
+    /// evaluations until the next call; an empty slice stands for nothing. A model whose strain does not count such
+    /// neighbours ignores it.
+    fn take_outer_rates(&mut self, _rates: &[OuterRates<D>]) {}
     /// Energy stored in the material, J (2D: J/m).
     fn strain_energy(&self) -> f64;
-    /// Copies the particles for output.
-    fn fill_frame(&self, frame: &mut Frame) {
-        for p in 0..self.particles() as u32 {
-            frame.push(FramePoint::solid(&self.record(p)));
-        }
-    }
     /// Pair evaluations so far.
     fn pair_evaluations(&self) -> u64;
     /// What the model's effects take of its time, measured on the present state, which does not change. A model without

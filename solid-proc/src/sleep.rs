@@ -8,7 +8,7 @@
 //! several plates), gravity sets a least time: a mode that sags by more than the tolerance has fallen by it after
 //! sqrt(8 tolerance / |g|), whatever its period. Only solids that are clamped and begin at rest may sleep.
 
-use crate::model::{Load, SolidModel};
+use crate::model::{Load, OuterRates, Particles};
 use halfstep_scene::{Scene, Solid};
 use halfstep_wire::half_step::{HalfStep, Stage};
 
@@ -28,10 +28,10 @@ pub(crate) struct Sleep {
 }
 
 impl Sleep {
-    pub(crate) fn new<const D: usize>(scene: &Scene, solid: &Solid, model: &dyn SolidModel<D>) -> Self {
+    pub(crate) fn new<const D: usize>(scene: &Scene, solid: &Solid, particles: Particles<'_, D>) -> Self {
         let mut sides = [(f64::INFINITY, f64::NEG_INFINITY); D];
-        for p in 0..model.particles() as u32 {
-            for (side, x) in sides.iter_mut().zip(model.reference(p)) {
+        for reference in particles.reference {
+            for (side, &x) in sides.iter_mut().zip(reference) {
                 *side = (side.0.min(x), side.1.max(x));
             }
         }
@@ -54,9 +54,10 @@ impl Sleep {
         &mut self,
         half_step: &HalfStep,
         load: &Load<D>,
-        model: &dyn SolidModel<D>,
+        outer: &[OuterRates<D>],
+        particles: Particles<'_, D>,
     ) -> Rest {
-        if !is_zero(load) {
+        if !is_zero(load, outer) {
             self.quiet = 0.0;
             let slept = std::mem::take(&mut self.asleep);
             return if slept && half_step.stage == Stage::Second { Rest::Woken } else { Rest::Awake };
@@ -65,7 +66,7 @@ impl Sleep {
             return Rest::Asleep;
         }
         if half_step.stage == Stage::First {
-            self.quiet = if is_still(model, self.tolerance) { self.quiet + half_step.dt } else { 0.0 };
+            self.quiet = if is_still(particles, self.tolerance) { self.quiet + half_step.dt } else { 0.0 };
             self.asleep = self.quiet > self.window;
         }
         if self.asleep { Rest::Asleep } else { Rest::Awake }
@@ -89,29 +90,29 @@ fn slowest_period(solid: &Solid, length: f64, thickness: f64) -> f64 {
     1.787 * length * length / thickness / stiffness.sqrt()
 }
 
-fn is_zero<const D: usize>(load: &Load<D>) -> bool {
-    load.force.as_flattened().iter().all(|&f| f == 0.0)
-        && load.density_rate.iter().all(|&r| r == 0.0)
-        && load.gradient.as_flattened().as_flattened().iter().all(|&g| g == 0.0)
+fn is_zero<const D: usize>(load: &Load<D>, outer: &[OuterRates<D>]) -> bool {
+    load.force.as_flattened().iter().all(|&f| f == 0.0) && outer.iter().all(|r| *r == OuterRates::ZERO)
 }
 
-fn is_still<const D: usize>(model: &dyn SolidModel<D>, tolerance: f64) -> bool {
-    (0..model.particles() as u32).all(|p| {
-        let (x, x0) = (model.position(p), model.reference(p));
-        (0..D).map(|d| (x[d] - x0[d]).powi(2)).sum::<f64>() <= tolerance * tolerance
-    })
+fn is_still<const D: usize>(particles: Particles<'_, D>, tolerance: f64) -> bool {
+    particles
+        .position
+        .iter()
+        .zip(particles.reference)
+        .all(|(x, x0)| (0..D).map(|d| (x[d] - x0[d]).powi(2)).sum::<f64>() <= tolerance * tolerance)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::hypoelastic::Hypoelastic;
+    use crate::model::SolidModel;
     use halfstep_sph::lane::Isa;
     use std::path::Path;
 
     /// A plate 10 mm x 80 mm that stands clamped, without gravity.
     fn scene() -> Scene {
-        let text = "resolution = 0.002\nend_time = 1.0\ngravity = [0.0, 0.0]\n[solid]\ndensity = 2500.0\n\
+        let text = "resolution = 0.002\nend_time = 1.0\ngravity = [0.0, 0.0]\n[solid]\nmodel = \"hypoelastic\"\ndensity = 2500.0\n\
                     youngs_modulus = 12e6\npoissons_ratio = 0.4\n[[shape]]\nname = \"plate\"\nphase = \"solid\"\n\
                     box = { min = [0.0, 0.0], max = [0.01, 0.08] }\nclamp = { min = [0.0, 0.0], max = [0.01, 0.006] }\n";
         halfstep_scene::parse(text, Path::new("plate.toml"), &[]).unwrap()
@@ -131,17 +132,21 @@ mod tests {
         let scene = scene();
         let solid = scene.solids[0].clone();
         let model = Hypoelastic::<2>::new(&scene, 0, Isa::detect()).unwrap();
-        let mut sleep = Sleep::new(&scene, &solid, &model);
+        let mut sleep = Sleep::new(&scene, &solid, model.particles());
         let window = 0.5 * slowest_period(&solid, 0.08, 0.01);
         let [first, second] = HalfStep::begin(0, 0.0).lasting(0.6 * window).both();
-        let mut load = Load::<2>::none(model.particles());
-        assert_eq!(sleep.decide(&first, &load, &model), Rest::Awake);
-        assert_eq!(sleep.decide(&second, &load, &model), Rest::Awake);
-        assert_eq!(sleep.decide(&first, &load, &model), Rest::Asleep);
+        let mut load = Load::<2>::none(model.particles().len());
+        assert_eq!(sleep.decide(&first, &load, &[], model.particles()), Rest::Awake);
+        assert_eq!(sleep.decide(&second, &load, &[], model.particles()), Rest::Awake);
+        assert_eq!(sleep.decide(&first, &load, &[], model.particles()), Rest::Asleep);
         load.force[7] = [1e-9, 0.0];
-        assert_eq!(sleep.decide(&second, &load, &model), Rest::Woken);
-        assert_eq!(sleep.decide(&first, &load, &model), Rest::Awake);
+        assert_eq!(sleep.decide(&second, &load, &[], model.particles()), Rest::Woken);
+        assert_eq!(sleep.decide(&first, &load, &[], model.particles()), Rest::Awake);
         load.force[7] = [0.0, 0.0];
-        assert_eq!(sleep.decide(&first, &load, &model), Rest::Awake, "the window begins anew");
+        assert_eq!(
+            sleep.decide(&first, &load, &[], model.particles()),
+            Rest::Awake,
+            "the window begins anew"
+        );
     }
 }

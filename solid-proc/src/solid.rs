@@ -1,18 +1,17 @@
 //! The solid as a [`Role`]: interface record, loads, sub-steps, probes.
 
 use crate::effects::takes_part;
-use crate::hypoelastic::Hypoelastic;
-use crate::model::{Load, SolidModel};
+use crate::model::{Load, OutOfBounds, OuterRates, SolidModel};
+use crate::models;
 use crate::sleep::{Rest, Sleep};
 use crate::sub_steps::SubStepping;
-use crate::total_lagrangian::TotalLagrangian;
 use halfstep_interface::{Interface, Parameters};
 use halfstep_role::role::{Costs, CoverageError, Peer, Role};
 use halfstep_scene::geometry::{holds, nearest};
-use halfstep_scene::{EffectName, Phase, ProbeKind, Scene, SolidModelName, Treatment};
+use halfstep_scene::{EffectName, Phase, ProbeKind, Scene, Treatment};
 use halfstep_sph::lane::Isa;
 use halfstep_wire::failure::Diverged;
-use halfstep_wire::frame::Frame;
+use halfstep_wire::frame::{Frame, FramePoint};
 use halfstep_wire::half_step::{HalfStep, Stage};
 use halfstep_wire::protocol::{Audit, ForceRecord, StateRecord};
 use halfstep_wire::{Name, wide};
@@ -25,6 +24,10 @@ pub struct Solid<const D: usize> {
     /// Phase-blind coupling: the fluid's share in density and velocity gradient.
     interface: Option<Interface<D>>,
     load: Load<D>,
+    /// Phase-blind coupling: the fluid's share, by particle number; else empty.
+    outer: Vec<OuterRates<D>>,
+    /// All particle numbers.
+    all: Vec<u32>,
     probes: Vec<Measurement>,
     sub_steps: SubStepping,
     taken: u32,
@@ -46,32 +49,29 @@ enum Measurement {
 impl<const D: usize> Solid<D> {
     /// The scene's solid of that index, with the model that it names.
     pub fn new(scene: &Scene, solid: usize, isa: Isa) -> Option<Self> {
-        let model: Box<dyn SolidModel<D>> = match scene.solids.get(solid)?.model {
-            SolidModelName::Hypoelastic => Box::new(Hypoelastic::<D>::new(scene, solid, isa)?),
-            SolidModelName::TotalLagrangian => Box::new(TotalLagrangian::<D>::new(scene, solid, isa)?),
-        };
-        Some(Self::with_model(scene, solid, isa, model))
+        Some(Self::with_model(scene, solid, isa, models::build(scene, solid, isa)?))
     }
 
     /// With any model.
     pub fn with_model(scene: &Scene, solid: usize, isa: Isa, model: Box<dyn SolidModel<D>>) -> Self {
         let phase_blind = scene.interface.treatment == Treatment::PhaseBlind;
         let interface = Parameters::<D>::new(scene, solid, isa).filter(|_| phase_blind).map(Interface::new);
+        let particles = model.particles();
         let probes = scene
             .probes
             .iter()
             .filter(|p| p.solid == Some(solid))
             .filter_map(|p| match p.kind {
                 ProbeKind::Displacement { at } => {
-                    let references = (0..model.particles() as u32).map(|p| model.reference(p));
-                    let near = nearest(references, std::array::from_fn(|d| at[d]));
+                    let near = nearest(particles.reference.iter().copied(), std::array::from_fn(|d| at[d]));
                     Some(Measurement::Displacement(near.into_iter().map(|p| p as u32).collect()))
                 }
                 ProbeKind::KineticEnergy { phase: Phase::Solid } => Some(Measurement::KineticEnergy),
                 ProbeKind::Centroid { phase: Phase::Solid } => Some(Measurement::Centroid),
                 ProbeKind::Force { within } => {
                     let set = model.interface_set().iter().copied();
-                    let inside = |p: &u32| within.is_none_or(|b| holds(&b, &model.reference(*p), 0.0));
+                    let inside =
+                        |p: &u32| within.is_none_or(|b| holds(&b, &particles.reference[*p as usize], 0.0));
                     Some(Measurement::Force(set.filter(inside).collect()))
                 }
                 _ => None,
@@ -79,13 +79,15 @@ impl<const D: usize> Solid<D> {
             .collect();
         let material = scene.solids.get(solid);
         let sleep = takes_part(scene, solid, EffectName::SleepingSolid)
-            .then(|| material.map(|material| Sleep::new(scene, material, model.as_ref())))
+            .then(|| material.map(|material| Sleep::new(scene, material, particles)))
             .flatten();
         let name = material.and_then(|solid| solid.name.parse().ok()).unwrap_or(Name::SOLID);
         Self {
             name,
             sleep,
-            load: Load::none(model.particles()),
+            load: Load::none(particles.len()),
+            outer: Vec::new(),
+            all: (0..particles.len() as u32).collect(),
             limit: model.sub_step_limit(),
             model,
             interface,
@@ -97,14 +99,12 @@ impl<const D: usize> Solid<D> {
         }
     }
 
-    fn all(&self) -> std::ops::Range<u32> {
-        0..self.model.particles() as u32
-    }
-
-    fn kinetic_energy(&self) -> f64 {
-        self.all()
-            .map(|p| 0.5 * self.model.mass(p) * self.model.velocity(p).iter().map(|v| v * v).sum::<f64>())
-            .sum()
+    /// One half-step of the model under the load; phase-blind, with the fluid's share in its rates.
+    fn advance_model(&mut self, half_step: &HalfStep) -> Result<(), OutOfBounds> {
+        if self.interface.is_some() {
+            self.model.take_outer_rates(&self.outer);
+        }
+        self.model.advance(half_step, self.taken, &self.load)
     }
 }
 
@@ -118,7 +118,7 @@ impl<const D: usize> Role for Solid<D> {
     }
 
     fn particles(&self) -> u64 {
-        self.model.particles() as u64
+        self.all.len() as u64
     }
 
     fn dt_limit(&self) -> f64 {
@@ -127,7 +127,7 @@ impl<const D: usize> Role for Solid<D> {
 
     fn publish(&mut self, _peers: &[Peer], out: &mut Vec<StateRecord>) -> u64 {
         out.clear();
-        out.extend(self.model.interface_set().iter().map(|&p| self.model.record(p)));
+        self.model.records(self.model.interface_set(), out);
         0
     }
 
@@ -141,39 +141,35 @@ impl<const D: usize> Role for Solid<D> {
         let (Some(interface), [fluid]) = (&mut self.interface, peers) else { return Ok(()) };
         interface.update(&fluid.records, own, fluid.epoch);
         self.cross_pairs += interface.pairs() as u64;
-        let n = self.model.particles();
-        self.load.density_rate.resize(n, 0.0);
-        self.load.gradient.resize(n, [[0.0; D]; D]);
-        let load = &mut self.load;
-        interface.rates_of_solid(|record, density_rate, gradient| {
-            let p = own[record].id as usize;
-            load.density_rate[p] = density_rate;
-            load.gradient[p] = gradient;
+        self.outer.resize(self.all.len(), OuterRates::ZERO);
+        let outer = &mut self.outer;
+        interface.rates_of_solid(|record, density, gradient| {
+            outer[own[record].id as usize] = OuterRates { density, gradient };
         });
         Ok(())
     }
 
     fn advance(&mut self, half_step: &HalfStep, forces: &[ForceRecord]) -> Result<(), Diverged> {
+        let mass = self.model.particles().mass;
         for force in forces {
-            let whole = force.force(self.model.mass(force.id));
+            let whole = force.force(mass[force.id as usize]);
             self.load.force[force.id as usize] = std::array::from_fn(|d| whole[d]);
         }
         if half_step.stage == Stage::First {
             self.taken = self.sub_steps.choose(half_step.dt, self.limit);
         }
         let rest = match &mut self.sleep {
-            Some(sleep) => sleep.decide(half_step, &self.load, self.model.as_ref()),
+            Some(sleep) => sleep.decide(half_step, &self.load, &self.outer, self.model.particles()),
             None => Rest::Awake,
         };
         let outcome = match rest {
             Rest::Asleep => return Ok(()),
-            Rest::Awake => self.model.advance(half_step, self.taken, &self.load),
+            Rest::Awake => self.advance_model(half_step),
             Rest::Woken => {
-                let none = Load::none(self.model.particles());
+                let none = Load::none(self.all.len());
                 let [first, second] = half_step.both();
-                self.model
-                    .advance(&first, self.taken, &none)
-                    .and_then(|()| self.model.advance(&second, self.taken, &self.load))
+                self.model.take_outer_rates(&[]);
+                self.model.advance(&first, self.taken, &none).and_then(|()| self.advance_model(&second))
             }
         };
         outcome.map_err(|o| Diverged {
@@ -195,23 +191,23 @@ impl<const D: usize> Role for Solid<D> {
 
     fn probes(&self, out: &mut Vec<f64>) {
         let mut put = |value: f64| out.push(value);
+        let state = self.model.particles();
         for probe in &self.probes {
             match probe {
                 Measurement::Displacement(particles) => {
                     for d in 0..D {
                         let sum: f64 = particles
                             .iter()
-                            .map(|&p| self.model.position(p)[d] - self.model.reference(p)[d])
+                            .map(|&p| state.position[p as usize][d] - state.reference[p as usize][d])
                             .sum();
                         put(sum / particles.len() as f64);
                     }
                 }
-                Measurement::KineticEnergy => put(self.kinetic_energy()),
+                Measurement::KineticEnergy => put(state.kinetic_energy()),
                 Measurement::Centroid => {
-                    let mass: f64 = self.all().map(|p| self.model.mass(p)).sum();
+                    let mass: f64 = state.mass.iter().sum();
                     for d in 0..D {
-                        let moment: f64 =
-                            self.all().map(|p| self.model.mass(p) * self.model.position(p)[d]).sum();
+                        let moment: f64 = state.mass.iter().zip(state.position).map(|(m, x)| m * x[d]).sum();
                         put(moment / mass);
                     }
                 }
@@ -226,17 +222,17 @@ impl<const D: usize> Role for Solid<D> {
 
     fn audit(&self) -> Audit {
         let (mut momentum, mut sum, mut density_error) = ([0.0; D], 0.0, 0.0_f64);
-        for p in self.all() {
-            let (velocity, mass) = (self.model.velocity(p), self.model.mass(p));
+        let state = self.model.particles();
+        for ((mass, velocity), density) in state.mass.iter().zip(state.velocity).zip(state.density) {
             for d in 0..D {
                 momentum[d] += mass * velocity[d];
             }
             sum += mass;
-            density_error = density_error.max((self.model.density(p) / self.density - 1.0).abs());
+            density_error = density_error.max((density / self.density - 1.0).abs());
         }
         Audit {
             momentum: wide(momentum),
-            kinetic_energy: self.kinetic_energy(),
+            kinetic_energy: state.kinetic_energy(),
             mass: sum,
             density_error,
             gap: f64::INFINITY,
@@ -247,16 +243,18 @@ impl<const D: usize> Role for Solid<D> {
     fn fill_frame(&self, time: f64, frame: &mut Frame) {
         frame.clear();
         frame.time = time;
-        self.model.fill_frame(frame);
+        let mut records = Vec::with_capacity(self.all.len());
+        self.model.records(&self.all, &mut records);
+        records.iter().for_each(|r| frame.push(FramePoint::solid(r)));
     }
 
     fn state_hash(&self) -> u64 {
         let mut hash = Xxh3::new();
-        for p in self.all() {
-            let r = self.model.record(p);
-            let v = self.model.velocity(p);
-            hash.update(&p.to_le_bytes());
-            for value in r.position.iter().chain(&v).chain(&r.deviatoric_stress) {
+        let mut records = Vec::with_capacity(self.all.len());
+        self.model.records(&self.all, &mut records);
+        for (r, v) in records.iter().zip(self.model.particles().velocity) {
+            hash.update(&r.id.to_le_bytes());
+            for value in r.position.iter().chain(v).chain(&r.deviatoric_stress) {
                 hash.update(&value.to_le_bytes());
             }
             hash.update(&r.density.to_le_bytes());

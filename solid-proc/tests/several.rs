@@ -71,7 +71,7 @@ fn bounds_and_effects_are_each_solids_own() {
     assert!(on(0, EffectName::ClampFace) && !on(1, EffectName::ClampFace));
     assert!(!on(0, EffectName::ArtificialStress) && on(1, EffectName::ArtificialStress));
     let summary = effects::decide(&scene);
-    let of = |effect| summary.iter().find(|d| d.name == effect.name()).unwrap();
+    let of = |effect: EffectName| summary.iter().find(|d| d.name == effect.name()).unwrap();
     assert!(of(EffectName::ClampFace).on && of(EffectName::ClampFace).why.starts_with("gate: "));
     assert_eq!(of(EffectName::WallContact).why, "no wall has contact = true");
 }

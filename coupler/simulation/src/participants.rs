@@ -101,7 +101,7 @@ pub(crate) fn report_participants(
                 .solids
                 .iter()
                 .find(|s| s.name == participant.name)
-                .and_then(|s| serde_json::to_value(s.model).ok()?.as_str().map(str::to_owned)),
+                .map(|s| s.model.name().name().to_owned()),
         };
         report.participants.push(ParticipantReport {
             phase: phase.into(),

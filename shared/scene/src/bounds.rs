@@ -6,17 +6,15 @@
 //! | phase | density | speed |
 //! |---|---|---|
 //! | fluid | rho0 to 30 %: Tait's pressure is then 0.75 rho0 c0² | the larger of c0 and 3 U |
-//! | solid, hypoelastic | rho0 to 50 %: far beyond a law that is linear in the density | c_P / 4 + 3 U |
-//! | solid, total Lagrangian | volume to a tenth and tenfold: its laws reach far | c_P / 4 + 3 U |
+//! | solid | rho0 to 50 %: far beyond a law that is linear in the density | c_P / 4 + 3 U |
+//!
+//! A solid model may have bounds of its own instead of those of the density.
 //!
 //! Particles of the shipped scenes stay within 14 % and 0.19 c0 (fluid), 21 % and 0.11 c_P (solid).
 
 use crate::Scene;
 use crate::geometry;
 use halfstep_sph::quantity::Quantity;
-
-/// Largest volume of a total-Lagrangian particle over its reference volume, and of the latter over the former.
-const VOLUME_CHANGE: f64 = 10.0;
 
 /// Bounds of a phase.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,24 +59,6 @@ impl Bounds {
         let of_speed = worst_if_nan(speed / self.speed);
         let (quantity, value, ratio) = if of_density >= of_speed {
             (Quantity::Density, density, of_density)
-        } else {
-            (Quantity::Speed, speed, of_speed)
-        };
-        (ratio > 1.0).then_some(Excess { quantity, value, ratio })
-    }
-
-    /// What is out of bounds of a material that follows its own volume: J = det F. What is no number shows in the
-    /// speed as well, nearer to its cause.
-    pub fn excess_of_volume(&self, volume_ratio: f64, speed: f64) -> Option<Excess> {
-        let of_volume = match volume_ratio {
-            j if j.is_nan() => 0.0,
-            j if j <= 0.0 => f64::INFINITY,
-            j if (1.0 / VOLUME_CHANGE..=VOLUME_CHANGE).contains(&j) => 0.0,
-            j => (libm::log(j) / libm::log(VOLUME_CHANGE)).abs(),
-        };
-        let of_speed = worst_if_nan(speed / self.speed);
-        let (quantity, value, ratio) = if of_volume > of_speed {
-            (Quantity::Density, self.density / volume_ratio, of_volume)
         } else {
             (Quantity::Speed, speed, of_speed)
         };
@@ -130,17 +110,6 @@ mod tests {
         assert_eq!((excess.quantity, excess.ratio), (Quantity::Density, f64::INFINITY));
         assert_eq!(BOUNDS.excess(1000.0, f64::NAN).unwrap().quantity, Quantity::Speed);
         assert!(BOUNDS.excess(f64::INFINITY, 1.0).is_some());
-    }
-
-    #[test]
-    fn a_volume_has_bounds_both_ways() {
-        assert_eq!(BOUNDS.excess_of_volume(0.11, 19.0), None);
-        assert_eq!(BOUNDS.excess_of_volume(9.9, 0.0), None);
-        let excess = BOUNDS.excess_of_volume(0.01, 21.0).unwrap();
-        assert_eq!((excess.quantity, excess.value), (Quantity::Density, 1e5));
-        assert!((excess.ratio - 2.0).abs() < 1e-12);
-        assert_eq!(BOUNDS.excess_of_volume(-0.5, 21.0).unwrap().ratio, f64::INFINITY, "turned inside out");
-        assert_eq!(BOUNDS.excess_of_volume(f64::NAN, f64::NAN).unwrap().quantity, Quantity::Speed);
     }
 
     #[test]

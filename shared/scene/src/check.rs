@@ -119,11 +119,13 @@ impl Check<'_> {
                 Geometry::Ring { inner, outer, .. } => ("ring", outer - inner),
             };
             let nodal = self.scene.numerics.lattice == Lattice::Nodal && shape.phase != Phase::Wall;
-            // One row of particles has no deformation gradient across.
-            let row = shape.solid.is_some_and(|k| self.total_lagrangian(k)) && kind != "disc";
-            let needed =
-                if row { "two particles of the total-lagrangian model need" } else { "one particle needs" };
-            let least = dx * (1.0 + f64::from(u8::from(nodal)) + f64::from(u8::from(row)));
+            let model = shape.solid.and_then(|k| self.model(k));
+            let rows = model.map_or(1, |model| if kind == "disc" { 1 } else { model.rules().rows });
+            let needed = match model {
+                Some(model) if rows > 1 => format!("{rows} particles of the {} model need", model.name()),
+                _ => "one particle needs".to_owned(),
+            };
+            let least = dx * (f64::from(rows) + f64::from(u8::from(nodal)));
             let convention = if nodal { " in the nodal lattice" } else { "" };
             if thickness < least * (1.0 - 1e-9) {
                 let place = format!("{key}.{kind}");

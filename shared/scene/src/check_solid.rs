@@ -30,23 +30,23 @@ impl Check<'_> {
         }
     }
 
-    pub(super) fn total_lagrangian(&self, solid: usize) -> bool {
-        self.scene.solids.get(solid).is_some_and(|s| s.model == SolidModelName::TotalLagrangian)
+    pub(super) fn model(&self, solid: usize) -> Option<SolidModelName> {
+        self.scene.solids.get(solid).map(|s| s.model.name())
     }
 
-    /// The limit of the total-Lagrangian model is below what `numerics.solid_cfl` allows in general.
+    /// A model may be stable to less than `numerics.solid_cfl` allows in general.
     fn solid_time_step(&self) {
         let key = "numerics.solid_cfl";
-        let cfl = self.scene.numerics.solid_cfl;
-        let limited = (0..self.scene.solids.len()).find(|&k| self.total_lagrangian(k));
-        if let Some(k) = limited
-            && cfl > 0.9
-            && !self.report.has(key)
-        {
-            let model = format!("{}.model", self.solid_key(k));
-            let reason =
-                format!("must be at most 0.9 with {model} = \"total-lagrangian\": it is stable to 0.94");
-            self.report.among(self.root, key, &[&model], reason);
+        for (k, solid) in self.scene.solids.iter().enumerate() {
+            let name = solid.model.name();
+            if let Some((most, why)) = name.rules().largest_cfl
+                && self.scene.numerics.solid_cfl > most
+                && !self.report.has(key)
+            {
+                let model = format!("{}.model", self.solid_key(k));
+                let reason = format!("must be at most {most} with {model} = \"{}\": {why}", name.name());
+                self.report.among(self.root, key, &[&model], reason);
+            }
         }
     }
 
@@ -62,10 +62,10 @@ impl Check<'_> {
         }
         let Some(solid) = self.scene.solids.first() else { return };
         let of_solid = self.solid_key(0);
-        if self.total_lagrangian(0) {
-            let why = "the fluid's share in a velocity gradient means nothing to a deformation gradient";
+        let name = solid.model.name();
+        if let Some(why) = name.rules().not_phase_blind {
             let model = format!("{of_solid}.model");
-            let reason = format!("cannot be phase-blind with {model} = \"total-lagrangian\": {why}");
+            let reason = format!("cannot be phase-blind with {model} = \"{}\": {why}", name.name());
             self.report.among(self.root, key, &[&model, "preset"], reason);
         }
         if matches!(solid.sub_steps, SubSteps::Fixed(n) if n != 1) {

@@ -42,7 +42,10 @@ pub use motion::{Motion, Placement};
 pub use participant::Participant;
 pub use probe::{MAX_PROBE_VALUES, Probe, ProbeKind, Reference};
 pub use resources::{BYTES_PER_PARTICLE, memory_available, memory_needed};
-pub use solid::{ArtificialStress, Material, Solid, SolidModelName, SubSteps};
+pub use solid::{
+    ArtificialStress, HypoelasticKeys, Material, ModelKeys, Solid, SolidModelName, SubSteps,
+    TotalLagrangianKeys,
+};
 pub use velocity_field::VelocityField;
 
 use serde::{Deserialize, Serialize};

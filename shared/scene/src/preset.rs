@@ -4,21 +4,21 @@ use super::*;
 
 /// Every default that does not depend on other keys.
 #[derive(Clone, Copy)]
-pub(super) struct Defaults {
-    pub(super) smoothing_ratio: f64,
-    pub(super) time_step: TimeStep,
-    pub(super) fluid_viscosity: ArtificialViscosity,
-    pub(super) density_diffusion: DensityDiffusion,
-    pub(super) density_diffusion_coefficient: f64,
-    pub(super) model: SolidModelName,
-    pub(super) solid_smoothing_ratio: f64,
-    pub(super) solid_viscosity: ArtificialViscosity,
-    pub(super) artificial_stress: ArtificialStress,
-    pub(super) treatment: Treatment,
-    pub(super) cross_viscosity: f64,
-    pub(super) kernel: KernelName,
-    pub(super) lattice: Lattice,
-    pub(super) effects: &'static [(EffectName, Switch)],
+pub(crate) struct Defaults {
+    pub(crate) smoothing_ratio: f64,
+    pub(crate) time_step: TimeStep,
+    pub(crate) fluid_viscosity: ArtificialViscosity,
+    pub(crate) density_diffusion: DensityDiffusion,
+    pub(crate) density_diffusion_coefficient: f64,
+    pub(crate) model: SolidModelName,
+    pub(crate) solid_smoothing_ratio: f64,
+    pub(crate) solid_viscosity: ArtificialViscosity,
+    pub(crate) artificial_stress: ArtificialStress,
+    pub(crate) treatment: Treatment,
+    pub(crate) cross_viscosity: f64,
+    pub(crate) kernel: KernelName,
+    pub(crate) lattice: Lattice,
+    pub(crate) effects: &'static [(EffectName, Switch)],
 }
 
 impl Defaults {
@@ -62,25 +62,13 @@ impl Defaults {
         }
     }
 
-    /// With the solid model that the interface can work with.
+    /// With a solid model that the interface can work with.
     pub(super) fn with_treatment(self, treatment: Treatment) -> Self {
-        match treatment {
-            Treatment::MovingWall => self,
-            Treatment::PhaseBlind => Self { model: SolidModelName::Hypoelastic, ..self },
+        let can = |model: SolidModelName| model.rules().not_phase_blind.is_none();
+        if treatment == Treatment::MovingWall || can(self.model) {
+            return self;
         }
-    }
-
-    /// With what the solid's model asks for.
-    pub(super) fn with_model(self, model: SolidModelName) -> Self {
-        match model {
-            SolidModelName::Hypoelastic => self,
-            // Fixed neighbours and corrected gradients: eight neighbours are enough. The viscosity is for a plate in water,
-            // whose short waves grow with those of the water's pressure where nothing damps them.
-            SolidModelName::TotalLagrangian => Self {
-                solid_smoothing_ratio: 0.75,
-                solid_viscosity: ArtificialViscosity { linear: 0.1, quadratic: 0.0 },
-                ..self
-            },
-        }
+        let able = SolidModelName::ALL.iter().find(|(_, model)| can(*model));
+        Self { model: able.map_or(self.model, |(_, model)| *model), ..self }
     }
 }

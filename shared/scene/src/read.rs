@@ -15,7 +15,7 @@ pub(super) struct Draft {
     pub(super) sound_speed_auto: bool,
 }
 
-pub(super) const SMOOTHING: Range = Range::at_least(1.0)
+pub(crate) const SMOOTHING: Range = Range::at_least(1.0)
     .up_to(2.5)
     .why("below, neighbours are too few; above, they are too many to resolve anything at this spacing");
 // Ends beyond any material, within which no formula overflows.
@@ -23,7 +23,7 @@ pub(super) const DENSITY: Range = Range::at_least(1e-6).up_to(1e9);
 /// Most worker threads of a process.
 pub(super) const MAX_THREADS: u32 = 1024;
 const PRESSURE: Range = Range::at_least(0.0).up_to(1e15);
-pub(super) const COEFFICIENT: Range = Range::at_least(0.0).up_to(100.0);
+pub(crate) const COEFFICIENT: Range = Range::at_least(0.0).up_to(100.0);
 
 pub(super) fn scene(root: &Node, path: &Path, report: &Report) -> Draft {
     let top = Section::root(root, report);

@@ -2,13 +2,10 @@
 
 use super::document::Value;
 use super::preset::Defaults;
-use super::read::{COEFFICIENT, DENSITY, MAX_THREADS, SMOOTHING, viscosity};
+use super::read::{DENSITY, MAX_THREADS, viscosity};
 use super::section::{Range, Section};
 use super::*;
 
-const FIXED_SMOOTHING: Range = Range::at_least(0.75)
-    .up_to(2.5)
-    .why("below, a particle loses its diagonal neighbours; above, they are too many to resolve anything at this spacing");
 /// Longest name of a solid or a process: it is part of the names of shared memory and of files.
 const LONGEST_NAME: usize = 24;
 /// What else takes part in a run, and the word for a process of one's own.
@@ -71,16 +68,13 @@ fn identifier<'a>(section: &Section<'a>, key: &'static str) -> Option<&'a str> {
 }
 
 fn solid(section: Section<'_>, name: String, defaults: Defaults, numerics: &Numerics) -> Solid {
-    const HYPOELASTIC: SolidModelName = SolidModelName::Hypoelastic;
-    let models = [("hypoelastic", HYPOELASTIC), ("total-lagrangian", SolidModelName::TotalLagrangian)];
-    let model = section.choice("model", Some(defaults.model), &models).unwrap_or(defaults.model);
-    let defaults = defaults.with_model(model);
-    let stress = section.section("artificial_stress");
+    let model = section.choice("model", Some(defaults.model), SolidModelName::ALL).unwrap_or(defaults.model);
+    let rules = model.rules();
+    let defaults = (rules.defaults)(defaults);
     let solid = Solid {
         process: process(&section, &name),
         name,
         threads: section.integer("threads", numerics.threads.solid as u32, 1, MAX_THREADS) as usize,
-        model,
         density: section.number("density", None, DENSITY),
         youngs_modulus: section.number("youngs_modulus", None, Range::positive().up_to(1e15)),
         poissons_ratio: section.number(
@@ -93,63 +87,20 @@ fn solid(section: Section<'_>, name: String, defaults: Defaults, numerics: &Nume
         smoothing_ratio: section.number(
             "smoothing_ratio",
             Some(defaults.solid_smoothing_ratio),
-            match model {
-                HYPOELASTIC => SMOOTHING,
-                SolidModelName::TotalLagrangian => FIXED_SMOOTHING,
-            },
+            rules.smoothing,
         ),
         artificial_viscosity: viscosity(&section, defaults.solid_viscosity),
-        artificial_stress: ArtificialStress {
-            strength: stress.number("strength", Some(defaults.artificial_stress.strength), COEFFICIENT),
-            exponent: exponent(&stress, defaults.artificial_stress.exponent),
-        },
-        material: section
-            .choice(
-                "material",
-                Some(Material::NeoHookean),
-                &[
-                    ("st-venant-kirchhoff", Material::StVenantKirchhoff),
-                    ("neo-hookean", Material::NeoHookean),
-                ],
-            )
-            .unwrap_or(Material::NeoHookean),
-        hourglass: section.number_or_auto(
-            "hourglass",
-            None,
-            Range::at_least(0.0)
-                .up_to(10.0)
-                .why("beyond, it is stiffer than the material and limits the time step"),
-        ),
+        model: model.read(&section, &defaults),
         sub_steps: sub_steps(&section, numerics.max_sub_steps),
     };
-    let foreign: &[(&str, &str)] = match model {
-        HYPOELASTIC => &[
-            ("material", "only the total-lagrangian model has a choice of materials"),
-            ("hourglass", "only the total-lagrangian model resists hourglass modes"),
-        ],
-        SolidModelName::TotalLagrangian => {
-            &[("artificial_stress", "the total-lagrangian model has no tensile instability that needs it")]
-        }
-    };
-    for (key, why) in foreign {
+    let others = SolidModelName::ALL.iter().filter(|(_, other)| *other != model);
+    for (key, why) in others.flat_map(|(_, other)| other.rules().keys) {
         if let Some(node) = section.node(key) {
             section.wrong(key, node, *why);
         }
     }
-    stress.finish();
     section.finish();
     solid
-}
-
-fn exponent(stress: &Section<'_>, default: f64) -> f64 {
-    let range = Range::at_least(1.0).up_to(16.0).why("it is a whole power of a ratio of kernels");
-    let exponent = stress.number("exponent", Some(default), range);
-    if exponent.fract() != 0.0
-        && let Some(node) = stress.node("exponent")
-    {
-        stress.wrong("exponent", node, "must be a whole number: it is a power of a ratio of kernels");
-    }
-    exponent
 }
 
 fn sub_steps(section: &Section<'_>, most: u32) -> SubSteps {

@@ -17,7 +17,7 @@ const COMPONENT: Range = Range::at_least(-1e12).up_to(1e12);
 
 /// The numbers that a key allows, and why no others.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Range {
+pub(crate) struct Range {
     low: Option<(f64, Bound)>,
     high: Option<(f64, Bound)>,
     why: &'static str,
@@ -32,14 +32,14 @@ enum Bound {
 impl Range {
     pub(super) const ANY: Self = Self { low: None, high: None, why: "" };
 
-    pub(super) const fn positive() -> Self {
+    pub(crate) const fn positive() -> Self {
         Self { low: Some((0.0, Bound::Excluded)), high: None, why: "" }
     }
-    pub(super) const fn at_least(low: f64) -> Self {
+    pub(crate) const fn at_least(low: f64) -> Self {
         Self { low: Some((low, Bound::Included)), high: None, why: "" }
     }
     /// Adds an upper end, itself allowed.
-    pub(super) const fn up_to(self, high: f64) -> Self {
+    pub(crate) const fn up_to(self, high: f64) -> Self {
         Self { high: Some((high, Bound::Included)), ..self }
     }
     /// Adds an upper end, itself not allowed.
@@ -47,7 +47,7 @@ impl Range {
         Self { high: Some((high, Bound::Excluded)), ..self }
     }
     /// Adds the reason.
-    pub(super) const fn why(self, why: &'static str) -> Self {
+    pub(crate) const fn why(self, why: &'static str) -> Self {
         Self { why, ..self }
     }
 
@@ -80,7 +80,7 @@ fn short(x: f64) -> String {
 }
 
 /// A table of the scene, or the want of one.
-pub(super) struct Section<'a> {
+pub(crate) struct Section<'a> {
     node: &'a Node,
     /// Whether the scene has it; else `node` is the table around it.
     present: bool,
@@ -108,12 +108,12 @@ impl<'a> Section<'a> {
         if self.present { self.node.table()?.get(key) } else { None }
     }
 
-    pub(super) fn node(&self, key: &'static str) -> Option<&'a Node> {
+    pub(crate) fn node(&self, key: &'static str) -> Option<&'a Node> {
         self.entry(key).map(|entry| &entry.node)
     }
 
     /// Notes that the value of a key is wrong.
-    pub(super) fn wrong(&self, key: &str, node: &Node, reason: impl Into<String>) {
+    pub(crate) fn wrong(&self, key: &str, node: &Node, reason: impl Into<String>) {
         self.report.value(&self.path_of(key), node.origin, reason);
     }
 
@@ -130,7 +130,7 @@ impl<'a> Section<'a> {
     }
 
     /// A number; without a default it must be there.
-    pub(super) fn number(&self, key: &'static str, default: Option<f64>, range: Range) -> f64 {
+    pub(crate) fn number(&self, key: &'static str, default: Option<f64>, range: Range) -> f64 {
         match (self.node(key), default) {
             (Some(node), _) => self.as_number(key, node, range).or(default).unwrap_or(f64::NAN),
             (None, Some(default)) => default,
@@ -142,7 +142,7 @@ impl<'a> Section<'a> {
     }
 
     /// A number or `"auto"`, which is `None`.
-    pub(super) fn number_or_auto(
+    pub(crate) fn number_or_auto(
         &self,
         key: &'static str,
         default: Option<f64>,
@@ -177,7 +177,7 @@ impl<'a> Section<'a> {
     }
 
     /// A whole number.
-    pub(super) fn integer(&self, key: &'static str, default: u32, low: u32, high: u32) -> u32 {
+    pub(crate) fn integer(&self, key: &'static str, default: u32, low: u32, high: u32) -> u32 {
         self.node(key).and_then(|node| self.as_integer(key, node, low, high)).unwrap_or(default)
     }
 
@@ -219,7 +219,7 @@ impl<'a> Section<'a> {
     }
 
     /// One of a list of names; without a default it must be there.
-    pub(super) fn choice<T: Copy>(
+    pub(crate) fn choice<T: Copy>(
         &self,
         key: &'static str,
         default: Option<T>,
@@ -306,7 +306,7 @@ impl<'a> Section<'a> {
     }
 
     /// The table under a key.
-    pub(super) fn section(&self, key: &'static str) -> Section<'a> {
+    pub(crate) fn section(&self, key: &'static str) -> Section<'a> {
         match self.node(key) {
             Some(node) => self.sub(self.path_of(key), node, key),
             None => Section {
@@ -347,7 +347,7 @@ impl<'a> Section<'a> {
     }
 
     /// Notes every key that was not asked for.
-    pub(super) fn finish(self) {
+    pub(crate) fn finish(self) {
         let Some(table) = self.node.table().filter(|_| self.present) else { return };
         let asked = self.asked.borrow();
         for (key, entry) in table.iter().filter(|(key, _)| !asked.contains(&key.as_str())) {

@@ -1,4 +1,12 @@
-//! The solid's section of a scene.
+//! The solid's section of a scene: what all models have. What only one has is in its file in `solid`.
+
+mod hypoelastic;
+mod models;
+mod total_lagrangian;
+
+pub use hypoelastic::{ArtificialStress, HypoelasticKeys};
+pub use models::{ModelKeys, SolidModelName};
+pub use total_lagrangian::{Material, TotalLagrangianKeys};
 
 use super::ArtificialViscosity;
 use serde::{Deserialize, Serialize};
@@ -12,8 +20,9 @@ pub struct Solid {
     pub process: String,
     /// Worker threads for it.
     pub threads: usize,
-    /// Which model computes it.
-    pub model: SolidModelName,
+    /// Which model computes it, with the keys that only this model has.
+    #[serde(flatten)]
+    pub model: ModelKeys,
     /// Reference density, kg/m³.
     pub density: f64,
     /// Young's modulus, Pa.
@@ -24,13 +33,6 @@ pub struct Solid {
     pub smoothing_ratio: f64,
     /// Artificial viscosity inside the solid.
     pub artificial_viscosity: ArtificialViscosity,
-    /// Gray's artificial stress; the hypoelastic model only.
-    pub artificial_stress: ArtificialStress,
-    /// Law of the total-Lagrangian model.
-    pub material: Material,
-    /// Coefficient alpha of the total-Lagrangian model's hourglass resistance; `None`: the one that gives particles the
-    /// bending stiffness of their cells.
-    pub hourglass: Option<f64>,
     /// Solid sub-steps per fluid step.
     pub sub_steps: SubSteps,
 }
@@ -55,35 +57,6 @@ impl Solid {
     pub fn pressure_wave_speed(&self) -> f64 {
         ((self.bulk_modulus() + 4.0 / 3.0 * self.shear_modulus()) / self.density).sqrt()
     }
-}
-
-/// The solid models that come with the program.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum SolidModelName {
-    /// Hooke's law in rate form with the Jaumann rate (Gray, Monaghan and Swift 2001).
-    Hypoelastic,
-    /// Hyperelastic, with neighbours of the reference configuration (Bonet and Lok 1999).
-    TotalLagrangian,
-}
-
-/// The hyperelastic laws.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Material {
-    /// Linear between Green's strain and its stress.
-    StVenantKirchhoff,
-    /// Compressible, stiffens under compression.
-    NeoHookean,
-}
-
-/// Parameters of the artificial stress (Gray 2001).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ArtificialStress {
-    /// Coefficient epsilon; 0 leaves it out.
-    pub strength: f64,
-    /// Exponent n of the kernel ratio.
-    pub exponent: f64,
 }
 
 /// The number of solid sub-steps.

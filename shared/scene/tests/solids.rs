@@ -1,7 +1,7 @@
 //! `[solid]` and `[[solid]]`: names, processes, who is made of what, and how the resolved scene says it.
 
 use halfstep_scene::geometry::layout;
-use halfstep_scene::{Phase, Scene, SolidModelName, parse};
+use halfstep_scene::{ModelKeys, Phase, Scene, SolidModelName, parse};
 use proptest::prelude::*;
 use std::path::Path;
 
@@ -59,7 +59,7 @@ fn each_section_is_a_participant_with_a_process() {
     assert_eq!(all, want);
     assert_eq!(scene.solids.iter().map(|s| s.threads).collect::<Vec<_>>(), [2, 3]);
     let models = [SolidModelName::TotalLagrangian, SolidModelName::Hypoelastic];
-    assert_eq!(scene.solids.iter().map(|s| s.model).collect::<Vec<_>>(), models);
+    assert_eq!(scene.solids.iter().map(|s| s.model.name()).collect::<Vec<_>>(), models);
     let together = read(&two(), &["solid.gate.process=plates", "solid.lid.process=plates"]);
     assert!(together.solids.iter().all(|s| s.process == "plates"));
 }
@@ -104,6 +104,17 @@ fn the_resolved_scene_has_an_object_for_one_and_a_list_for_named_ones() {
 }
 
 proptest! {
+    #[test]
+    fn a_solids_numbers_pass_through_json_bit_for_bit(modulus in prop::num::f64::POSITIVE, alpha in 0.0..10.0_f64) {
+        let mut scene = one("[solid]", [0.3, 0.05]);
+        scene.solids[0].youngs_modulus = modulus;
+        let ModelKeys::TotalLagrangian(keys) = &mut scene.solids[0].model else { unreachable!("the default") };
+        keys.hourglass = Some(alpha);
+        let back = Scene::from_json(&scene.to_json().unwrap()).unwrap();
+        prop_assert_eq!(back.solids[0].youngs_modulus.to_bits(), modulus.to_bits());
+        prop_assert_eq!(&back, &scene);
+    }
+
     #[test]
     fn a_list_of_one_is_the_one(x in -0.2..0.4_f64, radius in 0.02..0.1_f64) {
         let plain = one("[solid]", [x, radius]);

@@ -173,7 +173,7 @@ fn an_error_carries_its_parts_and_its_span() {
         "poissons_ratio = 0.4",
         "\"µ\" = 1\nartificial_stress = { \"é\" = 0, strength = -1 }\npoissons_ratio = 0.4",
     );
-    let errors = errors(&text, &["fluid.density=-3"]);
+    let errors = errors(&text, &["solid.model=hypoelastic", "fluid.density=-3"]);
     let strength = errors.problems.iter().find(|p| p.key.ends_with("strength")).unwrap();
     assert_eq!(strength.value.as_deref(), Some("-1"));
     assert_eq!(strength.reason, "must be at least 0 and at most 100");

@@ -45,8 +45,7 @@ impl<const D: usize> Hypoelastic<D> {
             volume: self.mass / rho,
             stress_term: sigma.map(|row| row.map(|s| s * inverse)),
         };
-        if self.artificial_stress.is_some() {
-            let strength = self.material.artificial_stress.strength;
+        if let Some(halfstep_scene::ArtificialStress { strength, .. }) = self.artificial_stress {
             self.artificial[slot] = artificial_stress::tensor(strength, sigma, rho);
         }
     }
@@ -71,10 +70,10 @@ impl<const D: usize> Hypoelastic<D> {
 
     fn sums<K: Kernel<D>>(&mut self, kernel: K) {
         let artificial = std::mem::take(&mut self.artificial);
-        let correction = self.artificial_stress.map(|exponent| ArtificialStress {
+        let correction = self.artificial_stress.map(|stress| ArtificialStress {
             tensors: &artificial,
             inverse_w0: 1.0 / kernel.at(self.resolution),
-            exponent,
+            exponent: stress.exponent.round() as u32,
         });
         match (correction, self.renormalised) {
             (None, false) => self.pass(kernel, (), Plain),
@@ -117,9 +116,9 @@ impl<const D: usize> Hypoelastic<D> {
         let mut note = |effect: EffectName, without: f64| {
             costs.effects[effect as usize] = (1.0 - without / whole).max(0.0);
         };
-        if let Some(exponent) = self.artificial_stress.take() {
+        if let Some(stress) = self.artificial_stress.take() {
             note(EffectName::ArtificialStress, evaluation(self));
-            self.artificial_stress = Some(exponent);
+            self.artificial_stress = Some(stress);
         }
         if std::mem::take(&mut self.renormalised) {
             note(EffectName::RenormalisedGradient, evaluation(self));
@@ -169,11 +168,11 @@ impl<const D: usize> Hypoelastic<D> {
                 for d in 0..D {
                     acceleration[d] += load.force[p][d] / self.mass;
                 }
-                if !load.gradient.is_empty() {
-                    density_rate += load.density_rate[p];
+                if let Some(outer) = self.outer.get(p) {
+                    density_rate += outer.density;
                     for a in 0..D {
                         for b in 0..D {
-                            l[a][b] += load.gradient[p][a][b];
+                            l[a][b] += outer.gradient[a][b];
                         }
                     }
                 }
@@ -204,6 +203,7 @@ impl<const D: usize> Hypoelastic<D> {
             }
         }
         self.apply_state_equation();
+        self.show_particles();
     }
 
     /// Rate of the deviatoric stress of every particle.

@@ -2,7 +2,9 @@
 //! continuity, artificial viscosity and artificial stress.
 
 mod artificial_stress;
+mod bounds;
 mod columns;
+mod decide;
 mod evaluate;
 mod gradient;
 mod model;
@@ -12,4 +14,5 @@ mod stress_rate;
 mod tests;
 mod wall_clamp;
 
+pub(crate) use decide::EFFECTS;
 pub use model::Hypoelastic;

@@ -3,21 +3,20 @@
 use super::columns::{Rates, Source, State};
 use super::rates::SolidSum;
 use super::wall_clamp::WallClamp;
+use crate::columns::Shown;
 use crate::effects::takes_part;
-use crate::model::{Load, OutOfBounds, SolidModel};
+use crate::model::{Load, OutOfBounds, OuterRates, Particles, SolidModel};
 use crate::surface::surface_set;
 use crate::wall::Walls;
 use halfstep_role::role::Costs;
-use halfstep_scene::bounds::{Bounds, Excess};
+use halfstep_scene::bounds::Bounds;
 use halfstep_scene::geometry::{self, SolidPoint};
-use halfstep_scene::{EffectName, KernelName, Scene, Solid};
+use halfstep_scene::{ArtificialStress, EffectName, KernelName, ModelKeys, Scene, Solid};
 use halfstep_sph::columns::{copy, fit, moved_farther};
 use halfstep_sph::lane::Isa;
 use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
-use halfstep_wire::failure::Quantity;
 use halfstep_wire::half_step::{HalfStep, Stage};
 use halfstep_wire::protocol::StateRecord;
-use halfstep_wire::wide;
 use halfstep_wire::wire_component;
 
 const SKIN: f64 = 0.3;
@@ -25,7 +24,7 @@ const SKIN: f64 = 0.3;
 /// The hypoelastic solid.
 pub struct Hypoelastic<const D: usize> {
     pub(super) material: Solid,
-    bounds: Bounds,
+    pub(super) bounds: Bounds,
     pub(super) kernel: KernelName,
     pub(super) isa: Isa,
     pub(super) smoothing_length: f64,
@@ -35,9 +34,12 @@ pub struct Hypoelastic<const D: usize> {
     domain: ([f64; D], [f64; D]),
     pub(super) renormalised: bool,
     pub(super) wall_clamp: Option<WallClamp<D>>,
-    pub(super) artificial_stress: Option<u32>,
+    pub(super) artificial_stress: Option<ArtificialStress>,
     pub(super) mass: f64,
     pub(super) points: Vec<SolidPoint<D>>,
+    shown: Shown<D>,
+    /// What the fluid adds to strain rates (phase-blind), by particle number; else empty.
+    pub(super) outer: Vec<OuterRates<D>>,
     interface_set: Vec<u32>,
     /// Particle number of a slot, or padding.
     pub(super) id: Vec<u32>,
@@ -71,12 +73,14 @@ impl<const D: usize> Hypoelastic<D> {
         let layout = geometry::layout::<D>(scene).with_solid(scene, solid);
         let h = material.smoothing_ratio * scene.resolution;
         let n = layout.solid.len();
-        let exponent = material.artificial_stress.exponent.round() as u32;
-        let artificial = takes_part(scene, solid, EffectName::ArtificialStress);
+        let ModelKeys::Hypoelastic(keys) = &material.model else { return None };
+        let artificial_stress =
+            takes_part(scene, solid, EffectName::ArtificialStress).then_some(keys.artificial_stress);
         let walls = takes_part(scene, solid, EffectName::WallContact)
             .then(|| Walls::new(&layout.wall, (2.0 + SKIN) * h))
             .flatten();
         let domain = geometry::domain(scene);
+        let mass = material.density * scene.resolution.powi(D as i32);
         let now = State::new(&layout.solid, material.density);
         let mut model = Self {
             bounds: Bounds::of_solid(scene, solid)?,
@@ -89,8 +93,10 @@ impl<const D: usize> Hypoelastic<D> {
             domain: (std::array::from_fn(|d| domain.min[d]), std::array::from_fn(|d| domain.max[d])),
             renormalised: takes_part(scene, solid, EffectName::RenormalisedGradient),
             wall_clamp: takes_part(scene, solid, EffectName::WallClamp).then(WallClamp::default),
-            artificial_stress: artificial.then_some(exponent),
-            mass: material.density * scene.resolution.powi(D as i32),
+            artificial_stress,
+            shown: Shown::new(&layout.solid, mass),
+            outer: Vec::new(),
+            mass,
             material,
             interface_set: surface_set(
                 &layout.solid,
@@ -119,6 +125,7 @@ impl<const D: usize> Hypoelastic<D> {
         };
         model.sort();
         model.apply_state_equation();
+        model.show_particles();
         Some(model)
     }
 
@@ -209,33 +216,17 @@ impl<const D: usize> Hypoelastic<D> {
         }
     }
 
-    /// Names the particle that is farthest out of bounds, if any is.
-    fn check(&self) -> Result<(), OutOfBounds> {
-        let excess = |(p, &slot): (usize, &u32)| {
+    /// Copies the present state to the columns by particle number.
+    pub(super) fn show_particles(&mut self) {
+        for (p, &slot) in self.slot_of.iter().enumerate() {
             let s = slot as usize;
-            let v2: f64 = (0..D).map(|d| self.now.velocity[d][s].powi(2)).sum();
-            let stress: f64 = self.stress_at(s).as_flattened().iter().map(|s| s.abs()).sum();
-            let no_number = Excess { quantity: Quantity::Stress, value: stress, ratio: f64::INFINITY };
-            let found = self.bounds.excess(self.now.density[s], v2.sqrt());
-            Some((p, s, found.or((!stress.is_finite()).then_some(no_number))?))
-        };
-        let all = self.slot_of.iter().enumerate().filter_map(excess);
-        let Some((p, s, worst)) = all.max_by(|a, b| a.2.ratio.total_cmp(&b.2.ratio)) else { return Ok(()) };
-        let position = wide::<D>(std::array::from_fn(|d| self.now.position[d][s]));
-        Err(OutOfBounds { particle: p as u32, quantity: worst.quantity, value: worst.value, position })
-    }
-}
-
-impl<const D: usize> SolidModel<D> for Hypoelastic<D> {
-    fn particles(&self) -> usize {
-        self.points.len()
+            self.shown.position[p] = std::array::from_fn(|d| self.now.position[d][s]);
+            self.shown.velocity[p] = std::array::from_fn(|d| self.now.velocity[d][s]);
+            self.shown.density[p] = self.now.density[s];
+        }
     }
 
-    fn interface_set(&self) -> &[u32] {
-        &self.interface_set
-    }
-
-    fn record(&self, particle: u32) -> StateRecord {
+    pub(super) fn record(&self, particle: u32) -> StateRecord {
         let s = self.slot_of[particle as usize] as usize;
         let mut r = StateRecord {
             id: particle,
@@ -257,19 +248,24 @@ impl<const D: usize> SolidModel<D> for Hypoelastic<D> {
         }
         r
     }
+}
 
-    fn position(&self, particle: u32) -> [f64; D] {
-        let s = self.slot_of[particle as usize] as usize;
-        std::array::from_fn(|d| self.now.position[d][s])
+impl<const D: usize> SolidModel<D> for Hypoelastic<D> {
+    fn particles(&self) -> Particles<'_, D> {
+        self.shown.view()
     }
 
-    fn density(&self, particle: u32) -> f64 {
-        self.now.density[self.slot_of[particle as usize] as usize]
+    fn interface_set(&self) -> &[u32] {
+        &self.interface_set
     }
 
-    fn velocity(&self, particle: u32) -> [f64; D] {
-        let s = self.slot_of[particle as usize] as usize;
-        std::array::from_fn(|d| self.now.velocity[d][s])
+    fn records(&self, particles: &[u32], out: &mut Vec<StateRecord>) {
+        out.extend(particles.iter().map(|&p| self.record(p)));
+    }
+
+    fn take_outer_rates(&mut self, rates: &[OuterRates<D>]) {
+        self.outer.clear();
+        self.outer.extend_from_slice(rates);
     }
 
     fn sub_step_limit(&self) -> f64 {
@@ -294,15 +290,8 @@ impl<const D: usize> SolidModel<D> for Hypoelastic<D> {
             self.apply_state_equation();
             self.sub_step(sub_steps, half_step.span(), load);
         }
+        self.show_particles();
         self.check()
-    }
-
-    fn reference(&self, particle: u32) -> [f64; D] {
-        self.points[particle as usize].position
-    }
-
-    fn mass(&self, _: u32) -> f64 {
-        self.mass
     }
 
     fn strain_energy(&self) -> f64 {

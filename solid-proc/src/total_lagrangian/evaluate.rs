@@ -68,7 +68,7 @@ impl<const D: usize> TotalLagrangian<D> {
             let h = at(&self.deformations[slot / LANES].gradient, slot % LANES) * correction;
             let f = Matrix::identity() + h;
             let j = tensor::determinant(&f);
-            if let Some(excess) = self.bounds.excess_of_volume(j, 0.0)
+            if let Some(excess) = self.bounds.excess(j, 0.0)
                 && worst.is_none_or(|(_, other)| excess.ratio > other.ratio)
             {
                 worst = Some((self.id[slot], excess));

@@ -32,9 +32,9 @@ pub(super) struct Cauchy<const D: usize> {
 }
 
 impl Law {
-    pub(super) fn new(solid: &Solid) -> Self {
+    pub(super) fn new(solid: &Solid, material: Material) -> Self {
         let mu = solid.shear_modulus();
-        Self { material: solid.material, lambda: solid.bulk_modulus() - 2.0 / 3.0 * mu, mu }
+        Self { material, lambda: solid.bulk_modulus() - 2.0 / 3.0 * mu, mu }
     }
 
     /// First Piola-Kirchhoff stress, Pa.

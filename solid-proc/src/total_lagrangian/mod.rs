@@ -2,8 +2,10 @@
 //! once. A hyperelastic law turns the deformation gradient into stress (Bonet and Lok 1999; Vignjevic, Reveles and
 //! Campbell 2006).
 
+mod bounds;
 mod clamp;
 mod contact;
+mod decide;
 mod evaluate;
 mod hourglass;
 mod material;
@@ -12,4 +14,5 @@ mod pass;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use decide::EFFECTS;
 pub use model::TotalLagrangian;

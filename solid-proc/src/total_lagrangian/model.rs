@@ -3,19 +3,20 @@
 //! Velocity Verlet (kick, drift, kick), which keeps the energy of an undamped solid: the midpoint scheme would amplify
 //! it by 1 + (omega dt)⁴/8 a step. One evaluation a sub-step, since the acceleration at its start is known.
 
+use super::bounds::VolumeBounds;
 use super::clamp;
 use super::contact::Contact;
 use super::hourglass;
 use super::material::{Law, Matrix};
 use super::pass::{Acceleration, DeformationSum, Fixed, Matrices};
-use crate::columns::{Vectors, vectors};
+use crate::columns::{Shown, Vectors, vectors};
 use crate::effects::takes_part;
-use crate::model::{Load, OutOfBounds, SolidModel};
+use crate::model::{Load, OutOfBounds, Particles, SolidModel};
 use crate::surface::surface_set;
 use halfstep_role::role::Costs;
-use halfstep_scene::bounds::{Bounds, Excess};
+use halfstep_scene::bounds::Excess;
 use halfstep_scene::geometry::{self, SolidPoint};
-use halfstep_scene::{EffectName, KernelName, Scene, Solid};
+use halfstep_scene::{EffectName, KernelName, ModelKeys, Scene, Solid};
 use halfstep_sph::lane::{Isa, LANES};
 use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_sph::pair::FixedPairs;
@@ -64,6 +65,7 @@ pub struct TotalLagrangian<const D: usize> {
     /// Beyond the face of a clamp there is no strain.
     pub(super) rigid_clamps: bool,
     points: Vec<SolidPoint<D>>,
+    shown: Shown<D>,
     interface_set: Vec<u32>,
     /// Particle number of a slot, or padding.
     pub(super) id: Vec<u32>,
@@ -94,7 +96,7 @@ pub struct TotalLagrangian<const D: usize> {
     pub(super) deformations: Vec<DeformationSum<D>>,
     pub(super) sums: Vec<Acceleration<D>>,
     pub(super) contact: Option<Contact<D>>,
-    pub(super) bounds: Bounds,
+    pub(super) bounds: VolumeBounds,
     /// The particle whose volume left its bounds first, or of several the one farthest out.
     pub(super) failure: Option<(u32, Excess)>,
     pub(super) pair_evaluations: u64,
@@ -104,6 +106,7 @@ impl<const D: usize> TotalLagrangian<D> {
     /// The scene's solid of that index.
     pub fn new(scene: &Scene, solid: usize, isa: Isa) -> Option<Self> {
         let material = scene.solids.get(solid)?.clone();
+        let ModelKeys::TotalLagrangian(keys) = &material.model else { return None };
         let layout = geometry::layout::<D>(scene).with_solid(scene, solid);
         let points = &layout.solid;
         let dx = scene.resolution;
@@ -140,16 +143,17 @@ impl<const D: usize> TotalLagrangian<D> {
         };
         let body = bodies(&position, &id, &list, reach);
         let contact = Contact::new(scene, solid, &material, &layout, &body);
-        let alpha = material.hourglass.unwrap_or_else(|| {
+        let alpha = keys.hourglass.unwrap_or_else(|| {
             with_kernel!(scene.numerics.kernel, h, D, |k| hourglass::from_bending(
                 k,
                 dx,
                 material.poissons_ratio
             ))
         });
+        let mass = material.density * dx.powi(D as i32);
         let now = State { displacement: vectors(slots), acceleration: vectors(slots), velocity };
         let mut model = Self {
-            law: Law::new(&material),
+            law: Law::new(&material, keys.material),
             kernel: scene.numerics.kernel,
             isa,
             smoothing_length: h,
@@ -157,7 +161,8 @@ impl<const D: usize> TotalLagrangian<D> {
             gravity: std::array::from_fn(|d| scene.gravity[d]),
             courant: scene.numerics.solid_cfl,
             volume: dx.powi(D as i32),
-            mass: material.density * dx.powi(D as i32),
+            shown: Shown::new(points, mass),
+            mass,
             hourglass_modulus: alpha * material.shear_modulus(),
             rigid_clamps,
             interface_set: surface_set(points, 2.0 * scene.smoothing_ratio * dx, dx),
@@ -180,12 +185,13 @@ impl<const D: usize> TotalLagrangian<D> {
             id,
             slot_of,
             contact,
-            bounds: Bounds::of_solid(scene, solid)?,
+            bounds: VolumeBounds::new(scene, solid)?,
             failure: None,
             pair_evaluations: 0,
         };
         model.correct();
         model.evaluate();
+        model.show_particles();
         Some(model)
     }
 
@@ -248,18 +254,39 @@ impl<const D: usize> TotalLagrangian<D> {
         }
     }
 
-    /// Names the particle that is farthest out of bounds, if any is.
-    fn check(&self) -> Result<(), OutOfBounds> {
-        let excess = |(p, &slot): (usize, &u32)| {
-            let v2: f64 = (0..D).map(|d| self.now.velocity[d][slot as usize].powi(2)).sum();
-            Some((p as u32, self.bounds.excess_of_volume(1.0, v2.sqrt())?))
+    /// Copies the present state to the columns by particle number.
+    fn show_particles(&mut self) {
+        for p in 0..self.slot_of.len() {
+            let slot = self.slot_of[p] as usize;
+            self.shown.position[p] = self.position_at(slot);
+            self.shown.velocity[p] = std::array::from_fn(|d| self.now.velocity[d][slot]);
+            self.shown.density[p] = self.material.density / self.volume_ratio[slot];
+        }
+    }
+
+    pub(super) fn record(&self, particle: u32) -> StateRecord {
+        let slot = self.slot_of[particle as usize] as usize;
+        let j = self.volume_ratio[slot];
+        let cauchy = self.law.cauchy(&self.gradient[slot], j);
+        let mut r = StateRecord {
+            id: particle,
+            flags: u32::from(self.points[particle as usize].clamped),
+            position: wide(self.position_at(slot)),
+            velocity: wide(std::array::from_fn::<_, D, _>(|d| self.shown_velocity[d][slot])),
+            density: self.material.density / j,
+            pressure: cauchy.pressure,
+            mass: self.mass,
+            ..StateRecord::default()
         };
-        let all = self.slot_of.iter().enumerate().filter_map(excess).chain(self.failure);
-        let Some((particle, worst)) = all.max_by(|a, b| a.1.ratio.total_cmp(&b.1.ratio)) else {
-            return Ok(());
-        };
-        let position = wide(self.position_at(self.slot_of[particle as usize] as usize));
-        Err(OutOfBounds { particle, quantity: worst.quantity, value: worst.value, position })
+        for a in 0..D {
+            for b in a..D {
+                r.deviatoric_stress[wire_component(a, b)] = cauchy.deviator[(a, b)];
+            }
+        }
+        if D == 2 {
+            r.deviatoric_stress[2] = -cauchy.deviator.trace();
+        }
+        r
     }
 }
 
@@ -288,50 +315,16 @@ fn bodies<const D: usize>(x: &Vectors<D>, id: &[u32], list: &ClusterList, reach:
 }
 
 impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {
-    fn particles(&self) -> usize {
-        self.points.len()
+    fn particles(&self) -> Particles<'_, D> {
+        self.shown.view()
     }
 
     fn interface_set(&self) -> &[u32] {
         &self.interface_set
     }
 
-    fn record(&self, particle: u32) -> StateRecord {
-        let slot = self.slot_of[particle as usize] as usize;
-        let j = self.volume_ratio[slot];
-        let cauchy = self.law.cauchy(&self.gradient[slot], j);
-        let mut r = StateRecord {
-            id: particle,
-            flags: u32::from(self.points[particle as usize].clamped),
-            position: wide(self.position_at(slot)),
-            velocity: wide(std::array::from_fn::<_, D, _>(|d| self.shown_velocity[d][slot])),
-            density: self.material.density / j,
-            pressure: cauchy.pressure,
-            mass: self.mass,
-            ..StateRecord::default()
-        };
-        for a in 0..D {
-            for b in a..D {
-                r.deviatoric_stress[wire_component(a, b)] = cauchy.deviator[(a, b)];
-            }
-        }
-        if D == 2 {
-            r.deviatoric_stress[2] = -cauchy.deviator.trace();
-        }
-        r
-    }
-
-    fn position(&self, particle: u32) -> [f64; D] {
-        self.position_at(self.slot_of[particle as usize] as usize)
-    }
-
-    fn density(&self, particle: u32) -> f64 {
-        self.material.density / self.volume_ratio[self.slot_of[particle as usize] as usize]
-    }
-
-    fn velocity(&self, particle: u32) -> [f64; D] {
-        let slot = self.slot_of[particle as usize] as usize;
-        std::array::from_fn(|d| self.now.velocity[d][slot])
+    fn records(&self, particles: &[u32], out: &mut Vec<StateRecord>) {
+        out.extend(particles.iter().map(|&p| self.record(p)));
     }
 
     fn sub_step_limit(&self) -> f64 {
@@ -355,15 +348,8 @@ impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {
             }
         }
         self.show(sub_steps, span);
+        self.show_particles();
         self.check()
-    }
-
-    fn reference(&self, particle: u32) -> [f64; D] {
-        self.points[particle as usize].position
-    }
-
-    fn mass(&self, _: u32) -> f64 {
-        self.mass
     }
 
     fn strain_energy(&self) -> f64 {

@@ -88,7 +88,7 @@ fn a_uniform_deformation_is_exact_everywhere() {
             assert!((r.deviatoric_stress[3] - cauchy.deviator[(0, 1)]).abs() < 1e-12 * stress.norm());
             assert!(r.deviatoric_stress[..3].iter().sum::<f64>().abs() < 1e-12 * stress.norm());
             // Energy: psi times the volume, none in hourglass modes.
-            let volume = body.particles() as f64 * 1e-4;
+            let volume = body.particles().len() as f64 * 1e-4;
             let energy = body.law.energy(&f, f.determinant()) * volume;
             assert!((body.strain_energy() - energy).abs() < 1e-12 * energy);
         }
@@ -96,8 +96,8 @@ fn a_uniform_deformation_is_exact_everywhere() {
     let mut block = solid(BLOCK, &[]);
     block.deform(affine(f));
     let accelerations = block.accelerations();
-    for p in 0..block.particles() {
-        let x = block.reference(p as u32);
+    for p in 0..block.particles().len() {
+        let x = block.particles().reference[p];
         let inside = x[0] > 0.03 && x[0] < 0.17 && x[1] > 0.03 && x[1] < 0.12;
         let a = accelerations[p][0].hypot(accelerations[p][1]);
         // The scale of a surface particle's is P / (rho dx).
@@ -115,7 +115,7 @@ fn a_rigid_rotation_makes_no_stress_and_no_force() {
                 let mut body = solid(shape, &[material]);
                 body.deform(affine(rotation));
                 // E = 1e6 Pa: 1e-14 of it.
-                for p in 0..body.particles() as u32 {
+                for p in 0..body.particles().len() as u32 {
                     let r = body.record(p);
                     let largest = r.deviatoric_stress.iter().fold(r.pressure.abs(), |m, s| m.max(s.abs()));
                     assert!(largest < 1e-8, "{largest} Pa at {angle}");
@@ -155,12 +155,12 @@ fn hourglass_resistance_acts_on_hourglass_modes_only() {
         let g = 1e6 / 2.6;
         let by_hand = 4.0 * 2.0 * expected * g * w * 2.0 * e / 1000.0;
         let p = (0..300).find(|&p| {
-            let x = block.reference(p);
+            let x = block.particles().reference[p as usize];
             (x[0] - 0.105).abs() < 1e-9 && (x[1] - 0.075).abs() < 1e-9
         });
         let p = p.expect("an inner particle");
         let a = block.accelerations()[p as usize];
-        let against = -a[0] * sign(block.reference(p));
+        let against = -a[0] * sign(block.particles().reference[p as usize]);
         assert!((against - by_hand).abs() < 1e-9 * by_hand + 1e-6, "{against} {by_hand}");
         assert!(a[1].abs() < 1e-6);
     }
@@ -181,7 +181,7 @@ fn forces_are_the_slope_of_the_energy() {
         let step = 1e-7;
         for p in [5_u32, 25, 66, 107, 155, 219, 299] {
             for d in 0..2 {
-                let at = body.reference(p);
+                let at = body.particles().reference[p as usize];
                 let mut energies = [1.0, -1.0].map(|sign| {
                     body.deform(|x| {
                         let mut to = bent(x);
@@ -206,7 +206,7 @@ fn the_face_of_a_clamp_is_where_the_scene_says() {
     body.deform(|x| [if x[0] < 0.05 { x[0] } else { 0.05 + 1.1 * (x[0] - 0.05) }, x[1]]);
     for p in 0..300 {
         let f = body.gradient[body.slot_of[p as usize] as usize];
-        let stretch = if body.reference(p)[0] < 0.05 { 1.0 } else { 1.1 };
+        let stretch = if body.particles().reference[p as usize][0] < 0.05 { 1.0 } else { 1.1 };
         assert!((f - Matrix::<2>::new(stretch, 0.0, 0.0, 1.0)).norm() < 1e-13, "{f}");
     }
 }
@@ -216,10 +216,13 @@ fn energy_is_kept_without_viscosity() {
     // A free block that vibrates strongly: three periods of its slowest mode, sqrt(E / rho) = 32 m/s over 0.4 m.
     let mode = "shape.body.cantilever_mode={fraction=0.03,root=0.0,length=0.2}";
     let mut body = solid(BLOCK, &[mode, "solid.artificial_viscosity.linear=0.0"]);
-    let load = Load::none(body.particles());
+    let load = Load::none(body.particles().len());
     let energy = |b: &TotalLagrangian<2>| {
-        let kinetic: f64 = (0..b.particles() as u32)
-            .map(|p| 0.5 * b.mass(p) * b.velocity(p).iter().map(|v| v * v).sum::<f64>())
+        let kinetic: f64 = (0..b.particles().len() as u32)
+            .map(|p| {
+                0.5 * b.particles().mass[p as usize]
+                    * b.particles().velocity[p as usize].iter().map(|v| v * v).sum::<f64>()
+            })
             .sum();
         (kinetic + b.strain_energy(), b.strain_energy())
     };
@@ -241,14 +244,15 @@ fn viscosity_takes_energy_away() {
     let mode = "shape.body.cantilever_mode={fraction=0.03,root=0.0,length=0.2}";
     let energies = ["0.0", "1.0"].map(|a| {
         let mut body = solid(BLOCK, &[mode, &format!("solid.artificial_viscosity.linear={a}")]);
-        let load = Load::none(body.particles());
+        let load = Load::none(body.particles().len());
         let dt = 0.5 * body.sub_step_limit();
         for _ in 0..300 {
             for half_step in HalfStep::begin(0, 0.0).lasting(dt).both() {
                 body.advance(&half_step, 1, &load).unwrap();
             }
         }
-        let v2 = (0..body.particles() as u32).map(|p| body.velocity(p).iter().map(|v| v * v).sum::<f64>());
+        let v2 = (0..body.particles().len() as u32)
+            .map(|p| body.particles().velocity[p as usize].iter().map(|v| v * v).sum::<f64>());
         v2.sum::<f64>() * 0.05 + body.strain_energy()
     });
     // More than the error of the undamped energy.

@@ -7,6 +7,7 @@ use halfstep_solid::{Load, SolidModel};
 use halfstep_sph::lane::Isa;
 use halfstep_wire::failure::Quantity;
 use halfstep_wire::half_step::HalfStep;
+use halfstep_wire::protocol::StateRecord;
 use std::path::Path;
 
 /// A model under test.
@@ -61,8 +62,27 @@ fn model(make: Make, parts: &[&str], overrides: &[&str]) -> Model {
     (make.build)(&parse(make, parts, overrides), Isa::detect()).expect("a solid")
 }
 
+/// Present state of a particle as the wire has it.
+fn record(model: &Model, particle: u32) -> StateRecord {
+    let mut out = Vec::new();
+    model.records(&[particle], &mut out);
+    out[0]
+}
+
+fn reference(model: &Model, particle: u32) -> [f64; 2] {
+    model.particles().reference[particle as usize]
+}
+
+fn velocity(model: &Model, particle: u32) -> [f64; 2] {
+    model.particles().velocity[particle as usize]
+}
+
+fn mass(model: &Model, particle: u32) -> f64 {
+    model.particles().mass[particle as usize]
+}
+
 fn all(model: &Model) -> impl Iterator<Item = u32> + use<> {
-    0..model.particles() as u32
+    0..model.particles().len() as u32
 }
 
 /// The stages of a step of this length, s, whenever it is.
@@ -79,21 +99,21 @@ fn step(model: &mut Model, dt: f64, sub_steps: u32, load: &Load<2>) {
 
 fn momentum(model: &Model) -> [f64; 2] {
     all(model).fold([0.0; 2], |sum, p| {
-        let (m, v) = (model.mass(p), model.velocity(p));
+        let (m, v) = (mass(model, p), velocity(model, p));
         [sum[0] + m * v[0], sum[1] + m * v[1]]
     })
 }
 
 fn angular_momentum(model: &Model) -> f64 {
     let of = |p| {
-        let (x, v) = (model.record(p).position, model.velocity(p));
-        model.mass(p) * (x[0] * v[1] - x[1] * v[0])
+        let (x, v) = (record(model, p).position, velocity(model, p));
+        mass(model, p) * (x[0] * v[1] - x[1] * v[0])
     };
     all(model).map(of).sum()
 }
 
 fn kinetic_energy(model: &Model) -> f64 {
-    let of = |p| 0.5 * model.mass(p) * model.velocity(p).iter().map(|v| v * v).sum::<f64>();
+    let of = |p| 0.5 * mass(model, p) * velocity(model, p).iter().map(|v| v * v).sum::<f64>();
     all(model).map(of).sum()
 }
 
@@ -102,16 +122,19 @@ pub fn identity(make: Make) {
     let scene = parse(make, &[BLOCK, BALL], &[]);
     let model = (make.build)(&scene, Isa::detect()).expect("a solid");
     let layout = geometry::layout::<2>(&scene);
-    assert_eq!(model.particles(), layout.solid.len());
+    assert_eq!(model.particles().len(), layout.solid.len());
     for p in all(&model) {
-        let (record, point) = (model.record(p), layout.solid[p as usize]);
+        let (record, point) = (record(&model, p), layout.solid[p as usize]);
+        let columns = model.particles();
+        assert_eq!(columns.position[p as usize], point.position);
+        assert_eq!((columns.velocity[p as usize], columns.density[p as usize]), (point.velocity, 1000.0));
         assert_eq!((record.id, record.flags), (p, 0));
         assert_eq!([record.position[0], record.position[1]], point.position);
-        assert_eq!(model.reference(p), point.position);
+        assert_eq!(reference(&model, p), point.position);
         assert_eq!([record.velocity[0], record.velocity[1]], point.velocity);
         assert_eq!((record.density, record.pressure), (1000.0, 0.0));
         assert_eq!((record.mass, record.deviatoric_stress), (0.1, [0.0; 6]));
-        assert_eq!(model.mass(p), 0.1);
+        assert_eq!(mass(&model, p), 0.1);
     }
     assert_eq!(model.strain_energy(), 0.0);
 }
@@ -126,13 +149,13 @@ pub fn interface_set(make: Make) {
 /// A block at rest stays at rest.
 pub fn rest(make: Make) {
     let mut model = model(make, &[BLOCK], &[]);
-    let load = Load::none(model.particles());
+    let load = Load::none(model.particles().len());
     for _ in 0..10 {
         let dt = model.sub_step_limit();
         step(&mut model, dt, 1, &load);
     }
     for p in all(&model) {
-        let (x, x0) = (model.record(p).position, model.reference(p));
+        let (x, x0) = (record(&model, p).position, reference(&model, p));
         assert!((x[0] - x0[0]).abs() < 1e-14 && (x[1] - x0[1]).abs() < 1e-14);
     }
 }
@@ -141,7 +164,7 @@ pub fn rest(make: Make) {
 pub fn uniform_force(make: Make) {
     for sub_steps in [1, 4] {
         let mut model = model(make, &[BLOCK], &[]);
-        let mut load = Load::none(model.particles());
+        let mut load = Load::none(model.particles().len());
         load.force.fill([1.0, 0.0]);
         let dt = f64::from(sub_steps) * model.sub_step_limit();
         for _ in 0..20 {
@@ -149,7 +172,7 @@ pub fn uniform_force(make: Make) {
         }
         let time = 20.0 * dt;
         for p in all(&model) {
-            let (v, x) = (model.velocity(p), model.record(p).position[0] - model.reference(p)[0]);
+            let (v, x) = (velocity(&model, p), record(&model, p).position[0] - reference(&model, p)[0]);
             assert!((v[0] - 10.0 * time).abs() < 1e-12 && v[1].abs() < 1e-12);
             assert!((x - 5.0 * time * time).abs() < 1e-12, "{x}");
         }
@@ -165,17 +188,17 @@ pub fn stage_0_is_forgotten(make: Make) {
         // One goes to the middle under the load of stage 1, the other under a wild one.
         let ends = [&loads[1], &loads[2]].map(|first| {
             let mut model = model(make, &[BLOCK], &[]);
-            assert_eq!(model.particles(), 300);
+            assert_eq!(model.particles().len(), 300);
             let [stage_0, stage_1] = both(f64::from(sub_steps) * model.sub_step_limit());
-            let start = model.record(7).position;
+            let start = record(&model, 7).position;
             for _ in 0..5 {
                 model.advance(&stage_0, sub_steps, first).unwrap();
-                let middle = model.record(7).position;
+                let middle = record(&model, 7).position;
                 model.advance(&stage_1, sub_steps, &loads[1]).unwrap();
-                assert_ne!(middle, model.record(7).position);
+                assert_ne!(middle, record(&model, 7).position);
             }
-            assert_ne!(start, model.record(7).position);
-            all(&model).map(|p| (model.record(p).position, model.velocity(p))).collect::<Vec<_>>()
+            assert_ne!(start, record(&model, 7).position);
+            all(&model).map(|p| (record(&model, p).position, velocity(&model, p))).collect::<Vec<_>>()
         });
         // With one sub-step, midpoint's stage 1 takes its rates from the state in the middle.
         if sub_steps > 1 {
@@ -188,38 +211,41 @@ pub fn stage_0_is_forgotten(make: Make) {
 pub fn sub_steps(make: Make) {
     let swing = ["shape.block.cantilever_mode={fraction=0.01,root=0.0,length=0.2}"];
     let [mut one, mut four] = [(); 2].map(|()| model(make, &[BLOCK], &swing));
-    let load = Load::none(one.particles());
+    let load = Load::none(one.particles().len());
     let dt = 0.25 * one.sub_step_limit();
     for _ in 0..10 {
         (0..4).for_each(|_| step(&mut one, dt, 1, &load));
-        let before: Vec<_> = all(&four).map(|p| four.record(p).position).collect();
+        let before: Vec<_> = all(&four).map(|p| record(&four, p).position).collect();
         step(&mut four, 4.0 * dt, 4, &load);
         // What it shows is the mean velocity on the way from n.
         for p in all(&four) {
-            let r = four.record(p);
+            let r = record(&four, p);
             let mean = (r.position[1] - before[p as usize][1]) / (4.0 * dt);
             assert!((r.velocity[1] - mean).abs() < 1e-9);
         }
     }
     for p in all(&one) {
-        assert!((one.record(p).position[1] - four.record(p).position[1]).abs() < 1e-13);
-        assert!((one.velocity(p)[1] - four.velocity(p)[1]).abs() < 1e-9);
+        let (r, columns, k) = (record(&one, p), one.particles(), p as usize);
+        assert_eq!([r.position[0], r.position[1]], columns.position[k], "records and columns show one state");
+        assert_eq!(r.density, columns.density[k]);
+        assert!((record(&one, p).position[1] - record(&four, p).position[1]).abs() < 1e-13);
+        assert!((velocity(&one, p)[1] - velocity(&four, p)[1]).abs() < 1e-9);
     }
-    assert!(all(&one).any(|p| (one.record(p).position[1] - one.reference(p)[1]).abs() > 1e-4));
+    assert!(all(&one).any(|p| (record(&one, p).position[1] - reference(&one, p)[1]).abs() > 1e-4));
 }
 
 /// Clamped particles say so and never move; the others bend away.
 pub fn clamps(make: Make) {
     let clamp = "shape.block.clamp={min=[0.0,0.0],max=[0.05,0.2]}";
     let mut model = model(make, &[BLOCK], &[clamp, "gravity=[0.0,-10.0]"]);
-    let mut load = Load::none(model.particles());
+    let mut load = Load::none(model.particles().len());
     load.force.fill([0.0, -1.0]);
     let dt = model.sub_step_limit();
     for _ in 0..50 {
         step(&mut model, dt, 2, &load);
     }
     for p in all(&model) {
-        let (x0, r) = (model.reference(p), model.record(p));
+        let (x0, r) = (reference(&model, p), record(&model, p));
         if x0[0] < 0.05 {
             assert_eq!((r.flags, r.velocity), (1, [0.0; 3]));
             assert_eq!([r.position[0], r.position[1]], x0);
@@ -235,10 +261,10 @@ pub fn conservation(make: Make) {
     let swing =
         ["shape.block.cantilever_mode={fraction=0.02,root=0.0,length=0.2}", "shape.block.velocity=[1,2]"];
     let mut model = model(make, &[BLOCK, BALL], &swing);
-    let load = Load::none(model.particles());
+    let load = Load::none(model.particles().len());
     let (p0, l0) = (momentum(&model), angular_momentum(&model));
     let scale: f64 =
-        all(&model).map(|p| model.mass(p) * model.velocity(p)[0].hypot(model.velocity(p)[1])).sum();
+        all(&model).map(|p| mass(&model, p) * velocity(&model, p)[0].hypot(velocity(&model, p)[1])).sum();
     let dt = model.sub_step_limit();
     for _ in 0..150 {
         step(&mut model, dt, 1, &load);
@@ -253,17 +279,17 @@ pub fn conservation(make: Make) {
 /// A ball thrown at a block bounces off: it pushes the block and does not enter it.
 pub fn bodies_collide(make: Make) {
     let mut model = model(make, &[BLOCK, BALL], &[]);
-    let load = Load::none(model.particles());
+    let load = Load::none(model.particles().len());
     let dt = model.sub_step_limit();
     let start = kinetic_energy(&model);
-    let is_ball = |model: &Model, p| model.reference(p)[0] > 0.21;
+    let is_ball = |model: &Model, p| reference(model, p)[0] > 0.21;
     let mut closest = f64::INFINITY;
     for k in 0..(0.06 / dt) as usize {
         step(&mut model, dt, 1, &load);
         if k % 20 == 0 {
             for i in all(&model).filter(|&p| is_ball(&model, p)) {
                 for j in all(&model).filter(|&p| !is_ball(&model, p)) {
-                    let (a, b) = (model.record(i).position, model.record(j).position);
+                    let (a, b) = (record(&model, i).position, record(&model, j).position);
                     closest = f64::min(closest, (a[0] - b[0]).hypot(a[1] - b[1]));
                 }
             }
@@ -271,7 +297,7 @@ pub fn bodies_collide(make: Make) {
     }
     let mean = |ball: bool| {
         let speeds: Vec<f64> =
-            all(&model).filter(|&p| is_ball(&model, p) == ball).map(|p| model.velocity(p)[0]).collect();
+            all(&model).filter(|&p| is_ball(&model, p) == ball).map(|p| velocity(&model, p)[0]).collect();
         speeds.iter().sum::<f64>() / speeds.len() as f64
     };
     println!("closest {:.2} dx, ball {:.2} m/s, block {:.2} m/s", closest / 0.01, mean(true), mean(false));
@@ -286,12 +312,12 @@ pub fn wall_contact(make: Make) {
     let lowest = |overrides: &[&str]| {
         let all_of = [&["shape.block.velocity=[0,-1]"], overrides].concat();
         let mut model = model(make, &[BLOCK, FLOOR], &all_of);
-        let load = Load::none(model.particles());
+        let load = Load::none(model.particles().len());
         let dt = model.sub_step_limit();
         let mut lowest = f64::INFINITY;
         for _ in 0..(0.06 / dt) as usize {
             step(&mut model, dt, 1, &load);
-            lowest = all(&model).map(|p| model.record(p).position[1]).fold(lowest, f64::min);
+            lowest = all(&model).map(|p| record(&model, p).position[1]).fold(lowest, f64::min);
         }
         println!("lowest {lowest:.4} m, momentum {:.2}", momentum(&model)[1]);
         (lowest, momentum(&model)[1])
@@ -308,21 +334,21 @@ pub fn wall_contact(make: Make) {
 pub fn bounds(make: Make) {
     let swing = ["shape.block.cantilever_mode={fraction=0.01,root=0.0,length=0.2}"];
     let mut unstable = model(make, &[BLOCK], &swing);
-    let load = Load::none(unstable.particles());
+    let load = Load::none(unstable.particles().len());
     let stages = both(4.0 * unstable.sub_step_limit());
     let failure = (0..100)
         .find_map(|_| stages.iter().find_map(|stage| unstable.advance(stage, 1, &load).err()))
         .expect("unstable");
     assert!([Quantity::Density, Quantity::Speed].contains(&failure.quantity), "{failure:?}");
-    assert!((failure.particle as usize) < unstable.particles());
+    assert!((failure.particle as usize) < unstable.particles().len());
 
     let mut poisoned = model(make, &[BLOCK], &[]);
-    let mut load = Load::none(poisoned.particles());
+    let mut load = Load::none(poisoned.particles().len());
     load.force[17] = [f64::NAN, 0.0];
     let [stage_0, _] = both(poisoned.sub_step_limit());
     let failure = poisoned.advance(&stage_0, 1, &load).expect_err("no number");
     assert_eq!(failure.quantity, Quantity::Speed);
-    let (named, cause) = (poisoned.reference(failure.particle), poisoned.reference(17));
+    let (named, cause) = (reference(&poisoned, failure.particle), reference(&poisoned, 17));
     // In one evaluation it spreads to whatever is listed together with a neighbour.
     assert!((named[0] - cause[0]).hypot(named[1] - cause[1]) < 0.06, "{failure:?}");
 }
@@ -334,13 +360,13 @@ pub fn threads(make: Make) {
     let run = |threads| {
         on_threads(threads, || {
             let mut model = model(make, &[BLOCK, FLOOR], &big);
-            assert!(model.particles() > 1500);
-            let load = Load::none(model.particles());
+            assert!(model.particles().len() > 1500);
+            let load = Load::none(model.particles().len());
             let dt = model.sub_step_limit();
             for _ in 0..40 {
                 step(&mut model, dt, 2, &load);
             }
-            all(&model).map(|p| (model.record(p), model.velocity(p))).collect::<Vec<_>>()
+            all(&model).map(|p| (record(&model, p), velocity(&model, p))).collect::<Vec<_>>()
         })
         .expect("threads")
     };

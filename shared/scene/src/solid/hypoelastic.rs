@@ -1,0 +1,56 @@
+//! What a scene says to the hypoelastic model alone.
+
+use super::models::Rules;
+use crate::preset::Defaults;
+use crate::read::{COEFFICIENT, SMOOTHING};
+use crate::section::{Range, Section};
+use serde::{Deserialize, Serialize};
+
+/// Keys of the hypoelastic model.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct HypoelasticKeys {
+    /// Gray's artificial stress.
+    pub artificial_stress: ArtificialStress,
+}
+
+/// Parameters of the artificial stress (Gray 2001).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ArtificialStress {
+    /// Coefficient epsilon; 0 leaves it out.
+    pub strength: f64,
+    /// Exponent n of the kernel ratio.
+    pub exponent: f64,
+}
+
+pub(super) const RULES: Rules = Rules {
+    smoothing: SMOOTHING,
+    defaults: |defaults| defaults,
+    keys: &[("artificial_stress", "only the hypoelastic model has a tensile instability that needs it")],
+    rows: 1,
+    not_phase_blind: None,
+    largest_cfl: None,
+};
+
+impl HypoelasticKeys {
+    pub(super) fn read(section: &Section<'_>, defaults: &Defaults) -> Self {
+        let stress = section.section("artificial_stress");
+        let default = defaults.artificial_stress;
+        let artificial_stress = ArtificialStress {
+            strength: stress.number("strength", Some(default.strength), COEFFICIENT),
+            exponent: exponent(&stress, default.exponent),
+        };
+        stress.finish();
+        Self { artificial_stress }
+    }
+}
+
+fn exponent(stress: &Section<'_>, default: f64) -> f64 {
+    let range = Range::at_least(1.0).up_to(16.0).why("it is a whole power of a ratio of kernels");
+    let exponent = stress.number("exponent", Some(default), range);
+    if exponent.fract() != 0.0
+        && let Some(node) = stress.node("exponent")
+    {
+        stress.wrong("exponent", node, "must be a whole number: it is a power of a ratio of kernels");
+    }
+    exponent
+}
