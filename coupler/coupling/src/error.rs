@@ -35,7 +35,7 @@ pub enum RunError {
         /// How.
         status: ExitStatus,
         /// What the coupler saw.
-        link: LinkError,
+        link: Box<LinkError>,
     },
     /// Nobody started a solid.
     #[error("no solid came within {seconds} s (--solid-wait)")]

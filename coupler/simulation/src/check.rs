@@ -60,11 +60,12 @@ pub fn describe(scene: &Scene, isa: Isa) -> String {
         );
     }
     line("memory", format!("about {:.1} MB", scene::memory_needed(&counts) as f64 / 1e6));
-    if scene.fluid.is_some() && !scene.solids.is_empty() {
-        if let Ok(participants) = crate::participants::participants(scene, &[]) {
-            let bytes = LinkConfig::new(participants).shared_memory_bytes();
-            line("shared memory", format!("{:.1} MB", bytes as f64 / 1e6));
-        }
+    if scene.fluid.is_some()
+        && !scene.solids.is_empty()
+        && let Ok(participants) = crate::participants::participants(scene, &[])
+    {
+        let bytes = LinkConfig::new(participants).shared_memory_bytes();
+        line("shared memory", format!("{:.1} MB", bytes as f64 / 1e6));
     }
     let costs: Option<Vec<f64>> = built.iter_mut().map(|role| step_cost(role.as_mut(), dt)).collect();
     let seconds = costs.map(|costs| costs.into_iter().fold(0.0, f64::max) * scene.end_time / dt);

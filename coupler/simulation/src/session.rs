@@ -171,7 +171,7 @@ impl<'a> Session<'a> {
             let early = watcher.join().unwrap_or(None);
             match (result, early) {
                 (Err(RunError::Link(link)), Some((role, status))) => {
-                    Err(RunError::RoleEnded { role, status, link })
+                    Err(RunError::RoleEnded { role, status, link: Box::new(link) })
                 }
                 (result, _) => result,
             }
@@ -198,7 +198,7 @@ impl<'a> Session<'a> {
                         RunError::NoSolid { seconds }
                     }
                     (RunError::Link(link), Some((role, status))) => {
-                        RunError::RoleEnded { role, status, link }
+                        RunError::RoleEnded { role, status, link: Box::new(link) }
                     }
                     (error, _) => error,
                 })
