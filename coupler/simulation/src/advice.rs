@@ -25,6 +25,10 @@ pub(crate) fn advice(diverged: &Diverged, scene: &Scene, clock: &Clock, foreign:
     if foreign.contains(&name) {
         return format!("the {name} is not this program's: look at what its process does");
     }
+    let section = match scene.solids.as_slice() {
+        [_] => "solid".to_owned(),
+        _ => format!("solid.{name}"),
+    };
     let change = match (scene.time_step, phase) {
         (TimeStep::Fixed(dt), _) => {
             format!("choose a smaller time_step than {dt:.4e} s, although it is within the stability limits")
@@ -41,7 +45,7 @@ pub(crate) fn advice(diverged: &Diverged, scene: &Scene, clock: &Clock, foreign:
                 .into()
         }
         (Quantity::Energy, Phase::Solid) => {
-            format!("{change}; or raise solid.artificial_viscosity: the last frames show where it moves")
+            format!("{change}; or raise {section}.artificial_viscosity: the last frames show where it moves")
         }
         (Quantity::Energy, _) => {
             format!(
@@ -49,7 +53,7 @@ pub(crate) fn advice(diverged: &Diverged, scene: &Scene, clock: &Clock, foreign:
             )
         }
         (Quantity::Density, Phase::Solid) => {
-            format!("{change}; or the load is too much for solid.youngs_modulus")
+            format!("{change}; or the load is too much for {section}.youngs_modulus")
         }
         _ => change,
     }

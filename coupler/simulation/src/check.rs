@@ -1,16 +1,14 @@
 //! What a scene asks for, before anything is run.
 
 use crate::effects;
+use crate::step_cost::step_cost;
 use halfstep_coupling::roles;
 use halfstep_link::LinkConfig;
-use halfstep_role::role::Role;
 use halfstep_scene::geometry;
 use halfstep_scene::{self as scene, Phase, Scene, TimeStep};
 use halfstep_solid::SubStepping;
 use halfstep_sph::lane::Isa;
-use halfstep_wire::half_step::HalfStep;
 use std::fmt::Write;
-use std::time::Instant;
 
 /// A text of counts, time steps, memory and an estimate of the run time.
 ///
@@ -67,7 +65,7 @@ pub fn describe(scene: &Scene, isa: Isa) -> String {
         let bytes = LinkConfig::new(participants).shared_memory_bytes();
         line("shared memory", format!("{:.1} MB", bytes as f64 / 1e6));
     }
-    let costs: Option<Vec<f64>> = built.iter_mut().map(|role| step_cost(role.as_mut(), dt)).collect();
+    let costs: Option<Vec<f64>> = built.into_iter().map(|role| step_cost(role, dt)).collect();
     let seconds = costs.map(|costs| costs.into_iter().fold(0.0, f64::max) * scene.end_time / dt);
     line(
         "expected time",
@@ -84,20 +82,4 @@ pub fn describe(scene: &Scene, isa: Isa) -> String {
             writeln!(text, "{:<28}{:<5}{}", effect.name, if effect.on { "on" } else { "off" }, effect.why);
     }
     text
-}
-
-/// Seconds of a role's own step, the fastest of a few; `None` where they fail.
-fn step_cost(role: &mut dyn Role, dt: f64) -> Option<f64> {
-    let mut record = Vec::new();
-    let mut best = f64::INFINITY;
-    for step in 0..4 {
-        let start = Instant::now();
-        for half_step in HalfStep::begin(step, 0.0).lasting(dt).both() {
-            role.publish(&[], &mut record);
-            role.own_sums();
-            role.advance(&half_step, &[]).ok()?;
-        }
-        best = best.min(start.elapsed().as_secs_f64());
-    }
-    Some(best)
 }

@@ -9,3 +9,4 @@ pub mod options;
 mod participants;
 pub mod run;
 mod session;
+mod step_cost;

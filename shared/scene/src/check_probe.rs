@@ -2,7 +2,6 @@
 
 use super::check::Check;
 use super::*;
-use crate::probe::MAX_PROBE_VALUES;
 
 impl Check<'_> {
     pub(super) fn probes(&self) {
@@ -11,7 +10,6 @@ impl Check<'_> {
             self.unique("probe", &names);
         }
         // Those of the fluid, then those of each solid.
-        let mut values = vec![0_usize; 1 + self.scene.solids.len().max(1)];
         for probe in &self.scene.probes {
             let key = format!("probe.{}", probe.name);
             if self.report.has(&key) {
@@ -27,13 +25,6 @@ impl Check<'_> {
             if !present && !self.report.has(name) {
                 self.place(&key, format!("measures a {name}, and the scene has none"));
                 continue;
-            }
-            let count = &mut values[probe.solid.map_or(0, |k| 1 + k)];
-            let before = *count;
-            *count += probe.kind.components(self.scene.dimension).0.len();
-            if *count > MAX_PROBE_VALUES && before <= MAX_PROBE_VALUES {
-                let reason = format!("is one probe too many: a phase has at most {MAX_PROBE_VALUES} values");
-                self.place(&key, reason);
             }
             self.probe_place(probe, &key);
         }

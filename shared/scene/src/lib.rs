@@ -40,7 +40,7 @@ pub use load::{load, parse};
 pub use metric::{Metric, MetricKind, MetricReference};
 pub use motion::{Motion, Placement};
 pub use participant::Participant;
-pub use probe::{MAX_PROBE_VALUES, Probe, ProbeKind, Reference};
+pub use probe::{Probe, ProbeKind, Reference};
 pub use resources::{BYTES_PER_PARTICLE, memory_available, memory_needed};
 pub use solid::{
     ArtificialStress, HypoelasticKeys, Material, ModelKeys, Solid, SolidModelName, SubSteps,

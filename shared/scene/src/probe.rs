@@ -3,9 +3,6 @@
 use super::{Block, Phase};
 use serde::{Deserialize, Serialize};
 
-/// Values of all probes of a phase that a run has room for.
-pub const MAX_PROBE_VALUES: usize = 32;
-
 /// Something measured while the run goes on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Probe {
