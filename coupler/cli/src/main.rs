@@ -83,7 +83,7 @@ struct RunArguments {
     #[arg(long, value_name = "[NAME=]COMMAND")]
     solid: Vec<String>,
     /// Awaits a solid that you start by hand
-    #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "")]
+    #[arg(long, value_name = "NAME", num_args = 0..=1, require_equals = true, default_missing_value = "")]
     await_solid: Vec<String>,
     /// How long to wait for a solid started by hand, s
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = seconds, allow_negative_numbers = true)]
