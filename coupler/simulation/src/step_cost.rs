@@ -14,8 +14,13 @@ const STEPS: u64 = 4;
 /// Seconds of a participant's own step of length `dt`, s: the fastest of a few, without the other phase; `None` where it
 /// leaves its bounds.
 pub(crate) fn step_cost(role: Box<dyn Role>, dt: f64) -> Option<f64> {
-    let mut port =
-        Stopwatch { names: [role.name()], dt, last: StateHeader::default(), began: None, best: f64::INFINITY };
+    let mut port = Stopwatch {
+        names: [role.name()],
+        dt,
+        last: StateHeader::default(),
+        began: None,
+        best: f64::INFINITY,
+    };
     let member = Member { role, frames: None };
     drive(vec![member], &mut port, &mut |_| Ok(())).ok()?;
     Some(port.best)

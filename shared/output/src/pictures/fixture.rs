@@ -8,6 +8,9 @@ pub(crate) const SPACING: f64 = 0.002;
 
 /// A scene as the elastic gate's; only what pictures use has a meaning.
 pub(crate) fn scene() -> Scene {
+    // Who takes part is the shipped gate's.
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/elastic-gate.toml");
+    let gate = halfstep_scene::load(&path, &[]).expect("the shipped gate");
     Scene {
         name: "elastic-gate".into(),
         path: "scenes/elastic-gate.toml".into(),
@@ -18,8 +21,8 @@ pub(crate) fn scene() -> Scene {
         end_time: 0.4,
         time_step: TimeStep::Auto,
         gravity: [0.0, -9.81, 0.0],
-        fluid: None,
-        solids: Vec::new(),
+        fluid: gate.fluid,
+        solids: gate.solids,
         interface: Interface { treatment: Treatment::MovingWall, cross_viscosity: 0.0 },
         output: Output { frame_interval: 0.02, probe_interval: 0.001, checkpoint_interval: 0.0 },
         shapes: Vec::new(),
