@@ -42,6 +42,7 @@ fn every_shipped_scene_is_explained_and_its_shares_are_the_whole() {
         ("spring-block", &[]),
         ("standing-wave", &["resolution=0.025"]),
         ("taylor-green", &["resolution=0.05"]),
+        ("two-plates", &[]),
         ("wave-paddle", &["resolution=0.02"]),
     ];
     let shipped = std::fs::read_dir(PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../scenes")).unwrap();

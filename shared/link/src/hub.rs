@@ -135,7 +135,7 @@ pub(super) struct Hub<S: Transport> {
     pub(super) process: Name,
     listener: Listener<S>,
     notifiers: Vec<(Name, Notifier<S>)>,
-    /// Wake-up services of the own process and of its partners.
+    /// Wake-up services: the own process's first, then its partners'.
     events: Vec<(Name, event::PortFactory<S>)>,
     pub(super) watch: Arc<Watch<S>>,
     pub(super) node: Node<S>,
@@ -172,7 +172,9 @@ impl<S: Transport> Hub<S> {
         });
         let deadline = Instant::now() + Duration::from_secs_f64(config.handshake_seconds);
         let mut events = Vec::new();
-        for owner in std::iter::once(process).chain(config.partners(process)) {
+        let partners = config.partners(process);
+        let known = |owner: &Name| *owner == process || partners.contains(owner);
+        for owner in config.processes().into_iter().chain([Name::COUPLER]).filter(known) {
             let service = format!("halfstep/{owner}/wake");
             let name = service_name(&service)?;
             let attributes = attributes()?;
@@ -187,6 +189,7 @@ impl<S: Transport> Hub<S> {
             })?;
             events.push((owner, factory));
         }
+        events.sort_by_key(|(owner, _)| *owner != process);
         let own = &events[0].1;
         let listener = own.listener_builder().create().map_err(|e| port_error(process, "listening", e))?;
         let handshake = config.handshake_seconds;
