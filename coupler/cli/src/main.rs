@@ -241,6 +241,10 @@ fn foreign_solids(
         Ok(())
     };
     for text in commands {
+        let unknown = text.split_once('=').map(|(name, _)| name).filter(|name| name.parse::<Name>().is_ok());
+        if let (Some(name), 2..) = (unknown.filter(|name| named(name).is_none()), known.len()) {
+            return Err(format!("the scene has no solid `{name}`; it has {}", known.join(", ")));
+        }
         let (name, line) = match text.split_once('=').and_then(|(name, line)| Some((named(name)?, line))) {
             Some(pair) => pair,
             None => (only()?, text.as_str()),

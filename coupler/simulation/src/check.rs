@@ -57,6 +57,15 @@ pub fn describe(scene: &Scene, isa: Isa) -> String {
             format!("{} (one is stable to {own:.3e} s)", stepping.choose(dt, own)),
         );
     }
+    if scene.solids.len() > 1 {
+        line(
+            "between solids",
+            "nothing acts but the water: where they meet they pass through each other".into(),
+        );
+        for (name, count) in per_solid(scene, &layout) {
+            line(name, format!("{count} particles"));
+        }
+    }
     line("memory", format!("about {:.1} MB", scene::memory_needed(&counts) as f64 / 1e6));
     if scene.fluid.is_some()
         && !scene.solids.is_empty()
@@ -82,4 +91,11 @@ pub fn describe(scene: &Scene, isa: Isa) -> String {
             writeln!(text, "{:<28}{:<5}{}", effect.name, if effect.on { "on" } else { "off" }, effect.why);
     }
     text
+}
+
+/// Each solid's name and number of particles.
+fn per_solid<'a>(scene: &'a Scene, layout: &geometry::Layout<2>) -> Vec<(&'a str, usize)> {
+    let of =
+        |k: usize| layout.solid.iter().filter(|p| scene.shapes[p.body as usize].solid == Some(k)).count();
+    scene.solids.iter().enumerate().map(|(k, solid)| (solid.name.as_str(), of(k))).collect()
 }

@@ -87,8 +87,12 @@ pub(crate) fn report_participants(
         if let Some(own) = times {
             let sum = seconds.get_or_insert_default();
             sum.compute += own.compute;
-            sum.wait += own.wait;
-            sum.exchange += own.exchange;
+            // Members of one process wait and exchange together.
+            let process = &participant.process;
+            if !report.participants.iter().any(|other| other.process == *process && other.times.is_some()) {
+                sum.wait += own.wait;
+                sum.exchange += own.exchange;
+            }
             sum.output += own.output;
         }
         if let Some(own) = pairs {

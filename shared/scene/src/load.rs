@@ -57,6 +57,9 @@ pub fn parse(text: &str, path: &Path, overrides: &[String]) -> Result<Scene, Sce
     if report.is_empty() {
         resources::check_clamps(&draft.scene, &root, &report);
     }
+    if report.is_empty() {
+        resources::check_solids(&draft.scene, &root, &report);
+    }
     if report.is_empty() { Ok(draft.scene) } else { Err(report.into_errors(path)) }
 }
 

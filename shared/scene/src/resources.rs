@@ -87,6 +87,24 @@ pub(super) fn check_clamps(scene: &Scene, root: &Node, report: &Report) {
     }
 }
 
+/// Refuses a solid without particles, where there are several: earlier shapes may lie over all of its shapes.
+pub(super) fn check_solids(scene: &Scene, root: &Node, report: &Report) {
+    if scene.solids.len() < 2 || scene.dimension != 2 {
+        return;
+    }
+    let layout = geometry::layout::<2>(scene);
+    let of = |shape: &Shape, k: usize| shape.solid == Some(k);
+    for (k, solid) in scene.solids.iter().enumerate() {
+        let has_particles = layout.solid.iter().any(|p| of(&scene.shapes[p.body as usize], k));
+        if let (false, Some(shape)) = (has_particles, scene.shapes.iter().find(|shape| of(shape, k))) {
+            let key = format!("shape.{}", shape.name);
+            let why = "shapes that come before it in the file lie there, and the first one keeps the place";
+            let reason = format!("leaves the solid `{}` without a particle: {why}", solid.name);
+            report.place(&key, root.origin_of(&key), reason);
+        }
+    }
+}
+
 /// The sound speed that keeps a fluid weakly compressible: ten times the expected speed, which is the larger of the
 /// speed of a fall through the fluid's height, sqrt(2 g H), and the fastest shape's initial speed, or field's.
 pub(super) fn sound_speed(scene: &Scene, root: &Node, report: &Report) -> Option<f64> {
