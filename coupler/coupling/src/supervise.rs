@@ -93,7 +93,7 @@ impl Children {
         self.start(role, command, false)
     }
 
-    /// Starts a role that somebody else wrote, from a line for the shell. It learns of the run from the variables of
+    /// Starts a solid of another program, from a line for the shell. It learns of the run from the variables of
     /// [`LinkConfig::to_env`] and from `HALFSTEP_SCENE`, the path of the resolved scene as JSON.
     pub fn spawn_shell(
         &mut self,

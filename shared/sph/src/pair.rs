@@ -242,7 +242,7 @@ pub fn pass<const D: usize, L: PairLaw<D>>(isa: Isa, law: &L, list: &ClusterList
     run_chunks(isa, (law, list), Replace(|_, sum: &L::Sum| *sum), sums);
 }
 
-/// The same; the sums go on from what `sums` holds.
+/// The pass, adding to what `sums` holds.
 pub fn pass_adding<const D: usize, L: PairLaw<D>>(
     isa: Isa,
     law: &L,
@@ -252,7 +252,7 @@ pub fn pass_adding<const D: usize, L: PairLaw<D>>(
     run_chunks(isa, (law, list), Add, sums);
 }
 
-/// The same; each cluster's sum goes through `finish`, with the first of its slots, before it is stored.
+/// The pass; each cluster's sum goes through `finish`, with the first of its slots, before it is stored.
 pub fn pass_into<const D: usize, L: PairLaw<D>, T: Send>(
     isa: Isa,
     law: &L,

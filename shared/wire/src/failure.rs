@@ -61,7 +61,8 @@ impl Diverged {
         };
     }
 
-    /// What a message of `sender` tells. It takes the place of the state after the one that diverged.
+    /// The divergence that a message of `sender` reports. The message takes the place of the state after the one that
+    /// diverged.
     pub fn told(sender: Name, participants: &[Name], header: &StateHeader) -> Self {
         let failure = &header.failure;
         let (step, stage) = Stage::try_from(header.stage).unwrap_or(Stage::First).preceding(header.step);
