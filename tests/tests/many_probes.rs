@@ -17,7 +17,7 @@ fn a_hundred_probes_have_a_hundred_columns() {
     let text = text.replace("../tests/", &format!("{}/tests/", repository().display()));
     std::fs::write(&path, text).unwrap();
     let run = scene_at(&path).set("resolution", 0.0025).until(2e-4).run();
-    let first = |k: u32| run.curve(&format!("p{k}")).values[0];
+    let first = |k: u32| run.curve(&format!("p{k}.pressure")).values[0];
     // Hydrostatic: the pressure falls by rho g dy on the way up.
     let fall = (first(0) - first(80)) / (1000.0 * 9.81 * 0.08);
     assert!((fall - 1.0).abs() < 0.05, "{fall}");
