@@ -1,9 +1,9 @@
 //! Elastic gate (Antoci, Gallati and Sibilla 2007): the plate's free end against the experiment and against what
 //! others computed.
 //!
-//! The experiment's points and the published peaks are in `tests/reference/elastic-gate`. Computations of a plate that is as
-//! linear as the datasheet's E peak early and low; the total-Lagrangian solid is one of them. The hypoelastic solid is
-//! softer than its E says and comes nearer to the experiment by that.
+//! The experiment's points and the published peaks are in `tests/reference/elastic-gate`. Computations of a plate that
+//! is as linear as the datasheet's E peak early and low; the total-Lagrangian solid is one of them. The hypoelastic
+//! solid is softer than its E says and comes nearer to the experiment by that.
 
 use halfstep_tests::{Curve, Finished, scene};
 use halfstep_wire::frame::FLUID;
@@ -59,8 +59,8 @@ fn within_literature((time, peak): (f64, f64)) {
     assert!((0.10..=0.16).contains(&time), "{time} s");
 }
 
-/// As far as the published computations of such a plate: 35.5 mm (Yang et al. 2012) to 42.7 mm (Khayyer et al. 2018), at 0.10
-/// to 0.12 s.
+/// As far as the published computations of such a plate: 35.5 mm (Yang et al. 2012) to 42.7 mm (Khayyer et al. 2018),
+/// at 0.10 to 0.12 s.
 fn as_a_linear_plate((time, peak): (f64, f64)) {
     assert!((35.5..=42.7).contains(&peak), "{peak} mm");
     assert!((0.10..=0.125).contains(&time), "{time} s");
@@ -170,7 +170,8 @@ fn the_hypoelastic_gate_from_2_to_10_across() {
     }
 }
 
-/// Root mean square of the pressures in the basin about the quadratic that fits them best, Pa: sound, and noise of particles.
+/// Root mean square of the pressures in the basin about the quadratic that fits them best, Pa: sound, and noise of
+/// particles.
 fn sound_and_noise(run: &Finished) -> f64 {
     let frame = run.outcome.frames("fluid").pop().expect("a last frame");
     let rows: Vec<([f64; 2], f64)> = (0..frame.len())
@@ -185,7 +186,8 @@ fn sound_and_noise(run: &Finished) -> f64 {
     ((pressure - matrix * fit).norm_squared() / rows.len() as f64).sqrt()
 }
 
-/// The plate's short waves and the water's sound drive each other where nothing damps the plate: by 0.4 s the water is full of it.
+/// The plate's short waves and the water's sound drive each other where nothing damps the plate: by 0.4 s the water is
+/// full of it.
 #[test]
 #[ignore = "a minute: two gates to 0.4 s"]
 fn the_plate_does_not_sing() {

@@ -1,9 +1,10 @@
 //! Water on an elastic floor (Fourey et al. 2017): 2 m of water on an aluminium plate clamped at both ends.
 //!
-//! Plate theory: -6.85e-5 m in the middle, with the plate's own weight; shear adds 3.6 %, -7.10e-5 m. Other SPH codes are
-//! 7-50 % off. The total-Lagrangian solid bends 0.92, 1.08 and 1.05 times the thin plate with 2, 3 and 5 particles
-//! across. The hypoelastic one is too soft: 2.8, 2.2 and 2.2 times with 2, 3 and 4. It is the solid and not the coupling:
-//! dry, under a uniform weight of the same size, both models bend by the same (2.86, 2.22, 2.25; 0.92, 1.08, 1.05).
+//! Plate theory: -6.85e-5 m in the middle, with the plate's own weight; shear adds 3.6 %, -7.10e-5 m. Other SPH codes
+//! are 7-50 % off. The total-Lagrangian solid bends 0.92, 1.08 and 1.05 times the thin plate with 2, 3 and 5 particles
+//! across. The hypoelastic one is too soft: 2.8, 2.2 and 2.2 times with 2, 3 and 4. It is the solid and not the
+//! coupling: dry, under a uniform weight of the same size, both models bend by the same (2.86, 2.22, 2.25; 0.92, 1.08,
+//! 1.05).
 
 use halfstep_tests::{Finished, scene};
 
@@ -13,8 +14,8 @@ const DEFLECTION: f64 = -6.85e-5;
 /// Weight of the water, N per metre of depth.
 const WEIGHT: f64 = 1000.0 * 9.81 * 2.0;
 
-/// Mean deflection over the theory's, once the first swing is over; and mean pressure 1 m deep over rho g depth. The plate carries
-/// the water.
+/// Mean deflection over the theory's, once the first swing is over; and mean pressure 1 m deep over rho g depth. The
+/// plate carries the water.
 fn ratios(what: &str, run: &Finished) -> (f64, f64) {
     let mean = |name: &str| run.curve(name).between(0.05, run.report.time).mean();
     let (deflection, pressure) = (mean("middle.y") / DEFLECTION, mean("depth.pressure") / 9810.0);

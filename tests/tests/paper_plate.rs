@@ -1,8 +1,9 @@
-//! Kayaki's open question: his plate in the dam break, E = 0.22 GPa, "came out stiffer than others'". Is it the coupling of
-//! walls and solid, or does the artificial viscosity not transmit the impact?
+//! Kayaki's open question: his plate in the dam break, E = 0.22 GPa, "came out stiffer than others'". Is it the
+//! coupling of walls and solid, or does the artificial viscosity not transmit the impact?
 //!
-//! Each run measures the force on eight parts of the plate and the tip. A cantilever of Euler and Bernoulli under these very
-//! forces says how far a plate of that E goes: so the solid is judged apart from the fluid's load. `docs/plate-study.md`.
+//! Each run measures the force on eight parts of the plate and the tip. A cantilever of Euler and Bernoulli under these
+//! very forces says how far a plate of that E goes: so the solid is judged apart from the fluid's load.
+//! `docs/plate-study.md`.
 
 use halfstep_output::draw_plot;
 use halfstep_scene::{Reference, Scene};
@@ -65,8 +66,8 @@ impl Case {
         (length / self.resolution).round() - f64::from(u8::from(self.nodal))
     }
 
-    /// The plate that the particles stand for, each for its own cell. A nodal plate is held at the centres of the row on the
-    /// floor's level, half a cell below its first free one.
+    /// The plate that the particles stand for, each for its own cell. A nodal plate is held at the centres of the row
+    /// on the floor's level, half a cell below its first free one.
     fn plate(&self) -> Cantilever {
         Cantilever {
             length: self.foot() + self.rows(HEIGHT) * self.resolution,
@@ -158,7 +159,8 @@ impl Answer {
         }
     }
 
-    /// Mean deflection over the beam's since the impact: oscillations and what damps them cancel out, softness does not.
+    /// Mean deflection over the beam's since the impact: oscillations and what damps them cancel out, softness does
+    /// not.
     fn ratio(&self) -> f64 {
         let mean = |curve: &Curve| curve.between(IMPACT, 1.0).mean();
         mean(&self.tip) / mean(&self.beam)

@@ -1,7 +1,7 @@
 //! The `halfstep` command.
 
 use clap::{Parser, Subcommand};
-use halfstep::options::{RunOptions, SolidSource};
+use halfstep::options::{RunOptions, SolidSource, known_solid};
 use halfstep::{isa, run};
 use halfstep_coupling::supervise::abort_flag;
 use halfstep_coupling::{reports, roles};
@@ -222,7 +222,6 @@ fn foreign_solids(
     awaited: &[String],
 ) -> Result<Vec<(Name, SolidSource)>, String> {
     let known: Vec<&str> = scene.solids.iter().map(|solid| solid.name.as_str()).collect();
-    let named = |text: &str| known.iter().find(|name| **name == text).copied();
     let only = || match known.as_slice() {
         [name] => Ok(*name),
         [] => Err("--solid needs a scene with [fluid] and [solid]".to_owned()),
@@ -241,22 +240,16 @@ fn foreign_solids(
         Ok(())
     };
     for text in commands {
-        let unknown = text.split_once('=').map(|(name, _)| name).filter(|name| name.parse::<Name>().is_ok());
-        if let (Some(name), 2..) = (unknown.filter(|name| named(name).is_none()), known.len()) {
-            return Err(format!("the scene has no solid `{name}`; it has {}", known.join(", ")));
-        }
-        let (name, line) = match text.split_once('=').and_then(|(name, line)| Some((named(name)?, line))) {
-            Some(pair) => pair,
-            None => (only()?, text.as_str()),
+        // Of several solids one must be named; else what stands before the sign may belong to the command.
+        let names = |name: &str| known.contains(&name) || (known.len() > 1 && name.parse::<Name>().is_ok());
+        let (name, line) = match text.split_once('=') {
+            Some((name, line)) if names(name) => (known_solid(scene, name)?, line),
+            _ => (only()?, text.as_str()),
         };
         add(name, SolidSource::Command(line.to_owned()))?;
     }
     for text in awaited {
-        let name = match text.as_str() {
-            "" => only()?,
-            _ => named(text)
-                .ok_or_else(|| format!("the scene has no solid `{text}`; it has {}", known.join(", ")))?,
-        };
+        let name = if text.is_empty() { only()? } else { known_solid(scene, text)? };
         add(name, SolidSource::ByHand)?;
     }
     Ok(foreign)

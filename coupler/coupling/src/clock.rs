@@ -4,6 +4,7 @@ use halfstep_scene::{Scene, TimeStep};
 use halfstep_wire::Name;
 use halfstep_wire::failure::{Diverged, Quantity};
 use halfstep_wire::half_step::{HalfStep, Stage};
+use halfstep_wire::protocol::order;
 
 /// Growth of the time step from one step to the next.
 const GROWTH: f64 = 1.1;
@@ -74,6 +75,17 @@ impl Tick {
     /// The first half of the step to n + 1; its time step is zero where the end is reached.
     pub fn half_step(&self) -> HalfStep {
         HalfStep::begin(self.step, self.time).told(self.dt.unwrap_or(0.0), self.next_time)
+    }
+
+    /// The orders of the answer at a stage, but for checkpoints: see [`order`]. Only the state at n is written or
+    /// measured.
+    pub fn orders(&self, stage: Stage) -> u32 {
+        let mut orders = if self.dt.is_some() { order::GO } else { order::STOP };
+        if stage == Stage::First {
+            orders |= if self.frame { order::WRITE_FRAME } else { 0 };
+            orders |= if self.row { order::SEND_PROBES } else { 0 };
+        }
+        orders
     }
 }
 
@@ -259,5 +271,16 @@ mod tests {
         let solid = Limit { participant: Name::SOLID, dt: 0.05 };
         assert_eq!(told, [Some(solid), None, Some(of_fluid(0.09)), None]);
         assert_eq!(clock.exceeded().count(), 2);
+    }
+
+    #[test]
+    fn only_the_state_at_n_is_written_and_measured() {
+        let mut clock = clock(1.0, Some(0.3));
+        let tick = clock.tick(&[of_fluid(1.0)], false).unwrap();
+        let both = order::WRITE_FRAME | order::SEND_PROBES;
+        assert_eq!(tick.orders(Stage::First), order::GO | both, "the first state is a frame and a row");
+        assert_eq!(tick.orders(Stage::Second), order::GO);
+        let last = clock.tick(&[of_fluid(1.0)], true).unwrap();
+        assert_eq!(last.orders(Stage::First), order::STOP | both);
     }
 }

@@ -14,7 +14,7 @@ use halfstep_sph::Phase;
 use halfstep_sph::lane::Isa;
 use halfstep_wire::Name;
 use halfstep_wire::failure::Diverged;
-use halfstep_wire::half_step::{HalfStep, Stage};
+use halfstep_wire::half_step::HalfStep;
 use halfstep_wire::protocol::{ForceHeader, ForceRecord, StateHeader, ability, order, status};
 use halfstep_wire::wide;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -135,9 +135,8 @@ impl<S: Transport, const D: usize> Coupler<S, D> {
             let first = tick.half_step();
             self.answer(&tick, &first, &states)?;
             self.measure(&tick, &states)?;
-            let phase = |k: usize| if k == FLUID { Phase::Fluid } else { Phase::Solid };
             let measured: Vec<Measured<'_>> = (0..states.len())
-                .map(|k| Measured::of(phase(k), states[k].header(), &self.probes[k]))
+                .map(|k| Measured::of(phase_of(k), states[k].header(), &self.probes[k]))
                 .collect();
             recorder.note(&tick, &measured)?;
             drop(states);
@@ -164,7 +163,7 @@ impl<S: Transport, const D: usize> Coupler<S, D> {
         let foreign = place != FLUID && self.solids[place - 1].foreign.is_some();
         Account {
             name: self.link.name(place),
-            phase: if place == FLUID { Phase::Fluid } else { Phase::Solid },
+            phase: phase_of(place),
             audit: (!foreign).then_some(&header.audit),
             work,
         }
@@ -236,8 +235,9 @@ impl<S: Transport, const D: usize> Coupler<S, D> {
                     foreign.write(self.frame - 1, tick.time, state.records())?;
                 }
                 if self.abilities[place] & ability::PROBES == 0 {
-                    // At every step: the first one fixes what displacements are measured from.
-                    values.extend_from_slice(foreign.measure(state.records(), forces));
+                    if tick.row {
+                        values.extend_from_slice(foreign.measure(state.records(), forces));
+                    }
                     continue;
                 }
             }
@@ -258,14 +258,10 @@ impl<S: Transport, const D: usize> Coupler<S, D> {
     ) -> Result<(), RunError> {
         let start = Instant::now();
         let mut header = half_step.force_header();
-        header.order = if tick.dt.is_some() { order::GO } else { order::STOP };
-        if half_step.stage == Stage::First && tick.frame {
-            header.order |= order::WRITE_FRAME;
+        header.order = tick.orders(half_step.stage);
+        if header.order & order::WRITE_FRAME != 0 {
             header.frame = self.frame;
             self.frame += 1;
-        }
-        if half_step.stage == Stage::First && tick.row {
-            header.order |= order::SEND_PROBES;
         }
         self.evaluate(states);
         self.compute += start.elapsed();
@@ -351,6 +347,10 @@ impl<S: Transport, const D: usize> Coupler<S, D> {
             pair_evaluations: self.pair_evaluations,
         }
     }
+}
+
+fn phase_of(place: usize) -> Phase {
+    if place == FLUID { Phase::Fluid } else { Phase::Solid }
 }
 
 /// Hash over all participants, in their order.

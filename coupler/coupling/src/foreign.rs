@@ -1,6 +1,6 @@
 //! What the coupler does for a solid process that only exchanges states: its frames and probes, from its records.
 
-use crate::roles::measured_by;
+use crate::roles::probes_of;
 use halfstep_output::{Frame, FramePoint, FrameWriter, OutputError};
 use halfstep_scene::geometry::{holds, nearest};
 use halfstep_scene::{ProbeKind, Scene};
@@ -25,10 +25,9 @@ impl ForeignSolid {
     /// # Errors
     /// The writer cannot start.
     pub fn new(scene: &Scene, place: usize, name: Name, folder: &Path) -> Result<Self, OutputError> {
-        let own = measured_by(scene).into_iter().zip(&scene.probes).filter(|(owner, _)| *owner == place);
         Ok(Self {
             writer: FrameWriter::start(folder, name.as_str())?,
-            kinds: own.map(|(_, probe)| probe.kind).collect(),
+            kinds: probes_of(scene, place).map(|probe| probe.kind).collect(),
             dimension: scene.dimension,
             first: Vec::new(),
             chosen: Vec::new(),

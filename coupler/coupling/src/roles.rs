@@ -3,7 +3,7 @@
 use halfstep_output::FrameWriter;
 use halfstep_role::lockstep::{Member, RoleError};
 use halfstep_role::role::Role;
-use halfstep_scene::Scene;
+use halfstep_scene::{Probe, Scene};
 use halfstep_sph::Phase;
 use halfstep_sph::lane::Isa;
 use halfstep_wire::frame::FrameSink;
@@ -44,15 +44,15 @@ pub fn members(
 /// Places of the probes' participants, in the order of the probes: who measures each.
 pub fn measured_by(scene: &Scene) -> Vec<usize> {
     let first_solid = usize::from(scene.fluid.is_some());
-    let place = |probe: &halfstep_scene::Probe| match probe.kind.phase() {
+    let place = |probe: &Probe| match probe.kind.phase() {
         Phase::Solid => first_solid + probe.solid.unwrap_or_default(),
         _ => 0,
     };
     scene.probes.iter().map(place).collect()
 }
 
-/// Number of probe values of the participant at this place.
-pub fn probe_values(scene: &Scene, place: usize) -> usize {
-    let own = measured_by(scene).into_iter().zip(&scene.probes).filter(|(owner, _)| *owner == place);
-    own.map(|(_, probe)| probe.kind.components(scene.dimension).0.len()).sum()
+/// The probes that the participant at this place measures, in the scene's order.
+pub fn probes_of(scene: &Scene, place: usize) -> impl Iterator<Item = &Probe> {
+    let all = measured_by(scene).into_iter().zip(&scene.probes);
+    all.filter(move |(owner, _)| *owner == place).map(|(_, probe)| probe)
 }

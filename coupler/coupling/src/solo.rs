@@ -4,14 +4,14 @@ use crate::clock::{Clock, Limit, Tick};
 use crate::energy::Account;
 use crate::error::RunError;
 use crate::recorder::{Measured, Recorder};
-use halfstep_link::{Expect, LinkError, LinkTimes, Port};
+use halfstep_link::{Expect, LinkError, Port};
 use halfstep_role::lockstep::{Member, drive};
 use halfstep_role::report::Report;
 use halfstep_sph::Phase;
 use halfstep_wire::Name;
 use halfstep_wire::failure::Diverged;
-use halfstep_wire::half_step::Stage;
-use halfstep_wire::protocol::{ForceHeader, ForceRecord, StateHeader, StateRecord, order};
+use halfstep_wire::half_step::{HalfStep, Stage};
+use halfstep_wire::protocol::{ForceHeader, ForceRecord, StateHeader, StateRecord};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// How a run without partner went.
@@ -139,16 +139,6 @@ impl Port for Alone<'_> {
         Ok(())
     }
 
-    fn receive_peer(
-        &mut self,
-        _member: usize,
-        _peer: usize,
-        _expect: &Expect,
-        _records: &mut Vec<StateRecord>,
-    ) -> Result<StateHeader, LinkError> {
-        Err(LinkError::Config { key: "peer", reason: "there is no other phase".into() })
-    }
-
     fn receive_forces(
         &mut self,
         member: usize,
@@ -157,30 +147,20 @@ impl Port for Alone<'_> {
     ) -> Result<ForceHeader, LinkError> {
         records.clear();
         let first = self.headers[member].stage == Stage::First.number();
+        let stage = if first { Stage::First } else { Stage::Second };
         if first && member == 0 {
             let decided = self.decide();
             self.tick = Some(self.keep(decided)?);
             self.frame += u64::from(self.tick.is_some_and(|tick| tick.frame));
         }
         let Some(tick) = self.tick else { return Err(LinkError::Aborted) };
-        let mut orders = if tick.dt.is_some() { order::GO } else { order::STOP };
-        if first && tick.frame {
-            orders |= order::WRITE_FRAME;
-        }
-        if first && tick.row {
-            orders |= order::SEND_PROBES;
-        }
         if !first && member + 1 == self.names.len() {
             self.clock.advance(&tick);
         }
         Ok(ForceHeader {
-            order: orders,
-            step: tick.step,
-            time: tick.time,
-            dt: tick.dt.unwrap_or(0.0),
-            next_time: tick.next_time,
+            order: tick.orders(stage),
             frame: self.frame.saturating_sub(1),
-            ..ForceHeader::default()
+            ..HalfStep { stage, ..tick.half_step() }.force_header()
         })
     }
 
@@ -203,15 +183,7 @@ impl Port for Alone<'_> {
         }
     }
 
-    fn peers(&self, _member: usize) -> &[Name] {
-        &[]
-    }
-
     fn participants(&self) -> &[Name] {
         &self.names
-    }
-
-    fn times(&self) -> LinkTimes {
-        LinkTimes::default()
     }
 }

@@ -16,11 +16,7 @@ use std::fmt::Write;
 /// longer.
 pub fn describe(scene: &Scene, isa: Isa) -> String {
     let layout = geometry::layout::<2>(scene);
-    let counts = geometry::Counts {
-        fluid: layout.fluid.len() as u64,
-        solid: layout.solid.len() as u64,
-        wall: layout.wall.len() as u64,
-    };
+    let counts = layout.counts();
     let mut text = String::new();
     let mut line = |name: &str, value: String| {
         // Writing to a string cannot fail.
@@ -62,14 +58,14 @@ pub fn describe(scene: &Scene, isa: Isa) -> String {
             "between solids",
             "nothing acts but the water: where they meet they pass through each other".into(),
         );
-        for (name, count) in per_solid(scene, &layout) {
-            line(name, format!("{count} particles"));
+        for (solid, count) in scene.solids.iter().zip(layout.solid_counts(scene)) {
+            line(&solid.name, format!("{count} particles"));
         }
     }
     line("memory", format!("about {:.1} MB", scene::memory_needed(&counts) as f64 / 1e6));
     if scene.fluid.is_some()
         && !scene.solids.is_empty()
-        && let Ok(participants) = crate::participants::participants(scene, &[])
+        && let Ok(participants) = crate::participants::participants(scene, &layout, &[])
     {
         let bytes = LinkConfig::new(participants).shared_memory_bytes();
         line("shared memory", format!("{:.1} MB", bytes as f64 / 1e6));
@@ -91,11 +87,4 @@ pub fn describe(scene: &Scene, isa: Isa) -> String {
             writeln!(text, "{:<28}{:<5}{}", effect.name, if effect.on { "on" } else { "off" }, effect.why);
     }
     text
-}
-
-/// Each solid's name and number of particles.
-fn per_solid<'a>(scene: &'a Scene, layout: &geometry::Layout<2>) -> Vec<(&'a str, usize)> {
-    let of =
-        |k: usize| layout.solid.iter().filter(|p| scene.shapes[p.body as usize].solid == Some(k)).count();
-    scene.solids.iter().enumerate().map(|(k, solid)| (solid.name.as_str(), of(k))).collect()
 }

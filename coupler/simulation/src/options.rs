@@ -1,5 +1,6 @@
 //! How a scene is run.
 
+use halfstep_scene::Scene;
 use halfstep_sph::lane::Isa;
 use halfstep_wire::Name;
 use std::path::PathBuf;
@@ -35,8 +36,24 @@ pub struct RunOptions {
 }
 
 impl RunOptions {
+    /// Names of the solids that are not built in.
+    pub fn foreign_names(&self) -> Vec<Name> {
+        self.foreign.iter().map(|(name, _)| *name).collect()
+    }
+
     /// Where a solid comes from; `None`: it is built in.
     pub fn source(&self, name: Name) -> Option<&SolidSource> {
         self.foreign.iter().find(|(known, _)| *known == name).map(|(_, source)| source)
     }
+}
+
+/// The name of a solid of the scene.
+///
+/// # Errors
+/// The scene has no solid of this name: a sentence that names those it has.
+pub fn known_solid<'a>(scene: &'a Scene, name: &str) -> Result<&'a str, String> {
+    let known = || scene.solids.iter().map(|solid| solid.name.as_str());
+    known().find(|solid| *solid == name).ok_or_else(|| {
+        format!("the scene has no solid `{name}`; it has {}", known().collect::<Vec<_>>().join(", "))
+    })
 }

@@ -8,7 +8,7 @@ use halfstep_link::{FLUID, LinkConfig, Participant};
 use halfstep_output::RunReport;
 use halfstep_output::run_json::{ParticipantReport, RoleSeconds};
 use halfstep_role::report::Report;
-use halfstep_scene::geometry;
+use halfstep_scene::geometry::Layout;
 use halfstep_scene::{Phase, Scene};
 use halfstep_wire::Name;
 use halfstep_wire::protocol::StateHeader;
@@ -18,13 +18,12 @@ use halfstep_wire::protocol::StateHeader;
 ///
 /// # Errors
 /// A name of the scene is none.
-pub(crate) fn participants(scene: &Scene, foreign: &[Name]) -> Result<Vec<Participant>, RunError> {
-    let layout = geometry::layout::<2>(scene);
-    let mut solids = vec![0; scene.solids.len()];
-    for point in &layout.solid {
-        solids[scene.shapes[point.body as usize].solid.unwrap_or_default()] += 1;
-    }
-    let fluid = layout.fluid.len() as u64;
+pub(crate) fn participants(
+    scene: &Scene,
+    layout: &Layout<2>,
+    foreign: &[Name],
+) -> Result<Vec<Participant>, RunError> {
+    let solids = layout.solid_counts(scene);
     let name = |text: &str| text.parse::<Name>().map_err(|e| RunError::System(e.to_string()));
     let mut participants = Vec::new();
     let mut all_solids = 0;
@@ -41,7 +40,7 @@ pub(crate) fn participants(scene: &Scene, foreign: &[Name]) -> Result<Vec<Partic
             name: own,
             process: if is_foreign { own } else { name(&participant.process)? },
             capacity: capacity.max(1) as u32,
-            probes: roles::probe_values(scene, place) as u32,
+            probes: values(scene, place) as u32,
         });
     }
     let shared = |k: &usize| {
@@ -57,10 +56,15 @@ pub(crate) fn participants(scene: &Scene, foreign: &[Name]) -> Result<Vec<Partic
         )));
     }
     // A ribbon of about four layers on each side of the solids' surfaces, and room for compression.
-    let ribbon = (24 * all_solids).max(4096).min(fluid);
+    let ribbon = (24 * all_solids).max(4096).min(layout.counts().fluid);
     let capacity = scene.numerics.interface_capacity.map_or(ribbon, u64::from);
     participants[FLUID].capacity = capacity.max(1) as u32;
     Ok(participants)
+}
+
+/// Number of probe values of the participant at this place.
+fn values(scene: &Scene, place: usize) -> usize {
+    roles::probes_of(scene, place).map(|probe| probe.kind.components(scene.dimension).0.len()).sum()
 }
 
 /// Puts what the participants said at their ends into the report: sums by phase, and a row for each of them.
@@ -73,6 +77,7 @@ pub(crate) fn report_participants(
     report: &mut RunReport,
 ) {
     for (place, participant) in scene.participants().into_iter().enumerate() {
+        let process = config.map_or(participant.process, |c| c.participants[place].process.to_string());
         let times = reports[place].as_ref().map(|own| RoleSeconds {
             compute: own.compute,
             wait: own.wait,
@@ -88,8 +93,7 @@ pub(crate) fn report_participants(
             let sum = seconds.get_or_insert_default();
             sum.compute += own.compute;
             // Members of one process wait and exchange together.
-            let process = &participant.process;
-            if !report.participants.iter().any(|other| other.process == *process && other.times.is_some()) {
+            if !report.participants.iter().any(|other| other.process == process && other.times.is_some()) {
                 sum.wait += own.wait;
                 sum.exchange += own.exchange;
             }
@@ -114,7 +118,7 @@ pub(crate) fn report_participants(
                 SolidSource::Command(line) => line.clone(),
                 SolidSource::ByHand => String::new(),
             }),
-            process: config.map_or(participant.process, |c| c.participants[place].process.to_string()),
+            process,
             name: participant.name,
             particles: last[place].particles,
             mass: last[place].audit.mass,

@@ -2,7 +2,7 @@
 
 use crate::advice::advice;
 use crate::effects;
-use crate::options::RunOptions;
+use crate::options::{RunOptions, known_solid};
 use crate::participants::report_participants;
 use crate::session::Session;
 use halfstep_coupling::clock::Clock;
@@ -18,7 +18,6 @@ use halfstep_role::report::Report;
 use halfstep_role::serve;
 use halfstep_scene::Scene;
 use halfstep_scene::geometry;
-use halfstep_wire::Name;
 use std::sync::atomic::AtomicBool;
 
 /// Runs a scene. The report is written whatever happens; an error stands in it, too.
@@ -29,15 +28,13 @@ pub fn run(scene: &Scene, options: &RunOptions) -> Result<(RunReport, Option<Run
     if !options.foreign.is_empty() && (scene.fluid.is_none() || scene.solids.is_empty()) {
         return Err(RunError::System("--solid needs a scene with [fluid] and [solid]".into()));
     }
-    let unknown = |name: &Name| !scene.solids.iter().any(|solid| solid.name == name.as_str());
-    if let Some((name, _)) = options.foreign.iter().find(|(name, _)| unknown(name)) {
-        let known: Vec<&str> = scene.solids.iter().map(|solid| solid.name.as_str()).collect();
-        let reason = format!("the scene has no solid `{name}`; it has {}", known.join(", "));
-        return Err(RunError::System(reason));
+    for name in options.foreign_names() {
+        known_solid(scene, name.as_str()).map_err(RunError::System)?;
     }
     let directory = RunDirectory::create(&options.out, options.force)?;
     let stop = stop_flag().map_err(|e| RunError::System(format!("cannot watch for signals: {e}")))?;
-    let counts = geometry::layout::<2>(scene).counts();
+    let layout = geometry::layout::<2>(scene);
+    let counts = layout.counts();
     let mut report = RunReport {
         scene: serde_json::to_value(scene).map_err(|e| RunError::System(e.to_string()))?,
         version: env!("CARGO_PKG_VERSION").into(),
@@ -50,9 +47,8 @@ pub fn run(scene: &Scene, options: &RunOptions) -> Result<(RunReport, Option<Run
     report.write(&directory.file("run.json"))?;
     let mut recorder = Recorder::new(scene, &directory.file("probes.csv"), options.quiet)?;
     let mut clock = Clock::new(scene);
-    let foreign: Vec<Name> = options.foreign.iter().map(|(name, _)| *name).collect();
     let result = if scene.fluid.is_some() && !scene.solids.is_empty() {
-        Session::new(scene, options, &directory, &stop)
+        Session::new(scene, options, &directory, &stop, &layout)
             .and_then(|session| session.run(&mut clock, &mut recorder, &mut report))
     } else {
         solo(scene, options, &directory, &stop, &mut clock, &mut recorder, &mut report)
@@ -66,7 +62,7 @@ pub fn run(scene: &Scene, options: &RunOptions) -> Result<(RunReport, Option<Run
         Err(mut error) => {
             report.status = Some(RunStatus::Failed);
             if let RunError::Diverged { diverged, hint } = &mut error {
-                *hint = advice(diverged, scene, &clock, &foreign);
+                *hint = advice(diverged, scene, &clock, &options.foreign_names());
                 report.status = Some(RunStatus::Diverged);
             }
             tracing::error!("{error}");

@@ -19,6 +19,7 @@ use halfstep_role::lockstep::RoleError;
 use halfstep_role::report::Report;
 use halfstep_role::serve::{self, FOLDER_VARIABLE, SCENE_VARIABLE, THREADS_VARIABLE};
 use halfstep_scene::Scene;
+use halfstep_scene::geometry::Layout;
 use halfstep_wire::Name;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -37,15 +38,15 @@ pub(crate) struct Session<'a> {
 }
 
 impl<'a> Session<'a> {
-    /// For a scene with both phases.
+    /// For a scene with both phases, whose particles begin as in `layout`.
     pub(crate) fn new(
         scene: &'a Scene,
         options: &'a RunOptions,
         directory: &'a RunDirectory,
         stop: &'a AtomicBool,
+        layout: &Layout<2>,
     ) -> Result<Self, RunError> {
-        let foreign: Vec<Name> = options.foreign.iter().map(|(name, _)| *name).collect();
-        let mut config = LinkConfig::new(participants(scene, &foreign)?);
+        let mut config = LinkConfig::new(participants(scene, layout, &options.foreign_names())?);
         if options.foreign.iter().any(|(_, source)| *source == SolidSource::ByHand) {
             config.handshake_seconds = options.solid_wait;
         }

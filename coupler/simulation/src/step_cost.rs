@@ -1,6 +1,6 @@
 //! What a step of a participant costs: the half-step loop of a run for a few steps, with a coupler that only counts.
 
-use halfstep_link::{Expect, LinkError, LinkTimes, Port};
+use halfstep_link::{Expect, LinkError, Port};
 use halfstep_role::lockstep::{Member, drive};
 use halfstep_role::role::Role;
 use halfstep_wire::Name;
@@ -52,16 +52,6 @@ impl Port for Stopwatch {
         Ok(())
     }
 
-    fn receive_peer(
-        &mut self,
-        _member: usize,
-        _peer: usize,
-        _expect: &Expect,
-        _records: &mut Vec<StateRecord>,
-    ) -> Result<StateHeader, LinkError> {
-        Err(LinkError::Config { key: "peer", reason: "there is no other phase".into() })
-    }
-
     fn receive_forces(
         &mut self,
         _member: usize,
@@ -75,25 +65,7 @@ impl Port for Stopwatch {
         Ok(ForceHeader { order, step, stage, time, dt: self.dt, next_time, ..ForceHeader::default() })
     }
 
-    fn send_probes(
-        &mut self,
-        _member: usize,
-        _step: u64,
-        _time: f64,
-        _values: &[f64],
-    ) -> Result<(), LinkError> {
-        Ok(())
-    }
-
-    fn peers(&self, _member: usize) -> &[Name] {
-        &[]
-    }
-
     fn participants(&self) -> &[Name] {
         &self.names
-    }
-
-    fn times(&self) -> LinkTimes {
-        LinkTimes::default()
     }
 }

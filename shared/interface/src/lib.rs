@@ -69,10 +69,9 @@ pub fn non_negative_pressure(scene: &Scene) -> Decision {
 }
 
 impl<const D: usize> Parameters<D> {
-    /// Between the fluid of a scene and its solid number `solid`, in the scene's order; `None` where one is missing.
-    pub fn new(scene: &Scene, solid: usize, isa: Isa) -> Option<Self> {
-        let number = solid;
-        let (fluid, solid) = (scene.fluid.as_ref()?, scene.solids.get(number)?);
+    /// Between the fluid of a scene and its solid of that index; `None` where one is missing.
+    pub fn new(scene: &Scene, index: usize, isa: Isa) -> Option<Self> {
+        let (fluid, solid) = (scene.fluid.as_ref()?, scene.solids.get(index)?);
         Some(Self {
             treatment: scene.interface.treatment,
             kernel: scene.numerics.kernel,
@@ -83,7 +82,7 @@ impl<const D: usize> Parameters<D> {
             gravity: std::array::from_fn(|d| scene.gravity[d]),
             non_negative_pressure: non_negative_pressure(scene).on,
             resolution: scene.resolution,
-            thin_plates: thin_plate::screened(scene, number),
+            thin_plates: thin_plate::screened(scene, index),
             cross_viscosity: scene.interface.cross_viscosity,
             isa,
         })

@@ -203,6 +203,13 @@ impl Track {
         }
     }
 
+    fn advance(&mut self, half_step: &HalfStep) -> Result<(), RoleError> {
+        let start = Instant::now();
+        self.role.advance(half_step, &self.forces)?;
+        self.compute += start.elapsed();
+        Ok(())
+    }
+
     fn write_frame(&mut self, number: u32, time: f64) -> Result<(), SinkError> {
         let Some(frames) = &mut self.frames else { return Ok(()) };
         let start = Instant::now();
@@ -236,6 +243,9 @@ impl Track {
     }
 }
 
+/// Place of the participant that failed, and why.
+type Failed = (usize, RoleError);
+
 struct Drive {
     tracks: Vec<Track>,
     half_step: HalfStep,
@@ -244,66 +254,67 @@ struct Drive {
 }
 
 impl Drive {
-    /// All half-steps until the order to stop; an error comes with the place of the participant.
-    fn half_steps(&mut self, port: &mut dyn Port) -> Result<(), (usize, RoleError)> {
+    /// All half-steps until the order to stop.
+    fn half_steps(&mut self, port: &mut dyn Port) -> Result<(), Failed> {
         let expect = Expect::of(&self.half_step);
-        for (k, track) in self.tracks.iter_mut().enumerate() {
+        self.each(|k, track| {
             // The fluid needs the solids' first states to choose what it publishes.
             if track.role.phase() == Phase::Fluid {
-                track.receive_peers(port, k, &expect).map_err(|error| (k, error))?;
+                track.receive_peers(port, k, &expect)?;
                 track.have_peers = true;
             }
-        }
+            Ok(())
+        })?;
         while self.half_step(port)? {}
         Ok(())
     }
 
+    /// Does a part of the half-step for one participant after the other.
+    fn each(
+        &mut self,
+        mut part: impl FnMut(usize, &mut Track) -> Result<(), RoleError>,
+    ) -> Result<(), Failed> {
+        let mut all = self.tracks.iter_mut().enumerate();
+        all.try_for_each(|(k, track)| part(k, track).map_err(|error| (k, error)))
+    }
+
     /// One half-step; returns whether the run goes on.
-    fn half_step(&mut self, port: &mut dyn Port) -> Result<bool, (usize, RoleError)> {
+    fn half_step(&mut self, port: &mut dyn Port) -> Result<bool, Failed> {
         let half_step = self.half_step;
         let expect = Expect::of(&half_step);
-        for (k, track) in self.tracks.iter_mut().enumerate() {
+        self.each(|k, track| {
             track.publish(&half_step);
-            port.send_state(k, &track.header, &track.own).map_err(|error| (k, error.into()))?;
-        }
-        for track in &mut self.tracks {
-            track.own_sums();
-        }
-        for (k, track) in self.tracks.iter_mut().enumerate() {
+            Ok(port.send_state(k, &track.header, &track.own)?)
+        })?;
+        self.tracks.iter_mut().for_each(Track::own_sums);
+        self.each(|k, track| {
             if !std::mem::take(&mut track.have_peers) {
-                track.receive_peers(port, k, &expect).map_err(|error| (k, error))?;
+                track.receive_peers(port, k, &expect)?;
             }
-            track.cross_sums(port, k, &half_step).map_err(|error| (k, error))?;
-        }
-        let (mut next, mut stopped) = (half_step, false);
-        for (k, track) in self.tracks.iter_mut().enumerate() {
+            track.cross_sums(port, k, &half_step)
+        })?;
+        let (mut told, mut stopped, mut at) = (half_step, false, self.at);
+        let answered = self.each(|k, track| {
             // At the first stage the answer brings the time step.
-            let answer =
-                port.receive_forces(k, &expect, &mut track.forces).map_err(|error| (k, error.into()))?;
+            let answer = port.receive_forces(k, &expect, &mut track.forces)?;
             track.latency.add(track.sent.elapsed());
-            let half_step = half_step.told(answer.dt, answer.next_time);
-            self.at = half_step.after();
+            told = half_step.told(answer.dt, answer.next_time);
+            at = told.after();
             if answer.order & order::WRITE_FRAME != 0 {
-                let number = answer.frame as u32;
-                track.write_frame(number, half_step.time).map_err(|error| (k, RoleError::Output(error)))?;
+                track.write_frame(answer.frame as u32, told.time).map_err(RoleError::Output)?;
             }
             if answer.order & order::SEND_PROBES != 0 {
                 track.probes.clear();
                 track.role.probes(&mut track.probes);
-                port.send_probes(k, half_step.step, half_step.time, &track.probes)
-                    .map_err(|error| (k, error.into()))?;
+                port.send_probes(k, told.step, told.time, &track.probes)?;
             }
-            next = half_step.next();
             // All participants are stopped at the same state.
             stopped = answer.order & order::STOP != 0;
-            if stopped {
-                continue;
-            }
-            let start = Instant::now();
-            track.role.advance(&half_step, &track.forces).map_err(|error| (k, error.into()))?;
-            track.compute += start.elapsed();
-        }
-        self.half_step = next;
+            if stopped { Ok(()) } else { track.advance(&told) }
+        });
+        self.at = at;
+        answered?;
+        self.half_step = told.next();
         Ok(!stopped)
     }
 

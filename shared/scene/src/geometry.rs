@@ -86,6 +86,15 @@ impl<const D: usize> Layout<D> {
         self
     }
 
+    /// Particles of each solid, in the order of [`Scene::solids`].
+    pub fn solid_counts(&self, scene: &Scene) -> Vec<u64> {
+        let mut counts = vec![0; scene.solids.len()];
+        for solid in self.solid.iter().filter_map(|p| scene.shapes[p.body as usize].solid) {
+            counts[solid] += 1;
+        }
+        counts
+    }
+
     /// How many there are.
     pub fn counts(&self) -> Counts {
         let [fluid, solid, wall] = [self.fluid.len(), self.solid.len(), self.wall.len()].map(|n| n as u64);

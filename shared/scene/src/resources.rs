@@ -92,11 +92,9 @@ pub(super) fn check_solids(scene: &Scene, root: &Node, report: &Report) {
     if scene.solids.len() < 2 || scene.dimension != 2 {
         return;
     }
-    let layout = geometry::layout::<2>(scene);
-    let of = |shape: &Shape, k: usize| shape.solid == Some(k);
+    let counts = geometry::layout::<2>(scene).solid_counts(scene);
     for (k, solid) in scene.solids.iter().enumerate() {
-        let has_particles = layout.solid.iter().any(|p| of(&scene.shapes[p.body as usize], k));
-        if let (false, Some(shape)) = (has_particles, scene.shapes.iter().find(|shape| of(shape, k))) {
+        if let (0, Some(shape)) = (counts[k], scene.shapes.iter().find(|shape| shape.solid == Some(k))) {
             let key = format!("shape.{}", shape.name);
             let why = "shapes that come before it in the file lie there, and the first one keeps the place";
             let reason = format!("leaves the solid `{}` without a particle: {why}", solid.name);
