@@ -24,6 +24,7 @@ use halfstep_wire::failure::Diverged;
 use halfstep_wire::frame::Frame;
 use halfstep_wire::half_step::{HalfStep, Stage};
 use halfstep_wire::protocol::{Audit, ForceRecord, StateRecord};
+use halfstep_wire::state::State;
 
 /// Margin of the neighbour lists over h: lists are renewed when two particles may have come that much closer.
 const SKIN: f64 = 0.3;
@@ -50,15 +51,19 @@ pub struct Fluid<const D: usize, X: FluidEffect<D> = ()> {
     composition: String,
     /// The stage of the next sums.
     pub(crate) stage: Stage,
-    domain: ([f64; D], [f64; D]),
+    pub(crate) domain: ([f64; D], [f64; D]),
+    /// Of the scene; particles that leave the domain are taken out.
+    pub(crate) number_of_particles: usize,
     pub(crate) fluid_list: ClusterList,
     pub(crate) wall_list: ClusterList,
     pub(crate) list_of_walls: ClusterList,
     pub(crate) sums: Vec<RateSum<D>>,
-    displacement: f64,
-    largest_speed: f64,
-    largest_acceleration: f64,
-    sorted: bool,
+    pub(crate) displacement: f64,
+    pub(crate) largest_speed: f64,
+    pub(crate) largest_acceleration: f64,
+    pub(crate) sorted: bool,
+    /// What the next state publishes was decided before an interruption.
+    pub(crate) published: bool,
     pub(crate) pair_evaluations: u64,
 }
 
@@ -92,6 +97,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
             (0..scene.solids.len()).filter_map(|solid| Parameters::new(scene, solid, isa)).collect();
         Some(
             Self {
+                number_of_particles: columns.particles,
                 columns,
                 walls,
                 coupling: Coupling::new(coupled),
@@ -119,6 +125,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
                 largest_speed: 0.0,
                 largest_acceleration: 0.0,
                 sorted: false,
+                published: false,
                 pair_evaluations: 0,
             }
             .prepared(),
@@ -145,24 +152,28 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
                 self.columns.id[slot] = PADDING;
             }
         }
-        let reach = 2.0 * self.smoothing_length + self.skin;
         // Rows two spacings high: four neighbours in a row are a square.
         self.rows.sort(&self.columns.now.position, &self.columns.id, 2.0 * self.resolution, low, high);
         self.columns.permute(&mut self.rows, &self.state);
-        let x = &self.columns.now.position;
-        self.fluid_list.build(x, x, &self.rows, reach);
-        if let Some(walls) = &mut self.walls {
-            if walls.displacement() > 0.0 {
-                walls.sort();
-            }
-            self.wall_list.build(x, &walls.shown.position, &walls.rows, reach);
-            self.list_of_walls.build(&walls.shown.position, x, &self.rows, reach);
+        if let Some(walls) = self.walls.as_mut().filter(|walls| walls.displacement() > 0.0) {
+            walls.sort();
         }
-        let clusters = self.fluid_list.clusters();
-        fit(&mut self.sums, clusters, RateSum::default());
+        self.list();
+        fit(&mut self.sums, self.fluid_list.clusters(), RateSum::default());
         self.effects.resize(self.columns.slots(), self.walls.as_ref());
         self.displacement = 0.0;
         self.sorted = true;
+    }
+
+    /// Lists who is near whom, from where particles and walls were at the last sort.
+    pub(crate) fn list(&mut self) {
+        let reach = 2.0 * self.smoothing_length + self.skin;
+        let x = &self.columns.reference;
+        self.fluid_list.build(x, x, &self.rows, reach);
+        if let Some(walls) = &self.walls {
+            self.wall_list.build(x, &walls.shown.position, &walls.rows, reach);
+            self.list_of_walls.build(&walls.shown.position, x, &self.rows, reach);
+        }
     }
 
     /// What the next step depends on.
@@ -221,11 +232,12 @@ impl<const D: usize, X: FluidEffect<D>> Role for Fluid<D, X> {
     fn publish(&mut self, peers: &[Peer], out: &mut Vec<StateRecord>) -> u64 {
         out.clear();
         let walls = self.walls.as_ref().map_or(0.0, Walls::displacement);
-        if self.displacement + self.displacement.max(walls) > self.skin
-            || self.coupling.as_ref().is_some_and(|c| c.is_stale(peers))
-        {
+        let stale = self.displacement + self.displacement.max(walls) > self.skin
+            || self.coupling.as_ref().is_some_and(|c| c.is_stale(peers));
+        if stale && !self.published {
             self.sort();
         }
+        self.published = false;
         let Some(coupling) = &mut self.coupling else { return 0 };
         if self.sorted {
             coupling.choose(&self.columns, peers);
@@ -284,6 +296,10 @@ impl<const D: usize, X: FluidEffect<D>> Role for Fluid<D, X> {
 
     fn state_hash(&self) -> u64 {
         self.hash()
+    }
+
+    fn state(&mut self) -> Option<&mut dyn State> {
+        Some(self)
     }
 
     fn bytes(&self) -> Option<usize> {

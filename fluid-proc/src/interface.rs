@@ -13,18 +13,18 @@ use halfstep_wire::wide;
 /// State of the coupling.
 pub struct Coupling<const D: usize> {
     /// One for each solid.
-    interfaces: Vec<Interface<D>>,
+    pub(crate) interfaces: Vec<Interface<D>>,
     /// Slots of the published particles, by ascending particle number.
-    slots: Vec<u32>,
+    pub(crate) slots: Vec<u32>,
     /// Positions of all solids, one after the other, when the set was chosen.
-    chosen_at: Vec<[f64; D]>,
-    epoch: u64,
+    pub(crate) chosen_at: Vec<[f64; D]>,
+    pub(crate) epoch: u64,
     reach: f64,
     skin: f64,
     rows: Rows<D>,
     sorted: [Vec<f64>; D],
     order: Vec<u32>,
-    gap: f64,
+    pub(crate) gap: f64,
 }
 
 impl<const D: usize> Coupling<D> {

@@ -16,6 +16,7 @@ pub mod midpoint;
 pub mod momentum;
 mod passes;
 pub mod rates;
+mod state;
 #[cfg(test)]
 mod term_tests;
 pub mod time_step;
@@ -24,13 +25,13 @@ pub mod walls;
 pub use fluid::Fluid;
 
 use halfstep_role::role::Role;
-use halfstep_scene::Scene;
+use halfstep_scene::{Scene, dispatch};
 use halfstep_sph::lane::Isa;
 
 /// The fluid of a scene as a participant, with the passes compiled in this crate; `None` without a fluid.
 pub fn role(scene: &Scene, isa: Isa) -> Option<Box<dyn Role>> {
-    match scene.dimension {
-        2 => Fluid::<2>::new(scene, isa).map(|fluid| Box::new(fluid) as Box<dyn Role>),
-        _ => None,
-    }
+    let boxed = dispatch!(scene.dimension, D => {
+        Fluid::<D>::new(scene, isa).map(|fluid| Box::new(fluid) as Box<dyn Role>)
+    });
+    boxed.flatten()
 }

@@ -17,13 +17,13 @@ pub use solid::Solid;
 pub use sub_steps::SubStepping;
 
 use halfstep_role::role::Role;
-use halfstep_scene::Scene;
+use halfstep_scene::{Scene, dispatch};
 use halfstep_sph::lane::Isa;
 
 /// A solid of a scene, by its place in [`Scene::solids`], as a participant; `None` where there is none.
 pub fn role(scene: &Scene, solid: usize, isa: Isa) -> Option<Box<dyn Role>> {
-    match scene.dimension {
-        2 => Solid::<2>::new(scene, solid, isa).map(|solid| Box::new(solid) as Box<dyn Role>),
-        _ => None,
-    }
+    let boxed = dispatch!(scene.dimension, D => {
+        Solid::<D>::new(scene, solid, isa).map(|solid| Box::new(solid) as Box<dyn Role>)
+    });
+    boxed.flatten()
 }

@@ -4,6 +4,7 @@ use halfstep_role::role::Costs;
 use halfstep_sph::quantity::Quantity;
 use halfstep_wire::half_step::HalfStep;
 use halfstep_wire::protocol::StateRecord;
+use halfstep_wire::state::State;
 
 /// Forces on a model's particles from outside during one stage: one entry for each, by particle number.
 #[derive(Clone, Debug)]
@@ -105,6 +106,10 @@ pub trait SolidModel<const D: usize>: Send {
     fn strain_energy(&self) -> f64;
     /// Pair evaluations so far.
     fn pair_evaluations(&self) -> u64;
+    /// What the model keeps over an interruption; `None`: it cannot be saved, and no checkpoints are written.
+    fn state(&mut self) -> Option<&mut dyn State> {
+        None
+    }
     /// What the model's effects take of its time, measured on the present state, which does not change. A model without
     /// effects that can be left out has none to name.
     fn costs(&mut self) -> Costs {

@@ -11,6 +11,7 @@
 use crate::model::{Load, OuterRates, Particles};
 use halfstep_scene::{Scene, Solid};
 use halfstep_wire::half_step::{HalfStep, Stage};
+use halfstep_wire::state::{Fields, State, StateError};
 
 /// Largest displacement of a solid at rest, over the spacing.
 pub(crate) const TOLERANCE: f64 = 0.01;
@@ -70,6 +71,13 @@ impl Sleep {
             self.asleep = self.quiet > self.window;
         }
         if self.asleep { Rest::Asleep } else { Rest::Awake }
+    }
+}
+
+impl State for Sleep {
+    fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
+        fields.real("quiet", &mut self.quiet)?;
+        fields.flag("asleep", &mut self.asleep)
     }
 }
 

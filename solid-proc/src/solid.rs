@@ -14,6 +14,7 @@ use halfstep_wire::failure::Diverged;
 use halfstep_wire::frame::{Frame, FramePoint};
 use halfstep_wire::half_step::{HalfStep, Stage};
 use halfstep_wire::protocol::{Audit, ForceRecord, StateRecord};
+use halfstep_wire::state::{Fields, State, StateError};
 use halfstep_wire::{Name, wide};
 use xxhash_rust::xxh3::Xxh3;
 
@@ -105,6 +106,34 @@ impl<const D: usize> Solid<D> {
             self.model.take_outer_rates(&self.outer);
         }
         self.model.advance(half_step, self.taken, &self.load)
+    }
+}
+
+impl<const D: usize> State for Solid<D> {
+    fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
+        fields.points("force", &mut self.load.force)?;
+        fields.length("force", self.all.len(), self.load.force.len())?;
+        fields.small_count("sub_steps", &mut self.taken)?;
+        fields.count("cross_pairs", &mut self.cross_pairs)?;
+        if let Some(sleep) = &mut self.sleep {
+            fields.part("sleep", sleep)?;
+        }
+        if let Some(interface) = &mut self.interface {
+            fields.part("interface", interface)?;
+        }
+        match self.model.state() {
+            Some(model) => fields.part("model", model),
+            None => Err(StateError::contradiction("the solid's model cannot be saved")),
+        }
+    }
+
+    fn restored(&mut self) -> Result<(), StateError> {
+        if let Some(interface) = &mut self.interface {
+            interface.restored()?;
+        }
+        self.model.state().map_or(Ok(()), State::restored)?;
+        self.limit = self.model.sub_step_limit();
+        Ok(())
     }
 }
 
@@ -264,6 +293,10 @@ impl<const D: usize> Role for Solid<D> {
 
     fn costs(&mut self) -> Costs {
         Costs { of_whole: true, ..self.model.costs() }
+    }
+
+    fn state(&mut self) -> Option<&mut dyn State> {
+        self.model.state().is_some().then_some(self as &mut dyn State)
     }
 
     fn pair_evaluations(&self) -> u64 {

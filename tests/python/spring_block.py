@@ -10,8 +10,10 @@ def view(address, t, count=1): return np.frombuffer((t * count).from_address(add
 State = wire("StateRecord.1", 128, id=("u4", 0), position=("3f8", 8), velocity=("3f8", 32), density=("f8", 56), mass=("f8", 72))
 Force = wire("ForceRecord.1", 56, viscous=("3f8", 8), stress=("3f8", 32))
 StateHead = wire("StateHeader.2", 224, run_id=("u8", 0), schema=("u8", 8), protocol=("u4", 16), status=("u4", 20), step=("u8", 24),
-                 stage=("u4", 32), count=("u4", 36), time=("f8", 48), dt=("f8", 56), dt_limit=("f8", 64))
-ForceHead = wire("ForceHeader.2", 88, order=("u4", 20), step=("u8", 24), stage=("u4", 32), dt=("f8", 56), next_time=("f8", 64))
+                 stage=("u4", 32), count=("u4", 36), time=("f8", 48), dt=("f8", 56), dt_limit=("f8", 64),
+                 abilities=("u4", 88), checkpoint_safe=("u4", 92))
+ForceHead = wire("ForceHeader.2", 88, order=("u4", 20), step=("u8", 24), stage=("u4", 32), dt=("f8", 56), next_time=("f8", 64),
+                 checkpoint=("u8", 80))
 env, stiffness = {k[9:]: v for k, v in os.environ.items() if k.startswith("HALFSTEP_")}, float(sys.argv[1])
 name, partners = env["NAME"], len({pair.split(":")[1] for pair in env["PROCESSES"].split(",")})  # of fluid and coupler
 scene = json.load(open(env["SCENE"]))
@@ -48,12 +50,20 @@ def send(count, **fields):
     for field, value in fields.items(): head[field] = value
     sample.assume_init().send(), [notifier.notify() for notifier in notifiers]
 x = v = x_mid = v_mid = dt = time = 0.0  # displacement and velocity: at step n; at the stage
-for step, stage in ((half // 2, half % 2) for half in itertools.count()):
-    send(len(rest), step=step, stage=stage, time=time, dt=dt * stage, dt_limit=1e30)
+first = safe = 0
+if "CHECKPOINT" in env:  # the state at the first step to be done
+    first, time, x, v = np.fromfile(f"{env['CHECKPOINT']}/{name}.hdf").tolist()
+    first, x_mid, v_mid = int(first), x, v
+for step, stage in ((half // 2, half % 2) for half in itertools.count(2 * first)):
+    send(len(rest), step=step, stage=stage, time=time, dt=dt * stage, dt_limit=1e30, abilities=1, checkpoint_safe=safe)
     answer = wait(inbox.receive)
     head, force = view(answer.user_header_ptr, ForceHead)[0], view(answer.payload_ptr, Force, answer.header.number_of_elements)
     assert (head["step"], head["stage"]) == (step, stage)
-    if head["order"] & 8: sys.exit(send(0, step=step, stage=2, time=time, status=3))
+    if head["order"] & 4:
+        safe = int(head["checkpoint"])
+        file = f"{env['OUT']}/checkpoint-{'ab'[(safe - 1) % 2]}/{name}.hdf"
+        np.array([step, time, x, v]).tofile(file + ".tmp"), os.replace(file + ".tmp", file)
+    if head["order"] & 8: sys.exit(send(0, step=step, stage=2, time=time, status=3, checkpoint_safe=safe))
     load, dt = (mass * force["viscous"] + force["stress"])[:, 0].sum(), float(head["dt"])
     h, a = (dt if stage else dt / 2), (load - stiffness * x_mid) / (mass * len(rest))
     x_mid, v_mid = x + h * v_mid, v + h * a

@@ -96,7 +96,12 @@ pub fn levels() -> Vec<Isa> {
 impl Baseline {
     /// The run at a level that this processor has, to be configured further.
     pub fn builder(&self, level: Isa) -> RunBuilder {
-        let run = scene(&self.case).until(self.until).variable(ISA_VARIABLE, isa::name(level));
+        self.builder_until(level, self.until)
+    }
+
+    /// The same until another time, s.
+    pub fn builder_until(&self, level: Isa, until: f64) -> RunBuilder {
+        let run = scene(&self.case).until(until).variable(ISA_VARIABLE, isa::name(level));
         self.set.iter().fold(run, |run, over| run.argument("--set").argument(over))
     }
 

@@ -9,6 +9,7 @@ pub mod finite_elements;
 pub mod patch;
 pub mod process;
 pub mod run;
+pub mod sources;
 pub mod stability;
 
 pub use curve::Curve;

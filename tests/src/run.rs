@@ -44,7 +44,8 @@ pub fn scene(name: &str) -> RunBuilder {
 pub fn scene_at(path: &Path) -> RunBuilder {
     let coupled = std::fs::read_to_string(path)
         .is_ok_and(|text| ["[fluid]", "[solid]"].iter().all(|section| text.contains(section)));
-    RunBuilder { scene: path.into(), arguments: Vec::new(), variables: Vec::new(), out: None, coupled }
+    let (arguments, variables) = (Vec::new(), Vec::new());
+    RunBuilder { scene: path.into(), arguments, variables, out: None, coupled, resumes: false }
 }
 
 /// How to run a scene.
@@ -55,6 +56,7 @@ pub struct RunBuilder {
     variables: Vec<(OsString, OsString)>,
     out: Option<PathBuf>,
     coupled: bool,
+    resumes: bool,
 }
 
 impl RunBuilder {
@@ -103,6 +105,13 @@ impl RunBuilder {
         self
     }
 
+    /// Goes on with an interrupted run in a folder instead of running a scene.
+    #[must_use]
+    pub fn resume(mut self, dir: &Path) -> Self {
+        self.resumes = true;
+        self.out(dir)
+    }
+
     /// Starts the program and does not wait for it.
     pub fn start(self) -> Running {
         let temporary = tempfile::tempdir().expect("a temporary folder");
@@ -112,8 +121,11 @@ impl RunBuilder {
             Stdio::from(std::fs::File::create(path).expect("a file for what the program says"))
         };
         let mut command = Command::new(program());
-        command.arg("run").arg(&self.scene).arg("--quiet").arg("--out").arg(&dir).args(&self.arguments);
-        command.envs(self.variables);
+        match self.resumes {
+            true => command.arg("resume").arg(&dir).arg("--quiet"),
+            false => command.arg("run").arg(&self.scene).arg("--quiet").arg("--out").arg(&dir),
+        };
+        command.args(&self.arguments).envs(self.variables);
         command.stdin(Stdio::null()).stdout(stream("stdout")).stderr(stream("stderr"));
         let child = command.spawn().expect("halfstep starts");
         Running { child, dir, temporary: Some(temporary), started: Instant::now() }

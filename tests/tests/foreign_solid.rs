@@ -59,6 +59,44 @@ fn a_block_on_a_spring_in_python_swings_as_the_formula_says() {
 }
 
 #[test]
+fn a_run_with_the_block_goes_on_after_an_interruption() {
+    let block = || {
+        let block = scene("spring-block").argument("--solid").argument(command());
+        let block = block.set("output.checkpoint_interval", 0.01).set("output.frame_interval", 0.02);
+        block.set("output.probe_interval", 0.001)
+    };
+    let whole = block().until(0.06).run();
+    let folder = tempfile::tempdir().unwrap();
+    let dir = folder.path().join("run");
+    block().until(0.035).out(&dir).run();
+    let resumed =
+        scene("spring-block").resume(&dir).argument("--solid").argument(command()).until(0.06).run();
+    assert!(resumed.report.resumed[0].step > 0);
+    assert_eq!(resumed.state_hash(), whole.state_hash());
+    assert_eq!(resumed.probes, whole.probes, "the block's are measured from its first positions");
+    // The block forgets how far it was.
+    let newest = |name: &str| dir.join(name).join("solid.hdf");
+    for name in ["checkpoint-a", "checkpoint-b"] {
+        let manifest = dir.join(name).join("manifest.json");
+        let text = std::fs::read_to_string(&manifest).unwrap();
+        let mut state = std::fs::read(newest(name)).unwrap();
+        let sum = |bytes: &[u8]| format!("{:016x}", xxhash_rust::xxh3::xxh3_64(bytes));
+        let text = text.replace(&sum(&state), "OTHER");
+        state[16..24].copy_from_slice(&1e-3_f64.to_le_bytes());
+        std::fs::write(newest(name), &state).unwrap();
+        std::fs::write(&manifest, text.replace("OTHER", &sum(&state))).unwrap();
+    }
+    let refused =
+        scene("spring-block").resume(&dir).argument("--solid").argument(command()).until(0.07).outcome();
+    assert_eq!(refused.code(), Some(2));
+    assert!(
+        refused.stderr.contains("the solid shows another state than that of the checkpoint"),
+        "{}",
+        refused.stderr
+    );
+}
+
+#[test]
 fn a_block_started_by_hand_moves_as_one_that_the_run_starts() {
     let started = scene("spring-block").until(0.05).argument("--solid").argument(command()).run();
     let _machine = whole_machine();

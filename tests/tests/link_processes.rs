@@ -213,7 +213,9 @@ fn a_shell_line_learns_of_the_run_and_is_killed_with_its_children() {
     let mut children = Children::new(&log);
     let line = "echo $HALFSTEP_FLUID_CAPACITY $HALFSTEP_SOLID_CAPACITY $HALFSTEP_SCENE; trap '' TERM; \
                 sleep 1000 & echo child $! >&2; wait; wait";
-    children.spawn_shell(&run.participants[1], line, &run, Path::new("/some/scene.json")).unwrap();
+    children
+        .spawn_shell(&run.participants[1], line, &run, &[("HALFSTEP_SCENE", Path::new("/some/scene.json"))])
+        .unwrap();
     eventually(5.0, "the shell's words", || log_of(&dir).contains("child "));
     let log = log_of(&dir);
     assert!(log.starts_with("before\n123 45 /some/scene.json\n"), "{log}");
@@ -240,8 +242,8 @@ fn failure_comes_before_success() {
     let dir = tempfile::tempdir().unwrap();
     let run = Run::new(1, 1);
     let mut children = Children::new(&dir.path().join("log.txt"));
-    children.spawn_shell(&run.participants[0], "exit 0", &run, Path::new("x")).unwrap();
-    children.spawn_shell(&run.participants[1], "exit 3", &run, Path::new("x")).unwrap();
+    children.spawn_shell(&run.participants[0], "exit 0", &run, &[]).unwrap();
+    children.spawn_shell(&run.participants[1], "exit 3", &run, &[]).unwrap();
     assert!(children.wait(Duration::from_secs(5)));
     let (role, status) = children.first_exit().unwrap();
     assert_eq!((role, status.code()), (Name::SOLID, Some(3)));

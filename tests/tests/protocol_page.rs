@@ -106,7 +106,7 @@ fn byte_offsets() {
             sub_steps,
             frames_safe,
             abilities,
-            reserved,
+            checkpoint_safe,
             failure.participant,
             failure.quantity,
             failure.particle,
@@ -158,7 +158,7 @@ fn environment() {
     let config = LinkConfig::of_two(1, 1);
     let variables = config.to_env_of(&config.participants[1]);
     let mut actual: Vec<&str> = variables.into_iter().map(|(key, _)| key).collect();
-    actual.push("HALFSTEP_SCENE");
+    actual.extend(["HALFSTEP_SCENE", "HALFSTEP_OUT", "HALFSTEP_CHECKPOINT"]);
     assert_eq!(documented, actual);
     assert!(PAGE.contains(&format!("The version of the protocol is {PROTOCOL}.")));
 }

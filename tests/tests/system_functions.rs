@@ -2,7 +2,8 @@
 //! which differ in the last bit from one C library and processor to the next.
 
 use halfstep_tests::run::repository;
-use std::path::{Path, PathBuf};
+use halfstep_tests::sources::{program, sources};
+use std::path::Path;
 
 /// Functions that f64 takes from the system. Square roots are exact; `mul_add` is rounded once wherever it is used;
 /// integer powers are products.
@@ -16,31 +17,8 @@ const SYSTEM: [&str; 25] = [
 /// statistics of waiting times.
 const FREE: [&str; 3] = ["/output/", "/study/", "/latency.rs"];
 
-/// Everything of the program that is compiled into it.
-fn sources() -> Vec<PathBuf> {
-    let mut found = Vec::new();
-    let mut folders: Vec<PathBuf> =
-        ["shared", "fluid-proc", "solid-proc", "coupler"].map(|name| repository().join(name)).into();
-    while let Some(folder) = folders.pop() {
-        for entry in
-            std::fs::read_dir(&folder).expect("a folder").map(|entry| entry.expect("an entry").path())
-        {
-            let is_source =
-                entry.extension().is_some_and(|e| e == "rs") && entry.to_string_lossy().contains("/src/");
-            if entry.is_dir() {
-                folders.push(entry);
-            } else if is_source && !entry.file_stem().is_some_and(|s| s.to_string_lossy().ends_with("tests"))
-            {
-                found.push(entry);
-            }
-        }
-    }
-    found
-}
-
 /// Numbers of the lines that call one of the system's functions, from 1. A file ends where the tests within it begin.
 fn calls(text: &str) -> Vec<usize> {
-    let program = text.find("#[cfg(test)]\nmod tests {").map_or(text, |end| &text[..end]);
     let calls_one = |line: &str| {
         let code = line.split("//").next().unwrap_or_default();
         SYSTEM.iter().any(|name| {
@@ -50,7 +28,7 @@ fn calls(text: &str) -> Vec<usize> {
             code.contains(&format!(".{name}(")) || code.match_indices(&format!("f64::{name}")).any(path)
         })
     };
-    program.lines().enumerate().filter(|(_, line)| calls_one(line)).map(|(k, _)| k + 1).collect()
+    program(text).lines().enumerate().filter(|(_, line)| calls_one(line)).map(|(k, _)| k + 1).collect()
 }
 
 #[test]

@@ -1,19 +1,17 @@
 //! The `halfstep` command.
 
 use clap::{Parser, Subcommand};
+use halfstep::Launcher;
 use halfstep::options::{RunOptions, SolidSource, known_solid};
 use halfstep::{isa, run};
-use halfstep_coupling::supervise::abort_flag;
-use halfstep_coupling::{reports, roles};
+use halfstep_coupling::supervise::stop_flag;
+use halfstep_output::checkpoint::{FOLDERS, MANIFEST};
 use halfstep_output::run_json::RunStatus;
-use halfstep_role::lockstep::RoleError;
-use halfstep_role::serve::serve_process;
 use halfstep_scene::{self as scene, Scene};
 use halfstep_sph::lane::Isa;
 use halfstep_study::command::{StudyArguments, study};
 use halfstep_wire::Name;
-use std::os::unix::process::parent_id;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Fluid-structure co-simulation by smoothed particle hydrodynamics: a fluid process, a solid process and a coupler in
@@ -39,6 +37,8 @@ enum Command {
         #[arg(long)]
         json: bool,
     },
+    /// Goes on with an interrupted run from its last checkpoint, to the same bits
+    Resume(ResumeArguments),
     Study(StudyArguments),
     /// A role's process; started by `run`
     #[command(hide = true)]
@@ -67,6 +67,27 @@ struct RunArguments {
     /// Folder of the run (default: out/SCENE)
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Removes an earlier run in the folder
+    #[arg(long)]
+    force: bool,
+    #[command(flatten)]
+    how: HowArguments,
+}
+
+#[derive(clap::Args)]
+struct ResumeArguments {
+    /// Folder of the run
+    dir: PathBuf,
+    /// Another end of the run, s: prolongs one that has finished
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
+    until: Option<f64>,
+    #[command(flatten)]
+    how: HowArguments,
+}
+
+/// How the participants are run.
+#[derive(clap::Args)]
+struct HowArguments {
     /// Worker threads of the fluid process
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..=1024))]
     threads: Option<u64>,
@@ -76,9 +97,6 @@ struct RunArguments {
     /// Shows no progress
     #[arg(long)]
     quiet: bool,
-    /// Removes an earlier run in the folder
-    #[arg(long)]
-    force: bool,
     /// A solid of your own: a command that speaks the protocol; with several solids NAME=COMMAND, repeated
     #[arg(long, value_name = "[NAME=]COMMAND")]
     solid: Vec<String>,
@@ -125,8 +143,9 @@ fn main() -> ExitCode {
             Err(code) => code,
         },
         Command::Explain { scene, json } => explain_scene(&scene, json, isa),
+        Command::Resume(arguments) => resume(&arguments, isa),
         Command::Study(arguments) => study(arguments),
-        Command::Role { name } => serve_role(&name, isa),
+        Command::Role { name } => ExitCode::from(halfstep::serve_role(&name, isa)),
     }
 }
 
@@ -172,46 +191,86 @@ fn run_scene(arguments: RunArguments, isa: Isa) -> ExitCode {
         Err(code) => return code,
     };
     let out = arguments.out.unwrap_or_else(|| PathBuf::from("out").join(&scene.name));
-    let foreign = match foreign_solids(&scene, &arguments.solid, &arguments.await_solid) {
+    let foreign = match foreign_solids(&scene, &arguments.how.solid, &arguments.how.await_solid) {
         Ok(foreign) => foreign,
-        Err(error) => {
-            eprintln!("error: {error}");
-            return ExitCode::from(1);
-        }
+        Err(error) => return usage(&error),
     };
-    let options = RunOptions {
-        out: out.clone(),
-        threads: arguments.threads.map(|n| n as usize),
-        in_process: arguments.in_process,
-        quiet: arguments.quiet,
-        force: arguments.force,
-        foreign,
-        solid_wait: arguments.solid_wait,
-        isa,
+    let options = match options(out, arguments.force, &arguments.how, foreign, isa) {
+        Ok(options) => options,
+        Err(error) => return usage(&error),
     };
     match run::run(&scene, &options) {
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::from(1)
-        }
-        Ok((report, error)) => {
-            if let Some(error) = error {
-                eprintln!("error: {error}");
-            }
-            println!(
-                "{}: {} steps to t = {} s in {:.1} s; see {}",
-                scene.name,
-                report.steps,
-                report.time,
-                report.wall_seconds,
-                out.join("plot.png").display()
-            );
-            match report.status {
-                Some(RunStatus::Finished) => ExitCode::SUCCESS,
-                Some(RunStatus::Stopped) => ExitCode::from(130),
-                _ => ExitCode::from(2),
-            }
-        }
+        Err(error) => usage(&error),
+        Ok(ended) => tell(&scene, &options.out, ended),
+    }
+}
+
+fn resume(arguments: &ResumeArguments, isa: Isa) -> ExitCode {
+    let foreign = run::read_scene(&arguments.dir).map_err(|error| error.to_string());
+    let foreign =
+        foreign.and_then(|scene| foreign_solids(&scene, &arguments.how.solid, &arguments.how.await_solid));
+    let options =
+        foreign.and_then(|foreign| options(arguments.dir.clone(), false, &arguments.how, foreign, isa));
+    let options = match options {
+        Ok(options) => options,
+        Err(error) => return usage(&error),
+    };
+    match run::resume(&options, arguments.until) {
+        Err(error) => usage(&error),
+        Ok((scene, ended)) => tell(&scene, &options.out, ended),
+    }
+}
+
+/// Nothing was started.
+fn usage(error: &dyn std::fmt::Display) -> ExitCode {
+    eprintln!("error: {error}");
+    ExitCode::from(1)
+}
+
+fn options(
+    out: PathBuf,
+    force: bool,
+    how: &HowArguments,
+    foreign: Vec<(Name, SolidSource)>,
+    isa: Isa,
+) -> Result<RunOptions, String> {
+    let own = || std::env::current_exe().map_err(|e| format!("cannot find the own program: {e}"));
+    let launcher = if how.in_process { None } else { Some(Launcher { program: own()? }) };
+    Ok(RunOptions {
+        threads: how.threads.map(|n| n as usize),
+        launcher,
+        stop: stop_flag().map_err(|e| format!("cannot watch for signals: {e}"))?,
+        log: true,
+        quiet: how.quiet,
+        force,
+        foreign,
+        solid_wait: how.solid_wait,
+        isa,
+        ..RunOptions::new(out)
+    })
+}
+
+/// Says how a run ended and where to look.
+fn tell(scene: &Scene, out: &Path, (report, error): run::Ended) -> ExitCode {
+    if let Some(error) = error {
+        eprintln!("error: {error}");
+    }
+    println!(
+        "{}: {} steps to t = {} s in {:.1} s; see {}",
+        scene.name,
+        report.steps,
+        report.time,
+        report.wall_seconds,
+        out.join("plot.png").display()
+    );
+    let finished = report.status == Some(RunStatus::Finished);
+    if !finished && FOLDERS.iter().any(|folder| out.join(folder).join(MANIFEST).exists()) {
+        println!("halfstep resume {} goes on from the last checkpoint", out.display());
+    }
+    match report.status {
+        Some(RunStatus::Finished) => ExitCode::SUCCESS,
+        Some(RunStatus::Stopped) => ExitCode::from(130),
+        _ => ExitCode::from(2),
     }
 }
 
@@ -253,39 +312,4 @@ fn foreign_solids(
         add(name, SolidSource::ByHand)?;
     }
     Ok(foreign)
-}
-
-fn serve_role(name: &str, isa: Isa) -> ExitCode {
-    tracing_subscriber::fmt().with_writer(std::io::stderr).with_ansi(false).init();
-    let process: Name = match name.parse() {
-        Ok(process) => process,
-        Err(error) => {
-            eprintln!("error: {error}");
-            return ExitCode::from(1);
-        }
-    };
-    let launcher = parent_id();
-    let result = abort_flag()
-        .map_err(|e| RoleError::Start(format!("cannot watch for signals: {e}")))
-        .and_then(|abort| {
-            serve_process(
-                process,
-                abort,
-                |scene, places, folder| roles::members(scene, places, isa, folder),
-                |folder, report| Ok(reports::write(folder, report)?),
-            )
-        });
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            // Without its launcher a role hears of the end from the system, or from another role that was faster.
-            let of_others = matches!(error, RoleError::Link(_) | RoleError::PeerEnded { .. });
-            if of_others && parent_id() != launcher {
-                tracing::error!("{process}: the coupler is gone, and its roles go with it ({error})");
-            } else {
-                tracing::error!("{process}: {error}");
-            }
-            ExitCode::from(2)
-        }
-    }
 }

@@ -3,7 +3,8 @@
 
 use halfstep_coupling::supervise::Children;
 use halfstep_link::{
-    Claim, CouplerLink, Expect, LinkConfig, Port, ProcessLink, Processes, Threads, Transport,
+    Claim, CouplerLink, CouplerPort, Expect, LinkConfig, Port, ProcessLink, Processes, StateMessage, Threads,
+    Transport,
 };
 use halfstep_wire::Name;
 use halfstep_wire::half_step::HalfStep;

@@ -5,6 +5,7 @@ use halfstep_wire::Name;
 use halfstep_wire::failure::{Diverged, Quantity};
 use halfstep_wire::half_step::{HalfStep, Stage};
 use halfstep_wire::protocol::order;
+use halfstep_wire::state::{Fields, State, StateError};
 
 /// Growth of the time step from one step to the next.
 const GROWTH: f64 = 1.1;
@@ -23,6 +24,8 @@ pub struct Clock {
     warned: Vec<Name>,
     frames: Periodic,
     rows: Periodic,
+    /// A step was shortened to meet the end: times are no longer those of a run with a later end.
+    clipped: bool,
 }
 
 /// Largest time step that a participant is stable with.
@@ -105,6 +108,7 @@ impl Clock {
             warned: Vec::new(),
             frames: Periodic { interval: scene.output.frame_interval, count: 0 },
             rows: Periodic { interval: scene.output.probe_interval, count: 0 },
+            clipped: false,
         }
     }
 
@@ -139,15 +143,9 @@ impl Clock {
         }
         self.limits.clear();
         self.limits.extend_from_slice(limits);
-        // NaN wins over every number in this minimum.
-        let limit =
-            limits.iter().map(|l| l.dt).fold(f64::INFINITY, |a, b| if b.is_nan() || b < a { b } else { a });
         let frame = self.frames.due(self.time).is_some();
         let row = self.rows.due(self.time).is_some();
-        let mut dt = match self.fixed {
-            Some(dt) => dt,
-            None => self.last_dt.map_or(limit, |last| limit.min(GROWTH * last)),
-        };
+        let mut dt = self.whole_step(limits);
         if !(dt.is_finite() && dt > 1e-9 * self.end.min(1.0) * 1e-3) {
             return Err(Diverged {
                 participant: Name::COUPLER,
@@ -160,6 +158,7 @@ impl Clock {
             });
         }
         self.last_dt = Some(dt);
+        self.clipped |= self.clips(dt);
         let mut next_time = self.time + dt;
         if remaining <= dt * (1.0 + 1e-9) {
             (dt, next_time) = (remaining, self.end);
@@ -173,6 +172,38 @@ impl Clock {
         Ok(Tick { step, time, dt: Some(dt), next_time, frame, row, exceeded })
     }
 
+    /// The step that the limits and the step before it allow, s.
+    fn whole_step(&self, limits: &[Limit]) -> f64 {
+        // NaN wins over every number in this minimum.
+        let limit =
+            limits.iter().map(|l| l.dt).fold(f64::INFINITY, |a, b| if b.is_nan() || b < a { b } else { a });
+        match self.fixed {
+            Some(dt) => dt,
+            None => self.last_dt.map_or(limit, |last| limit.min(GROWTH * last)),
+        }
+    }
+
+    /// A step of this length would be shortened to meet the end.
+    fn clips(&self, dt: f64) -> bool {
+        let remaining = self.end - self.time;
+        remaining <= dt * (1.0 + 1e-9) || (self.fixed.is_none() && remaining < 2.0 * dt)
+    }
+
+    /// The next step is the first that the end shortens: a run with a later end goes on from here.
+    pub fn is_about_to_clip(&self, limits: &[Limit]) -> bool {
+        !self.clipped && self.clips(self.whole_step(limits))
+    }
+
+    /// No step was shortened to meet the end so far.
+    pub fn is_unclipped(&self) -> bool {
+        !self.clipped
+    }
+
+    /// The end of the run, s.
+    pub fn end(&self) -> f64 {
+        self.end
+    }
+
     /// Limits that the scene's own time step exceeds, in the order of the participants.
     pub fn exceeded(&self) -> impl Iterator<Item = Limit> + '_ {
         let above = |l: &Limit| self.fixed.is_some_and(|dt| dt > l.dt * (1.0 + 1e-9));
@@ -183,6 +214,28 @@ impl Clock {
     pub fn advance(&mut self, tick: &Tick) {
         self.time = tick.next_time;
         self.step += 1;
+    }
+}
+
+impl State for Clock {
+    fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
+        fields.real("time", &mut self.time)?;
+        fields.count("step", &mut self.step)?;
+        fields.optional_real("last_dt", &mut self.last_dt)?;
+        fields.count("frames", &mut self.frames.count)?;
+        fields.count("rows", &mut self.rows.count)?;
+        fields.flag("clipped", &mut self.clipped)?;
+        let names = self.warned.iter().map(Name::to_string).collect::<Vec<_>>();
+        let mut warned = names.join(" ");
+        fields.text("warned", &mut warned)?;
+        let known = warned.split_whitespace().map(str::parse).collect::<Result<_, _>>();
+        self.warned = known.map_err(|_| StateError::contradiction("`warned` holds what is no name"))?;
+        Ok(())
+    }
+
+    fn restored(&mut self) -> Result<(), StateError> {
+        let sound = self.time.is_finite() && self.time >= 0.0 && self.last_dt.is_none_or(|dt| dt > 0.0);
+        if sound { Ok(()) } else { Err(StateError::contradiction("the clock shows no time")) }
     }
 }
 
@@ -201,6 +254,7 @@ mod tests {
             warned: Vec::new(),
             frames: Periodic { interval: 0.25, count: 0 },
             rows: Periodic { interval: 0.1, count: 0 },
+            clipped: false,
         }
     }
 
@@ -228,6 +282,37 @@ mod tests {
         assert!((steps[3] - 0.1).abs() < 1e-12);
         assert_eq!(end, 1.0);
         assert_eq!(frames.len(), 5, "{frames:?}");
+    }
+
+    #[test]
+    fn a_saved_clock_goes_on_as_if_never_interrupted() {
+        let limit = |n: u64| if n == 3 { 0.01 } else { 0.04 };
+        let (whole, ..) = run(clock(1.0, None), limit);
+        for stop in [0, 2, 5, whole.len() - 3] {
+            let mut first = clock(1.0, None);
+            for _ in 0..stop {
+                let tick = first.tick(&[of_fluid(limit(first.step))], false).unwrap();
+                first.advance(&tick);
+            }
+            let mut second = clock(1.0, None);
+            second.load(&first.save()).unwrap();
+            let (rest, ..) = run(second, limit);
+            assert_eq!(rest, whole[stop..]);
+        }
+    }
+
+    #[test]
+    fn the_first_shortened_step_is_told_beforehand() {
+        let mut clock = clock(1.0, None);
+        let mut told = Vec::new();
+        while clock.time() < 1.0 {
+            let limits = [of_fluid(0.3)];
+            told.push((clock.is_about_to_clip(&limits), clock.is_unclipped()));
+            let tick = clock.tick(&limits, false).unwrap();
+            clock.advance(&tick);
+        }
+        // 0, 0.3, 0.6 with less than two steps to go: two of 0.2.
+        assert_eq!(told, [(false, true), (false, true), (true, true), (false, false)]);
     }
 
     #[test]

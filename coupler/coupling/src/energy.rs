@@ -20,6 +20,7 @@ use halfstep_wire::Name;
 use halfstep_wire::failure::{Diverged, Quantity};
 use halfstep_wire::half_step::Stage;
 use halfstep_wire::protocol::Audit;
+use halfstep_wire::state::{Fields, State, StateError};
 
 /// Largest growth of the fluid: a tenth of the energy in play.
 pub const LIMIT: f64 = 0.1;
@@ -161,6 +162,41 @@ impl EnergyBalance {
             ledgers.map(|(.., ledger)| ledger.growth).reduce(f64::max)
         };
         EnergyGrowth { fluid: of(Phase::Fluid), solid: of(Phase::Solid) }
+    }
+}
+
+impl State for Ledger {
+    fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
+        fields.optional_real("start", &mut self.start)?;
+        fields.vector("momentum", &mut self.momentum)?;
+        fields.real("gravity", &mut self.gravity)?;
+        fields.real("most_gravity", &mut self.most_gravity)?;
+        fields.real("other", &mut self.other)?;
+        fields.real("most_other", &mut self.most_other)?;
+        fields.real("growth", &mut self.growth)?;
+        fields.real("unexplained", &mut self.unexplained)?;
+        fields.small_count("above", &mut self.above)
+    }
+}
+
+impl State for EnergyBalance {
+    fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
+        fields.real("time", &mut self.time)?;
+        let known: Vec<String> = self.ledgers.iter().map(|(name, ..)| name.to_string()).collect();
+        let mut names = known.join(" ");
+        // In the order in which they are judged.
+        fields.text("names", &mut names)?;
+        if fields.loading() {
+            let ledger = |name: &str| {
+                let name =
+                    name.parse().map_err(|_| StateError::contradiction("a ledger of no participant"))?;
+                let fluid = name == Name::FLUID || name == Name::COUPLER;
+                Ok((name, if fluid { Phase::Fluid } else { Phase::Solid }, Ledger::default()))
+            };
+            self.ledgers = names.split_whitespace().map(ledger).collect::<Result<_, StateError>>()?;
+        }
+        let mut ledgers = self.ledgers.iter_mut();
+        ledgers.try_for_each(|(name, _, ledger)| fields.part(name.as_str(), ledger))
     }
 }
 

@@ -6,6 +6,7 @@ use halfstep_output::OutputError;
 use halfstep_role::lockstep::RoleError;
 use halfstep_wire::Name;
 use halfstep_wire::failure::Diverged;
+use halfstep_wire::state::StateError;
 use std::process::ExitStatus;
 
 /// Why a run failed.
@@ -54,9 +55,9 @@ pub enum RunError {
         /// Which solid.
         solid: Name,
         /// At first.
-        first: usize,
+        first: u64,
         /// Now.
-        now: usize,
+        now: u64,
         /// Step n.
         step: u64,
     },
@@ -72,6 +73,9 @@ pub enum RunError {
     /// A role in this process failed.
     #[error(transparent)]
     Role(RoleError),
+    /// A checkpoint is not one of this run.
+    #[error("cannot resume: {0}")]
+    Resume(String),
     /// The operating system refused.
     #[error("{0}")]
     System(String),
@@ -80,6 +84,12 @@ pub enum RunError {
 impl From<Diverged> for RunError {
     fn from(diverged: Diverged) -> Self {
         Self::Diverged { diverged, hint: String::new() }
+    }
+}
+
+impl From<StateError> for RunError {
+    fn from(error: StateError) -> Self {
+        Self::Resume(error.to_string())
     }
 }
 

@@ -6,6 +6,7 @@ use halfstep_scene::geometry::{holds, nearest};
 use halfstep_scene::{ProbeKind, Scene};
 use halfstep_wire::Name;
 use halfstep_wire::protocol::{ForceRecord, StateRecord};
+use halfstep_wire::state::{Fields, State, StateError};
 use std::path::Path;
 
 /// Stand-in for a foreign solid's writer and probes.
@@ -35,14 +36,20 @@ impl ForeignSolid {
         })
     }
 
+    /// Takes the first records that the solid published: its reference configuration.
+    pub fn begin(&mut self, records: &[StateRecord]) {
+        self.first = records.iter().map(|r| r.position).collect();
+        self.choose_records();
+    }
+
+    fn choose_records(&mut self) {
+        self.chosen = self.kinds.iter().map(|kind| self.choose(kind)).collect();
+    }
+
     /// Probe values from the state at n.
     ///
     /// `forces` answer the same state, record by record.
     pub fn measure(&mut self, records: &[StateRecord], forces: &[ForceRecord]) -> &[f64] {
-        if self.first.is_empty() {
-            self.first = records.iter().map(|r| r.position).collect();
-            self.chosen = self.kinds.iter().map(|kind| self.choose(kind)).collect();
-        }
         self.values.clear();
         for (kind, chosen) in self.kinds.iter().zip(&self.chosen) {
             match kind {
@@ -106,5 +113,16 @@ impl ForeignSolid {
     /// A frame could not be written.
     pub fn finish(self) -> Result<(), OutputError> {
         self.writer.finish().map(|_| ())
+    }
+}
+
+impl State for ForeignSolid {
+    fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
+        fields.points("first_position", &mut self.first)
+    }
+
+    fn restored(&mut self) -> Result<(), StateError> {
+        self.choose_records();
+        Ok(())
     }
 }

@@ -2,11 +2,13 @@
 
 use crate::clock::Tick;
 use crate::energy::{self, Account, EnergyBalance};
+use crate::error::RunError;
 use crate::roles::measured_by;
 use halfstep_output::{OutputError, ProbeLog, RunReport, run_json};
 use halfstep_scene::{Phase, Scene};
 use halfstep_wire::failure::Diverged;
 use halfstep_wire::protocol::{Audit, StateHeader};
+use halfstep_wire::state::{Fields, Group, State, StateError};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -36,12 +38,16 @@ impl<'a> Measured<'a> {
 
 /// Probe log, statistics and progress of a run.
 pub struct Recorder {
-    log: ProbeLog,
+    log: Option<ProbeLog>,
+    /// Length of the log when it was last synchronised, bytes.
+    log_bytes: u64,
     /// For each probe the place of its participant and its number of values.
     order: Vec<(usize, usize)>,
     values: Vec<f64>,
     bar: ProgressBar,
     started: Instant,
+    /// Duration of the run before an interruption, s.
+    earlier: f64,
     shown: Instant,
     end: f64,
     steps: u64,
@@ -63,12 +69,9 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// Opens the probe log; `quiet` hides the progress.
-    ///
-    /// # Errors
-    /// The log cannot be created.
-    pub fn new(scene: &Scene, probes: &Path, quiet: bool) -> Result<Self, OutputError> {
-        let columns: Vec<String> = scene.probes.iter().flat_map(|p| p.columns(scene.dimension)).collect();
+    /// For a scene; `quiet` hides the progress. The rows of probe values go to `log`, where there is one.
+    pub fn new(scene: &Scene, log: Option<ProbeLog>, quiet: bool) -> Self {
+        let columns = Self::columns(scene);
         let bar = ProgressBar::new(1000);
         let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}  ETA {eta}");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
@@ -79,8 +82,8 @@ impl Recorder {
         // Momentum is kept only where nothing outside acts: no gravity, no walls, no clamps.
         let isolated = scene.gravity == [0.0; 3]
             && scene.shapes.iter().all(|s| s.phase != Phase::Wall && s.clamp.is_empty());
-        Ok(Self {
-            log: ProbeLog::create(probes, &columns)?,
+        Self {
+            log,
             order: measured_by(scene)
                 .into_iter()
                 .zip(&scene.probes)
@@ -107,7 +110,47 @@ impl Recorder {
             first_fluid: None,
             isolated,
             balance: EnergyBalance::new(scene),
-        })
+            earlier: 0.0,
+            log_bytes: 0,
+        }
+    }
+
+    /// The columns of a scene's probe log.
+    pub fn columns(scene: &Scene) -> Vec<String> {
+        scene.probes.iter().flat_map(|p| p.columns(scene.dimension)).collect()
+    }
+
+    /// Probe values of the last row, in the order of [`Self::columns`].
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// Goes on from a checkpoint, with the log of the interrupted run where it has one. Returns the recorder of a run
+    /// that was never interrupted.
+    ///
+    /// # Errors
+    /// The checkpoint is none of this scene, or the log lacks rows.
+    pub fn resume(mut self, scene: &Scene, log: Option<&Path>, state: &Group) -> Result<Self, RunError> {
+        self.load(state)?;
+        self.log =
+            log.map(|path| ProbeLog::resume(path, &Self::columns(scene), self.log_bytes)).transpose()?;
+        Ok(self)
+    }
+
+    /// Seconds of computation, those before an interruption included.
+    fn wall_seconds(&self) -> f64 {
+        self.earlier + self.started.elapsed().as_secs_f64()
+    }
+
+    /// Makes sure that the rows so far outlive a crash of the machine.
+    ///
+    /// # Errors
+    /// The disk refuses.
+    pub fn synchronise(&mut self) -> Result<(), OutputError> {
+        if let Some(log) = &self.log {
+            self.log_bytes = log.synchronise()?;
+        }
+        Ok(())
     }
 
     /// Judges the energies of the state at n.
@@ -145,7 +188,9 @@ impl Recorder {
                 }
                 at += n;
             }
-            self.log.row(tick.time, &self.values)?;
+            if let Some(log) = &mut self.log {
+                log.row(tick.time, &self.values)?;
+            }
         }
         self.audit(measured);
         let particles: u64 = measured.iter().map(|m| m.particles).sum();
@@ -159,7 +204,7 @@ impl Recorder {
         }
         if self.shown.elapsed() > Duration::from_millis(200) {
             self.shown = Instant::now();
-            let rate = self.particle_steps / self.started.elapsed().as_secs_f64();
+            let rate = self.particle_steps / self.wall_seconds();
             self.bar.set_position((1000.0 * self.time / self.end) as u64);
             self.bar.set_message(format!(
                 "t = {:.4} s  dt = {:.2e} s  {:.2} M particle-steps/s",
@@ -203,7 +248,7 @@ impl Recorder {
         self.bar.finish_and_clear();
         report.steps = self.steps;
         report.time = self.time;
-        report.wall_seconds = self.started.elapsed().as_secs_f64();
+        report.wall_seconds = self.wall_seconds();
         if report.wall_seconds > 0.0 {
             report.particle_steps_per_second = Some(self.particle_steps / report.wall_seconds);
         }
@@ -224,5 +269,35 @@ impl Recorder {
         report.audit.energy_growth = self.balance.growth();
         report.audit.density_error = self.first_fluid.map(|_| self.density_error);
         report.audit.min_gap = self.gap.is_finite().then_some(self.gap);
+    }
+}
+
+impl State for Recorder {
+    fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
+        let mut wall_seconds = self.wall_seconds();
+        fields.real("wall_seconds", &mut wall_seconds)?;
+        if fields.loading() {
+            self.earlier = wall_seconds;
+        }
+        fields.count("log_bytes", &mut self.log_bytes)?;
+        fields.count("steps", &mut self.steps)?;
+        fields.real("time", &mut self.time)?;
+        fields.real("least_dt", &mut self.dt.0)?;
+        fields.real("sum_of_dt", &mut self.dt.1)?;
+        fields.real("largest_dt", &mut self.dt.2)?;
+        fields.real("particle_steps", &mut self.particle_steps)?;
+        fields.small_count("sub_steps", &mut self.sub_steps)?;
+        let mut momentum: Vec<[f64; 3]> = self.first_momentum.into_iter().collect();
+        fields.points("first_momentum", &mut momentum)?;
+        self.first_momentum = momentum.first().copied();
+        fields.real("momentum_scale", &mut self.momentum_scale)?;
+        fields.real("momentum_drift", &mut self.momentum_drift)?;
+        fields.optional_real("first_energy", &mut self.first_energy)?;
+        fields.real("energy", &mut self.energy)?;
+        fields.real("density_error", &mut self.density_error)?;
+        fields.real("gap", &mut self.gap)?;
+        fields.count("removed", &mut self.removed)?;
+        fields.optional_count("first_fluid", &mut self.first_fluid)?;
+        fields.part("energy_balance", &mut self.balance)
     }
 }

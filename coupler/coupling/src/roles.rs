@@ -1,12 +1,12 @@
 //! The participants of a scene as owners of particles.
 
-use halfstep_output::FrameWriter;
+use halfstep_output::checkpoint::{StateWriter, file, file_name};
+use halfstep_output::{FrameWriter, OutputError};
 use halfstep_role::lockstep::{Member, RoleError};
 use halfstep_role::role::Role;
 use halfstep_scene::{Probe, Scene};
 use halfstep_sph::Phase;
 use halfstep_sph::lane::Isa;
-use halfstep_wire::frame::FrameSink;
 use std::path::Path;
 
 /// The participant at this place of [`Scene::participants`], computing with an instruction set that the processor has.
@@ -19,26 +19,52 @@ pub fn build(place: usize, scene: &Scene, isa: Isa) -> Option<Box<dyn Role>> {
     }
 }
 
-/// The participants at these places, ready for the half-step loop; frames go to the run's folder.
+/// The participants at these places, ready for the half-step loop; frames and checkpoints go to the run's folder. With
+/// the folder of a checkpoint they go on from there.
 ///
 /// # Errors
-/// The scene lacks one of them, or a writer cannot start.
+/// The scene lacks one of them, a writer cannot start, or the checkpoint is not one of this scene.
 pub fn members(
     scene: &Scene,
     places: &[usize],
     isa: Isa,
     folder: Option<&Path>,
+    checkpoint: Option<&Path>,
 ) -> Result<Vec<Member>, RoleError> {
-    let participants = scene.participants();
     let member = |&place: &usize| {
         let missing = || RoleError::Start(format!("the scene has no participant number {place}"));
-        let name = &participants.get(place).ok_or_else(missing)?.name;
-        let role = build(place, scene, isa).ok_or_else(missing)?;
-        let writer = folder.map(|folder| FrameWriter::start(folder, name)).transpose();
-        let writer = writer.map_err(|error| RoleError::Output(error.into()))?;
-        Ok(Member { role, frames: writer.map(|writer| Box::new(writer) as Box<dyn FrameSink>) })
+        equip(build(place, scene, isa).ok_or_else(missing)?, folder, checkpoint)
     };
     places.iter().map(member).collect()
+}
+
+/// A participant with writers for a run's folder. With the folder of a checkpoint it goes on from there.
+///
+/// # Errors
+/// A writer cannot start, or the checkpoint is not one of this participant.
+pub fn equip(
+    role: Box<dyn Role>,
+    folder: Option<&Path>,
+    checkpoint: Option<&Path>,
+) -> Result<Member, RoleError> {
+    let own = role.name().to_string();
+    let mut member = Member::new(role);
+    let output = |error: OutputError| RoleError::Output(error.into());
+    if let Some(folder) = folder {
+        member.frames = Some(Box::new(FrameWriter::start(folder, &own).map_err(output)?));
+        member.checkpoints = Some(Box::new(StateWriter::start(folder, &own).map_err(output)?));
+    }
+    if let Some(checkpoint) = checkpoint {
+        resume(&mut member, checkpoint, &own)?;
+    }
+    Ok(member)
+}
+
+/// Lets a participant go on from a checkpoint in a folder.
+fn resume(member: &mut Member, checkpoint: &Path, name: &str) -> Result<(), RoleError> {
+    let path = checkpoint.join(file_name(name));
+    let state = file::read(&path).map_err(|error| RoleError::Start(error.to_string()))?;
+    member.resume(&state).map_err(|error| RoleError::Start(format!("{}: {error}", path.display())))
 }
 
 /// Places of the probes' participants, in the order of the probes: who measures each.

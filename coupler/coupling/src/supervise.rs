@@ -94,16 +94,16 @@ impl Children {
     }
 
     /// Starts a solid of another program, from a line for the shell. It learns of the run from the variables of
-    /// [`LinkConfig::to_env`] and from `HALFSTEP_SCENE`, the path of the resolved scene as JSON.
+    /// [`LinkConfig::to_env`] and from `more`.
     pub fn spawn_shell(
         &mut self,
         participant: &Participant,
         line: &str,
         link: &LinkConfig,
-        scene: &Path,
+        more: &[(&str, &Path)],
     ) -> Result<(), SuperviseError> {
         let mut command = Command::new("sh");
-        command.arg("-c").arg(line).envs(link.to_env_of(participant)).env("HALFSTEP_SCENE", scene);
+        command.arg("-c").arg(line).envs(link.to_env_of(participant)).envs(more.iter().copied());
         self.start(participant.name, command, true)
     }
 

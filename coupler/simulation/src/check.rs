@@ -5,7 +5,7 @@ use crate::step_cost::step_cost;
 use halfstep_coupling::roles;
 use halfstep_link::LinkConfig;
 use halfstep_scene::geometry;
-use halfstep_scene::{self as scene, Phase, Scene, TimeStep};
+use halfstep_scene::{self as scene, Phase, Scene, TimeStep, dispatch};
 use halfstep_solid::SubStepping;
 use halfstep_sph::lane::Isa;
 use std::fmt::Write;
@@ -15,7 +15,12 @@ use std::fmt::Write;
 /// The estimate times the sums of a few half-steps of each phase on one thread; a run whose particles spread out takes
 /// longer.
 pub fn describe(scene: &Scene, isa: Isa) -> String {
-    let layout = geometry::layout::<2>(scene);
+    let unknown = || "three dimensions are not available yet\n".to_owned();
+    dispatch!(scene.dimension, D => describe_in::<D>(scene, isa)).unwrap_or_else(unknown)
+}
+
+fn describe_in<const D: usize>(scene: &Scene, isa: Isa) -> String {
+    let layout = geometry::layout::<D>(scene);
     let counts = layout.counts();
     let mut text = String::new();
     let mut line = |name: &str, value: String| {

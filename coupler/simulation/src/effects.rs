@@ -4,7 +4,7 @@ use halfstep_output::RunReport;
 use halfstep_output::run_json::EffectReport;
 use halfstep_role::report::Report;
 use halfstep_scene::geometry::Counts;
-use halfstep_scene::{Decision, EffectName, Phase, Scene, Treatment};
+use halfstep_scene::{Decision, EffectName, Phase, Scene, Treatment, dispatch};
 
 /// What the fluid does in any case: pressure, continuity, neighbour lists, time step.
 const FLUID: &str = "fluid";
@@ -42,7 +42,8 @@ pub(crate) fn ledger(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
         ),
     ];
     if fluid {
-        list.extend(halfstep_fluid::effects::decide::<2>(scene).into_iter().map(|(decision, bytes)| {
+        let decided_on = dispatch!(scene.dimension, D => halfstep_fluid::effects::decide::<D>(scene));
+        list.extend(decided_on.unwrap_or_default().into_iter().map(|(decision, bytes)| {
             let bytes_per_particle = (bytes > 0).then_some(bytes as f64);
             EffectReport { bytes_per_particle, ..decided(decision) }
         }));

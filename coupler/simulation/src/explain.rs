@@ -49,16 +49,7 @@ pub fn explain(scene: &Scene, isa: Isa) -> Result<Explanation, RunError> {
     moment.output.frame_interval = moment.end_time;
     moment.output.probe_interval = moment.end_time;
     let folder = tempfile::tempdir().map_err(|e| RunError::System(format!("no temporary folder: {e}")))?;
-    let options = RunOptions {
-        out: folder.path().join("run"),
-        threads: None,
-        in_process: true,
-        quiet: true,
-        force: false,
-        foreign: Vec::new(),
-        solid_wait: 0.0,
-        isa,
-    };
+    let options = RunOptions { isa, ..RunOptions::new(folder.path().join("run")) };
     let (report, error) = run(&moment, &options)?;
     if let Some(error) = error {
         return Err(error);

@@ -1,12 +1,43 @@
-//! The front door: runs scenes, couples fluid and solid in lock-step, writes what a run leaves.
+//! The front door: fluid-structure co-simulation by smoothed particle hydrodynamics as a library.
+//!
+//! ```
+//! use halfstep::{Simulation, scene};
+//!
+//! let tank = "resolution = 0.05\nend_time = 0.01\n[fluid]\ndensity = 1000.0\n\
+//!             [[shape]]\nname = \"tank\"\nphase = \"wall\"\ntank = { min = [0.0, 0.0], max = [1.0, 0.5] }\n\
+//!             [[shape]]\nname = \"water\"\nphase = \"fluid\"\nbox = { min = [0.0, 0.0], max = [1.0, 0.5] }\n\
+//!             [[probe]]\nname = \"bottom\"\nkind = \"pressure\"\nat = [0.5, 0.0]\n";
+//! let mut tank = Simulation::new(scene::parse(tank, "tank.toml".as_ref(), &[])?).begin()?;
+//! while tank.step()? {}
+//! let pressure = tank.probe("bottom.pressure").expect("the scene has this probe");
+//! assert!((pressure / (1000.0 * 9.81 * 0.5) - 1.0).abs() < 0.05, "{pressure} Pa");
+//! # Ok::<(), halfstep::Error>(())
+//! ```
+//!
+//! A [`Simulation`] takes one's own solid (any [`SolidModel`]) or one's own effect on the fluid ([`FluidEffect`]), is stepped
+//! and looked into, writes a run's folder if it is told to, and leaves the rest of the process alone. [`run`](mod@run) is what
+//! the command `halfstep run` does: participants as processes, supervised.
 
 mod advice;
 pub mod check;
+mod checkpoint;
 mod effects;
+mod error;
 pub mod explain;
 pub mod isa;
 pub mod options;
 mod participants;
+mod role_main;
 pub mod run;
 mod session;
+mod simulation;
 mod step_cost;
+
+pub use error::Error;
+pub use halfstep_fluid::effects::FluidEffect;
+pub use halfstep_output::{Frame, RunReport};
+pub use halfstep_scene::{self as scene, Scene};
+pub use halfstep_solid::SolidModel;
+pub use options::Launcher;
+pub use role_main::{role_main, serve_role};
+pub use simulation::{Running, Simulation};

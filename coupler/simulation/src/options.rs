@@ -4,6 +4,8 @@ use halfstep_scene::Scene;
 use halfstep_sph::lane::Isa;
 use halfstep_wire::Name;
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// Where a solid that is not built in comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -14,6 +16,14 @@ pub enum SolidSource {
     ByHand,
 }
 
+/// Starts the participants' processes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Launcher {
+    /// A program that serves a process of participants when it is started with the arguments `role NAME`: `halfstep`, or
+    /// any program that calls [`crate::role_main`] first.
+    pub program: PathBuf,
+}
+
 /// How to run.
 #[derive(Clone, Debug)]
 pub struct RunOptions {
@@ -21,8 +31,12 @@ pub struct RunOptions {
     pub out: PathBuf,
     /// Worker threads of the fluid; `None`: the scene's.
     pub threads: Option<usize>,
-    /// Roles as threads of this process.
-    pub in_process: bool,
+    /// Starts the roles as processes; `None`: they are threads of this process.
+    pub launcher: Option<Launcher>,
+    /// Set, it ends the run in order at its next step.
+    pub stop: Arc<AtomicBool>,
+    /// What this process has to say goes to the run's `log.txt`: it becomes the process's only log.
+    pub log: bool,
     /// No progress.
     pub quiet: bool,
     /// An earlier run in the folder is removed.
@@ -36,6 +50,22 @@ pub struct RunOptions {
 }
 
 impl RunOptions {
+    /// A quiet run into a folder, its roles threads of this process, which is left alone otherwise.
+    pub fn new(out: PathBuf) -> Self {
+        Self {
+            out,
+            threads: None,
+            launcher: None,
+            stop: Arc::default(),
+            log: false,
+            quiet: true,
+            force: false,
+            foreign: Vec::new(),
+            solid_wait: 60.0,
+            isa: Isa::detect(),
+        }
+    }
+
     /// Names of the solids that are not built in.
     pub fn foreign_names(&self) -> Vec<Name> {
         self.foreign.iter().map(|(name, _)| *name).collect()

@@ -2,6 +2,7 @@
 
 use crate::effects;
 use crate::options::{RunOptions, SolidSource};
+use halfstep_coupling::couple::{Outcome, combined_hash};
 use halfstep_coupling::error::RunError;
 use halfstep_coupling::roles;
 use halfstep_link::{FLUID, LinkConfig, Participant};
@@ -18,9 +19,9 @@ use halfstep_wire::protocol::StateHeader;
 ///
 /// # Errors
 /// A name of the scene is none.
-pub(crate) fn participants(
+pub(crate) fn participants<const D: usize>(
     scene: &Scene,
-    layout: &Layout<2>,
+    layout: &Layout<D>,
     foreign: &[Name],
 ) -> Result<Vec<Participant>, RunError> {
     let solids = layout.solid_counts(scene);
@@ -65,6 +66,17 @@ pub(crate) fn participants(
 /// Number of probe values of the participant at this place.
 fn values(scene: &Scene, place: usize) -> usize {
     roles::probes_of(scene, place).map(|probe| probe.kind.components(scene.dimension).0.len()).sum()
+}
+
+/// Puts what the coupler found into the report of a run.
+pub(crate) fn report_outcome(scene: &Scene, outcome: &Outcome, report: &mut RunReport) {
+    report.audit.state_hash = Some(format!("{:016x}", combined_hash(&outcome.last)));
+    if scene.fluid.is_some() && !scene.solids.is_empty() {
+        report.audit.action_reaction = Some(outcome.action_reaction);
+        report.audit.checks = outcome.checks;
+        report.roles.coupler = Some(outcome.seconds);
+        report.work.pair_evaluations.coupler = Some(outcome.pair_evaluations);
+    }
 }
 
 /// Puts what the participants said at their ends into the report: sums by phase, and a row for each of them.

@@ -1,40 +1,108 @@
-//! One run from a scene to a folder.
+//! One run from a scene to a folder, or on from where it was interrupted.
 
 use crate::advice::advice;
+use crate::checkpoint::Checkpoint;
 use crate::effects;
 use crate::options::{RunOptions, known_solid};
-use crate::participants::report_participants;
+use crate::participants::{report_outcome, report_participants};
 use crate::session::Session;
+use halfstep_coupling::checkpoints::Checkpoints;
 use halfstep_coupling::clock::Clock;
-use halfstep_coupling::couple::combined_hash;
+use halfstep_coupling::couple::Course;
 use halfstep_coupling::error::RunError;
+use halfstep_coupling::local::LocalRun;
 use halfstep_coupling::recorder::Recorder;
 use halfstep_coupling::roles;
-use halfstep_coupling::solo::run_solo;
-use halfstep_coupling::supervise::stop_flag;
 use halfstep_output::run_json::{Particles, RunStatus};
-use halfstep_output::{self as output, RunDirectory, RunReport};
+use halfstep_output::{self as output, ProbeLog, RunDirectory, RunReport};
 use halfstep_role::report::Report;
 use halfstep_role::serve;
-use halfstep_scene::Scene;
-use halfstep_scene::geometry;
-use std::sync::atomic::AtomicBool;
+use halfstep_scene::{Scene, dispatch, geometry};
+use halfstep_sph::lane::Isa;
+use halfstep_wire::Name;
+use std::path::Path;
+use std::sync::Arc;
+
+/// A report, and the error where the run failed.
+pub type Ended = (RunReport, Option<RunError>);
 
 /// Runs a scene. The report is written whatever happens; an error stands in it, too.
 ///
 /// # Errors
 /// Nothing could be started or written. A run that failed is a report with its error.
-pub fn run(scene: &Scene, options: &RunOptions) -> Result<(RunReport, Option<RunError>), RunError> {
+pub fn run(scene: &Scene, options: &RunOptions) -> Result<Ended, RunError> {
+    check_foreign(scene, options)?;
+    let directory = RunDirectory::create(&options.out, options.force)?;
+    write_scene(scene, &directory)?;
+    execute(scene, options, &directory, None)
+}
+
+/// Goes on with the interrupted run in the folder of the options: from its last whole checkpoint, to the same bits as if it
+/// had never been interrupted. `until` (s) gives it another end.
+///
+/// # Errors
+/// There is no checkpoint to go on from, or nothing could be started or written.
+pub fn resume(options: &RunOptions, until: Option<f64>) -> Result<(Scene, Ended), RunError> {
+    let dir = &options
+        .out
+        .canonicalize()
+        .map_err(|error| RunError::Resume(format!("{}: {error}", options.out.display())))?;
+    let mut scene = read_scene(dir)?;
+    check_foreign(&scene, options)?;
+    let checkpoint = Checkpoint::newest(dir, &scene, options.isa)?;
+    let earlier = RunReport::read(&dir.join("run.json")).unwrap_or_default();
+    match until {
+        None if earlier.status == Some(RunStatus::Finished) => {
+            let reason = format!(
+                "the run has reached its end, {} s; --until SECONDS gives it a later one",
+                scene.end_time
+            );
+            return Err(RunError::Resume(reason));
+        }
+        Some(until) if until <= checkpoint.manifest.time => {
+            let reason =
+                format!("--until {until} s is not after the checkpoint at {} s", checkpoint.manifest.time);
+            return Err(RunError::Resume(reason));
+        }
+        Some(until) => scene.end_time = until,
+        None => {}
+    }
+    let directory = RunDirectory::reopen(dir, checkpoint.frames()?)?;
+    write_scene(&scene, &directory)?;
+    let ended = execute(&scene, options, &directory, Some((checkpoint, earlier)))?;
+    Ok((scene, ended))
+}
+
+/// The scene of the run in a folder, as resolved.
+///
+/// # Errors
+/// There is none that can be read.
+pub fn read_scene(dir: &Path) -> Result<Scene, RunError> {
+    let path = dir.join("scene.json");
+    let wrong = |reason: String| RunError::Resume(format!("{}: {reason}", path.display()));
+    let text = std::fs::read_to_string(&path).map_err(|error| wrong(error.to_string()))?;
+    Scene::from_json(&text).map_err(|error| wrong(error.to_string()))
+}
+
+pub(crate) fn write_scene(scene: &Scene, directory: &RunDirectory) -> Result<(), RunError> {
+    let text = scene.to_json().map_err(|e| RunError::System(format!("scene.json: {e}")))?;
+    Ok(output::atomic::replace_bytes(&directory.file("scene.json"), text.as_bytes())?)
+}
+
+fn check_foreign(scene: &Scene, options: &RunOptions) -> Result<(), RunError> {
     if !options.foreign.is_empty() && (scene.fluid.is_none() || scene.solids.is_empty()) {
         return Err(RunError::System("--solid needs a scene with [fluid] and [solid]".into()));
     }
     for name in options.foreign_names() {
         known_solid(scene, name.as_str()).map_err(RunError::System)?;
     }
-    let directory = RunDirectory::create(&options.out, options.force)?;
-    let stop = stop_flag().map_err(|e| RunError::System(format!("cannot watch for signals: {e}")))?;
-    let layout = geometry::layout::<2>(scene);
-    let counts = layout.counts();
+    Ok(())
+}
+
+/// What the report of a run says at its start.
+pub(crate) fn begin_report(scene: &Scene, isa: Isa) -> Result<RunReport, RunError> {
+    let counts = dispatch!(scene.dimension, D => geometry::layout::<D>(scene).counts());
+    let counts = counts.ok_or_else(|| unknown_dimension(scene))?;
     let mut report = RunReport {
         scene: serde_json::to_value(scene).map_err(|e| RunError::System(e.to_string()))?,
         version: env!("CARGO_PKG_VERSION").into(),
@@ -42,35 +110,78 @@ pub fn run(scene: &Scene, options: &RunOptions) -> Result<(RunReport, Option<Run
         ..RunReport::default()
     };
     report.effects = effects::ledger(scene, &counts);
-    start_log(&directory)?;
-    report.audit.isa = Some(options.isa.bits_name().into());
+    report.audit.isa = Some(isa.bits_name().into());
+    Ok(report)
+}
+
+/// Names of a scene's participants.
+pub(crate) fn names(scene: &Scene) -> Result<Vec<Name>, RunError> {
+    let name = |text: String| text.parse::<Name>().map_err(|e| RunError::System(e.to_string()));
+    scene.participants().into_iter().map(|participant| name(participant.name)).collect()
+}
+
+fn execute(
+    scene: &Scene,
+    options: &RunOptions,
+    directory: &RunDirectory,
+    resumed: Option<(Checkpoint, RunReport)>,
+) -> Result<Ended, RunError> {
+    let ended = dispatch!(scene.dimension, D => execute_in::<D>(scene, options, directory, resumed));
+    ended.unwrap_or_else(|| Err(unknown_dimension(scene)))
+}
+
+fn unknown_dimension(scene: &Scene) -> RunError {
+    RunError::System(format!("scenes of {} dimensions cannot be run", scene.dimension))
+}
+
+fn execute_in<const D: usize>(
+    scene: &Scene,
+    options: &RunOptions,
+    directory: &RunDirectory,
+    resumed: Option<(Checkpoint, RunReport)>,
+) -> Result<Ended, RunError> {
+    let mut report = begin_report(scene, options.isa)?;
+    let probes = directory.file("probes.csv");
+    let recorder = |log| Recorder::new(scene, log, options.quiet);
+    let mut at = (0, 0.0);
+    let (checkpoint, recorder) = match resumed {
+        None => (None, recorder(Some(ProbeLog::create(&probes, &Recorder::columns(scene))?))),
+        Some((checkpoint, earlier)) => {
+            report.resumed = earlier.resumed;
+            report.resumed.push(checkpoint.resumption());
+            at = (checkpoint.manifest.number, checkpoint.manifest.time);
+            let recorder = recorder(None).resume(scene, Some(&probes), checkpoint.part("recorder")?)?;
+            (Some(checkpoint), recorder)
+        }
+    };
+    if options.log {
+        start_log(directory)?;
+    }
     report.write(&directory.file("run.json"))?;
-    let mut recorder = Recorder::new(scene, &directory.file("probes.csv"), options.quiet)?;
-    let mut clock = Clock::new(scene);
+    let checkpoints = Checkpoints::new(scene, directory.path(), names(scene)?, options.isa.bits_name(), at)
+        .map_err(|e| RunError::System(format!("scene.json: {e}")))?;
+    let (clock, stop) = (Clock::new(scene), Arc::clone(&options.stop));
+    let mut course = Course { clock, recorder, checkpoints: Some(checkpoints), stop };
     let result = if scene.fluid.is_some() && !scene.solids.is_empty() {
-        Session::new(scene, options, &directory, &stop, &layout)
-            .and_then(|session| session.run(&mut clock, &mut recorder, &mut report))
+        let layout = geometry::layout::<D>(scene);
+        Session::<D>::new(scene, options, directory, checkpoint.as_ref(), &layout)
+            .and_then(|session| session.run(&mut course, &mut report))
     } else {
-        solo(scene, options, &directory, &stop, &mut clock, &mut recorder, &mut report)
+        let local = local::<D>(scene, options, directory, checkpoint.as_ref(), course, &mut report);
+        let (ended, stopped) = local?;
+        course = ended;
+        stopped
     };
+    let Course { clock, recorder, .. } = course;
     recorder.finish(&mut report);
-    let error = match result {
-        Ok(stopped) => {
-            report.status = Some(if stopped { RunStatus::Stopped } else { RunStatus::Finished });
-            None
-        }
-        Err(mut error) => {
-            report.status = Some(RunStatus::Failed);
-            if let RunError::Diverged { diverged, hint } = &mut error {
-                *hint = advice(diverged, scene, &clock, &options.foreign_names());
-                report.status = Some(RunStatus::Diverged);
-            }
-            tracing::error!("{error}");
-            report.error = Some(error.to_string());
-            Some(error)
-        }
-    };
+    let error = conclude(result, scene, &clock, &options.foreign_names(), &mut report);
     report.write(&directory.file("run.json"))?;
+    draw(scene, directory);
+    Ok((report, error))
+}
+
+/// Draws the pictures of a run.
+pub(crate) fn draw(scene: &Scene, directory: &RunDirectory) {
     for picture in
         [output::draw_plot(scene, directory.path()).map(Some), output::draw_contact(scene, directory.path())]
     {
@@ -78,7 +189,32 @@ pub fn run(scene: &Scene, options: &RunOptions) -> Result<(RunReport, Option<Run
             tracing::warn!("a picture could not be drawn: {e}");
         }
     }
-    Ok((report, error))
+}
+
+/// Puts the end of a run into its report: whether it was stopped, or why it failed.
+pub(crate) fn conclude(
+    result: Result<bool, RunError>,
+    scene: &Scene,
+    clock: &Clock,
+    foreign: &[Name],
+    report: &mut RunReport,
+) -> Option<RunError> {
+    match result {
+        Ok(stopped) => {
+            report.status = Some(if stopped { RunStatus::Stopped } else { RunStatus::Finished });
+            None
+        }
+        Err(mut error) => {
+            report.status = Some(RunStatus::Failed);
+            if let RunError::Diverged { diverged, hint } = &mut error {
+                *hint = advice(diverged, scene, clock, foreign);
+                report.status = Some(RunStatus::Diverged);
+            }
+            tracing::error!("{error}");
+            report.error = Some(error.to_string());
+            Some(error)
+        }
+    }
 }
 
 /// What this process has to say goes to the run's log, beside what its children say.
@@ -98,28 +234,37 @@ fn start_log(directory: &RunDirectory) -> Result<(), RunError> {
     Ok(())
 }
 
-fn solo(
+/// Worker threads of a run in one process.
+pub(crate) fn threads(scene: &Scene, wanted: Option<usize>) -> usize {
+    let of_solids = scene.solids.iter().map(|solid| solid.threads).max();
+    let own = if scene.fluid.is_some() { scene.numerics.threads.fluid } else { of_solids.unwrap_or(1) };
+    wanted.unwrap_or(own)
+}
+
+/// A course that has ended, with whether it was stopped.
+type LocalEnd = (Course, Result<bool, RunError>);
+
+/// A scene with one phase: in this process, nothing exchanged.
+fn local<const D: usize>(
     scene: &Scene,
     options: &RunOptions,
     directory: &RunDirectory,
-    stop: &AtomicBool,
-    clock: &mut Clock,
-    recorder: &mut Recorder,
+    checkpoint: Option<&Checkpoint>,
+    course: Course,
     report: &mut RunReport,
-) -> Result<bool, RunError> {
+) -> Result<LocalEnd, RunError> {
     let places: Vec<usize> = (0..scene.participants().len()).collect();
-    if places.is_empty() {
-        return Err(RunError::System("the scene has neither fluid nor solid".into()));
-    }
-    let of_solids = scene.solids.iter().map(|solid| solid.threads).max();
-    let own = if scene.fluid.is_some() { scene.numerics.threads.fluid } else { of_solids.unwrap_or(1) };
-    let threads = options.threads.unwrap_or(own);
-    let outcome = serve::on_threads(threads, || -> Result<_, RunError> {
-        let members = roles::members(scene, &places, options.isa, Some(directory.path()))?;
-        run_solo(members, clock, recorder, stop)
-    })??;
-    report.audit.state_hash = Some(format!("{:016x}", combined_hash(&outcome.last)));
-    let reports: Vec<Option<Report>> = outcome.reports.into_iter().map(Some).collect();
-    report_participants(scene, options, &outcome.last, &reports, None, report);
-    Ok(outcome.stopped)
+    serve::on_threads(threads(scene, options.threads), || {
+        let from = checkpoint.map(|checkpoint| checkpoint.folder.as_path());
+        let members = roles::members(scene, &places, options.isa, Some(directory.path()), from)?;
+        let coupler = checkpoint.map(|checkpoint| &checkpoint.coupler);
+        let mut run = LocalRun::<D>::new(members, scene, course, options.isa, coupler)?;
+        let result = run.run().map(|(outcome, reports)| {
+            report_outcome(scene, &outcome, report);
+            let reports: Vec<Option<Report>> = reports.into_iter().map(Some).collect();
+            report_participants(scene, options, &outcome.last, &reports, None, report);
+            outcome.stopped
+        });
+        Ok((run.into_course(), result))
+    })?
 }

@@ -1,13 +1,12 @@
 //! A coupled run: starts its roles as processes or as threads, couples them, and finds out why one of them ended.
 
+use crate::checkpoint::Checkpoint;
 use crate::isa::{self, ISA_VARIABLE};
-use crate::options::{RunOptions, SolidSource};
-use crate::participants::{participants, report_participants};
-use halfstep_coupling::clock::Clock;
-use halfstep_coupling::couple::{CoupledOutcome, Coupler, combined_hash};
+use crate::options::{Launcher, RunOptions, SolidSource};
+use crate::participants::{participants, report_outcome, report_participants};
+use halfstep_coupling::couple::{Coupler, Course, Outcome};
 use halfstep_coupling::error::RunError;
 use halfstep_coupling::foreign::ForeignSolid;
-use halfstep_coupling::recorder::Recorder;
 use halfstep_coupling::supervise::Children;
 use halfstep_coupling::{reports, roles};
 use halfstep_link::{
@@ -17,7 +16,7 @@ use halfstep_output::run_json::Percentiles;
 use halfstep_output::{self as output, RunDirectory, RunReport};
 use halfstep_role::lockstep::RoleError;
 use halfstep_role::report::Report;
-use halfstep_role::serve::{self, FOLDER_VARIABLE, SCENE_VARIABLE, THREADS_VARIABLE};
+use halfstep_role::serve::{self, CHECKPOINT_VARIABLE, FOLDER_VARIABLE, SCENE_VARIABLE, THREADS_VARIABLE};
 use halfstep_scene::Scene;
 use halfstep_scene::geometry::Layout;
 use halfstep_wire::Name;
@@ -29,28 +28,28 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// What a coupled run needs, whatever carries its messages.
-pub(crate) struct Session<'a> {
+pub(crate) struct Session<'a, const D: usize> {
     scene: &'a Scene,
     options: &'a RunOptions,
     directory: &'a RunDirectory,
-    stop: &'a AtomicBool,
+    checkpoint: Option<&'a Checkpoint>,
     config: LinkConfig,
 }
 
-impl<'a> Session<'a> {
-    /// For a scene with both phases, whose particles begin as in `layout`.
+impl<'a, const D: usize> Session<'a, D> {
+    /// For a scene with both phases, whose particles begin as in `layout`, from its start or from a checkpoint.
     pub(crate) fn new(
         scene: &'a Scene,
         options: &'a RunOptions,
         directory: &'a RunDirectory,
-        stop: &'a AtomicBool,
-        layout: &Layout<2>,
+        checkpoint: Option<&'a Checkpoint>,
+        layout: &Layout<D>,
     ) -> Result<Self, RunError> {
         let mut config = LinkConfig::new(participants(scene, layout, &options.foreign_names())?);
         if options.foreign.iter().any(|(_, source)| *source == SolidSource::ByHand) {
             config.handshake_seconds = options.solid_wait;
         }
-        Ok(Self { scene, options, directory, stop, config })
+        Ok(Self { scene, options, directory, checkpoint, config })
     }
 
     /// Worker threads of a process: the most that one of its participants asks for.
@@ -76,22 +75,15 @@ impl<'a> Session<'a> {
     }
 
     /// Runs to the scene's end; returns whether it was stopped before.
-    pub(crate) fn run(
-        &self,
-        clock: &mut Clock,
-        recorder: &mut Recorder,
-        report: &mut RunReport,
-    ) -> Result<bool, RunError> {
+    pub(crate) fn run(&self, course: &mut Course, report: &mut RunReport) -> Result<bool, RunError> {
         link::cleanup_stale();
         // Held while children may live: what is the run's in shared memory goes with the last who holds it.
         let claim = Claim::new(&self.config)?;
         // The coupler's sums are short: one thread, and no worker to wake.
-        let outcome = serve::on_threads(1, || {
-            if self.options.in_process && self.options.foreign.is_empty() {
-                self.as_threads(clock, recorder)
-            } else {
-                self.as_processes(clock, recorder)
-            }
+        let outcome = serve::on_threads(1, || match &self.options.launcher {
+            Some(launcher) => self.as_processes(course, launcher),
+            None if self.options.foreign.is_empty() => self.as_threads(course),
+            None => Err(RunError::System("a solid of another program needs a launcher of processes".into())),
         });
         drop(claim);
         for (_, file) in self.awaited() {
@@ -103,11 +95,7 @@ impl<'a> Session<'a> {
             Err(RunError::StoppedEarly) => return Ok(true),
             other => other?,
         };
-        report.audit.state_hash = Some(format!("{:016x}", combined_hash(&outcome.last)));
-        report.audit.action_reaction = Some(outcome.action_reaction);
-        report.audit.checks = outcome.checks;
-        report.roles.coupler = Some(outcome.seconds);
-        report.work.pair_evaluations.coupler = Some(outcome.pair_evaluations);
+        report_outcome(self.scene, &outcome, report);
         let read = |participant: &Participant| {
             reports::read(self.directory.path(), participant.name.as_str()).map_err(RunError::from)
         };
@@ -120,44 +108,43 @@ impl<'a> Session<'a> {
         Ok(outcome.stopped)
     }
 
-    fn as_processes(&self, clock: &mut Clock, recorder: &mut Recorder) -> Result<CoupledOutcome, RunError> {
+    fn as_processes(&self, course: &mut Course, launcher: &Launcher) -> Result<Outcome, RunError> {
         let config = &self.config;
         let system = |what: &str, e: std::io::Error| RunError::System(format!("{what}: {e}"));
         let scene_file = self.directory.file("scene.json");
-        let text = self.scene.to_json().map_err(|e| RunError::System(format!("scene.json: {e}")))?;
-        output::atomic::replace_bytes(&scene_file, text.as_bytes())?;
         let scene_file = scene_file.canonicalize().map_err(|e| system("scene.json", e))?;
         let folder = self.directory.path().canonicalize().map_err(|e| system("the run's folder", e))?;
-        let program = std::env::current_exe().map_err(|e| system("cannot find the own program", e))?;
         let mut children = Children::new(&self.directory.file("log.txt"));
+        let checkpoint = self.checkpoint.map(|checkpoint| (CHECKPOINT_VARIABLE, checkpoint.folder.as_path()));
+        let mut told = vec![(SCENE_VARIABLE, scene_file.as_path()), (FOLDER_VARIABLE, &folder)];
+        told.extend(checkpoint);
         for participant in &config.participants {
             if let Some(SolidSource::Command(line)) = self.options.source(participant.name) {
-                children.spawn_shell(participant, line, config, &scene_file)?;
+                children.spawn_shell(participant, line, config, &told)?;
             }
         }
-        self.invite(&scene_file)?;
+        self.invite(&scene_file, &folder)?;
         for process in config.processes() {
             if self.options.source(process).is_some() {
                 continue;
             }
-            let mut command = Command::new(&program);
+            let mut command = Command::new(&launcher.program);
             command
                 .arg("role")
                 .arg(process.as_str())
                 .envs(config.to_env())
-                .env(SCENE_VARIABLE, &scene_file)
-                .env(FOLDER_VARIABLE, &folder)
+                .envs(told.iter().copied())
                 .env(THREADS_VARIABLE, self.threads(process).to_string())
                 .env(ISA_VARIABLE, isa::name(self.options.isa));
             children.spawn(process, command)?;
         }
-        let abort = Arc::new(AtomicBool::new(false));
+        let (abort, stop) = (Arc::new(AtomicBool::new(false)), Arc::clone(&course.stop));
         let (done, connected) = (AtomicBool::new(false), AtomicBool::new(false));
         let started = Instant::now();
         let by_hand = self.awaited().next().is_some();
         let watched = std::thread::scope(|scope| {
             // Before the handshake nobody else notices a child that could not even start.
-            let watcher = scope.spawn(|| watch(&mut children, &abort, &done, self.stop));
+            let watcher = scope.spawn(|| watch(&mut children, &abort, &done, &stop));
             let result = CouplerLink::<Processes>::open(config, Some(Arc::clone(&abort)))
                 .map_err(RunError::from)
                 .inspect(|_| {
@@ -167,7 +154,7 @@ impl<'a> Session<'a> {
                         eprintln!("the solid is connected");
                     }
                 })
-                .and_then(|link| self.lockstep(link, clock, recorder));
+                .and_then(|link| self.lockstep(link, course));
             done.store(true, Ordering::Relaxed);
             let early = watcher.join().unwrap_or(None);
             match (result, early) {
@@ -193,7 +180,7 @@ impl<'a> Session<'a> {
                 let waiting = !connected.load(Ordering::Relaxed);
                 let seconds = self.options.solid_wait;
                 Err(match (error, cause) {
-                    _ if waiting && self.stop.load(Ordering::Relaxed) => RunError::StoppedEarly,
+                    _ if waiting && stop.load(Ordering::Relaxed) => RunError::StoppedEarly,
                     // The fluid waits for the solid, too, and may be the first to give up.
                     _ if waiting && by_hand && started.elapsed().as_secs_f64() >= seconds => {
                         RunError::NoSolid { seconds }
@@ -208,7 +195,7 @@ impl<'a> Session<'a> {
     }
 
     /// Tells how to start the solids that are awaited: with the variables of a file, ready for a shell.
-    fn invite(&self, scene: &Path) -> Result<(), RunError> {
+    fn invite(&self, scene: &Path, folder: &Path) -> Result<(), RunError> {
         let quoted = |path: &dyn Display| format!("'{}'", path.to_string().replace('\'', r"'\''"));
         for (participant, file) in self.awaited() {
             let mut text = String::new();
@@ -216,6 +203,10 @@ impl<'a> Session<'a> {
                 text += &format!("export {key}={}\n", quoted(&value));
             }
             text += &format!("export {SCENE_VARIABLE}={}\n", quoted(&scene.display()));
+            text += &format!("export {FOLDER_VARIABLE}={}\n", quoted(&folder.display()));
+            if let Some(checkpoint) = self.checkpoint {
+                text += &format!("export {CHECKPOINT_VARIABLE}={}\n", quoted(&checkpoint.folder.display()));
+            }
             output::atomic::replace_bytes(&file, text.as_bytes())?;
             let file = file.canonicalize().unwrap_or(file);
             eprintln!(
@@ -231,9 +222,8 @@ impl<'a> Session<'a> {
     fn lockstep<S: link::Transport>(
         &self,
         link: CouplerLink<S>,
-        clock: &mut Clock,
-        recorder: &mut Recorder,
-    ) -> Result<CoupledOutcome, RunError> {
+        course: &mut Course,
+    ) -> Result<Outcome, RunError> {
         let foreign = |(place, participant): (usize, &Participant)| {
             let name = participant.name;
             let stands_in = || ForeignSolid::new(self.scene, place, name, self.directory.path());
@@ -241,12 +231,14 @@ impl<'a> Session<'a> {
         };
         let solids = self.config.participants.iter().enumerate().skip(1);
         let foreign = solids.map(foreign).collect::<Result<Vec<_>, _>>()?;
-        let mut coupler = Coupler::<S, 2>::new(link, self.scene, foreign, self.options.isa)
-            .ok_or_else(|| RunError::System("a coupled scene needs [fluid] and [solid]".into()))?;
-        coupler.run(clock, recorder, self.stop)
+        let mut coupler = Coupler::<_, D>::new(link, self.scene, foreign, self.options.isa);
+        if let Some(checkpoint) = self.checkpoint {
+            coupler.resume(&mut course.clock, &checkpoint.coupler)?;
+        }
+        coupler.run(course)
     }
 
-    fn as_threads(&self, clock: &mut Clock, recorder: &mut Recorder) -> Result<CoupledOutcome, RunError> {
+    fn as_threads(&self, course: &mut Course) -> Result<Outcome, RunError> {
         let config = &self.config;
         let abort = Arc::new(AtomicBool::new(false));
         std::thread::scope(|scope| {
@@ -260,7 +252,7 @@ impl<'a> Session<'a> {
                 .collect();
             let result = CouplerLink::<Threads>::open(config, Some(Arc::clone(&abort)))
                 .map_err(RunError::from)
-                .and_then(|link| self.lockstep(link, clock, recorder));
+                .and_then(|link| self.lockstep(link, course));
             if result.is_err() {
                 abort.store(true, Ordering::Relaxed);
             }
@@ -288,7 +280,8 @@ impl<'a> Session<'a> {
         let folder = self.directory.path();
         let result = serve::on_threads(self.threads(process), move || {
             let places = self.config.members(process);
-            let members = roles::members(self.scene, &places, self.options.isa, Some(folder))?;
+            let from = self.checkpoint.map(|checkpoint| checkpoint.folder.as_path());
+            let members = roles::members(self.scene, &places, self.options.isa, Some(folder), from)?;
             let mut deliver = |report: &Report| Ok(reports::write(folder, report)?);
             serve::serve::<Threads>(members, &self.config, process, abort, &mut deliver)
         });

@@ -21,7 +21,7 @@ pub(crate) fn step_cost(role: Box<dyn Role>, dt: f64) -> Option<f64> {
         began: None,
         best: f64::INFINITY,
     };
-    let member = Member { role, frames: None };
+    let member = Member::new(role);
     drive(vec![member], &mut port, &mut |_| Ok(())).ok()?;
     Some(port.best)
 }

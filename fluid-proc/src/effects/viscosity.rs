@@ -9,7 +9,7 @@ use crate::columns::{Shown, fit, four};
 use crate::composition::Composition;
 use crate::rates::{FluidPair, PairEffect, PairRates};
 use crate::walls::Walls;
-use halfstep_scene::{Decision, Derived, EffectName, Scene};
+use halfstep_scene::{Decision, Derived, EffectName, Scene, dispatch};
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::{Arch, LANES, Lane};
 use halfstep_sph::pair::{self, PairLaw, distance};
@@ -122,7 +122,8 @@ pub const SMALLEST_SHARE: f64 = 0.01;
 /// one, `None` without fluid or without physical one.
 pub fn share_of_artificial(scene: &Scene) -> Option<f64> {
     let fluid = scene.fluid.as_ref().filter(|f| f.viscosity > 0.0)?;
-    if !ArtificialViscosity::<2>::decide(scene).on {
+    let artificial = dispatch!(scene.dimension, D => ArtificialViscosity::<D>::decide(scene).on);
+    if artificial != Some(true) {
         return Some(f64::INFINITY);
     }
     let h = scene.smoothing_ratio * scene.resolution;

@@ -12,7 +12,7 @@ pub struct Moving<const D: usize> {
     /// By shape.
     placements: Vec<Placement>,
     /// Displacement of each shape at the last sort.
-    at_sort: Vec<[f64; 3]>,
+    pub(crate) at_sort: Vec<[f64; 3]>,
     /// Shape of each slot: a whole number, as a column that is sorted with the others.
     pub(crate) shape: Vec<f64>,
     /// Place in the scene, m.
@@ -80,6 +80,19 @@ impl<const D: usize> Moving<D> {
             for d in 0..D {
                 position[d][slot] = self.initial[d][slot] + now.displacement[d];
                 velocity[d][slot] = self.surface[d][slot] + now.velocity[d];
+            }
+        }
+    }
+
+    /// Brings the walls to where they were at the last sort.
+    pub(crate) fn return_to_sort(&mut self, position: &mut Vectors<D>) {
+        for (now, at_sort) in self.placements.iter_mut().zip(&self.at_sort) {
+            now.displacement = *at_sort;
+        }
+        for slot in 0..self.shape.len() {
+            let displacement = self.at_sort[self.shape[slot] as usize];
+            for d in 0..D {
+                position[d][slot] = self.initial[d][slot] + displacement[d];
             }
         }
     }

@@ -11,6 +11,7 @@ mod screen;
 #[cfg(test)]
 mod screen_tests;
 mod side;
+mod state;
 mod thin_plate;
 
 pub use phase_blind::SolidRates;
@@ -154,6 +155,11 @@ impl<const D: usize> Interface<D> {
         0.3 * self.parameters.smoothing_length
     }
 
+    /// Height of the rows, and reach of the lists, m.
+    fn height(&self) -> f64 {
+        2.0 * self.parameters.smoothing_length + self.skin()
+    }
+
     /// Takes over both records; lists are renewed when the fluid's set changed (`epoch`) or particles moved too far.
     pub fn update(&mut self, fluid: &[StateRecord], solid: &[StateRecord], epoch: u64) {
         let same = self.epoch == Some(epoch)
@@ -164,11 +170,10 @@ impl<const D: usize> Interface<D> {
             self.solid.load(solid);
         }
         if !same || self.fluid.displacement() + self.solid.displacement() > self.skin() {
-            let height = 2.0 * self.parameters.smoothing_length + self.skin();
+            let height = self.height();
             self.fluid.sort(fluid, height);
             self.solid.sort(solid, height);
-            self.fluid_list.build(&self.fluid.position, &self.solid.position, self.solid.rows(), height);
-            self.solid_list.build(&self.solid.position, &self.fluid.position, self.fluid.rows(), height);
+            self.relist();
             self.epoch = Some(epoch);
         }
         match self.parameters.treatment {

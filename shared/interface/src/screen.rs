@@ -60,13 +60,13 @@ struct Material<const D: usize> {
 }
 
 impl<const D: usize> Screen<D> {
-    fn new(parameters: &Parameters<D>, records: &[StateRecord]) -> Self {
-        let x: Vec<[f64; D]> = records.iter().map(|r| std::array::from_fn(|d| r.position[d])).collect();
+    /// From the positions of the solid's records at the first half-step.
+    pub(super) fn new(parameters: &Parameters<D>, x: &[[f64; D]]) -> Self {
         let reach = 2.0 * parameters.smoothing_length;
         let plate_of = |x: &[f64; D]| parameters.thin_plates.iter().position(|p| p.holds(x));
         let plates: Vec<Option<usize>> = x.iter().map(plate_of).collect();
         let mut order: Vec<usize> = (0..x.len()).collect();
-        let widest = widest_axis(&x);
+        let widest = widest_axis(x);
         order.sort_by(|&a, &b| x[a][widest].total_cmp(&x[b][widest]));
         let mut place = vec![0; x.len()];
         order.iter().enumerate().for_each(|(k, &i)| place[i] = k);
@@ -92,6 +92,16 @@ impl<const D: usize> Screen<D> {
         }
         let normal = std::array::from_fn(|_| Vec::new());
         Self { material, neighbours, normal, before: Vec::new(), faces: Default::default(), sums: Vec::new() }
+    }
+
+    /// Positions of the solid's records at the first half-step.
+    pub(super) fn first_positions(&self) -> Vec<[f64; D]> {
+        self.material.iter().map(|material| material.position.into()).collect()
+    }
+
+    /// Number of the solid's records.
+    pub(super) fn records(&self) -> usize {
+        self.material.len()
     }
 
     /// The unit normal of a record's plate; zero where it has none.
@@ -243,7 +253,10 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for FromBothSides<'_, K, D> {
 
 /// What each side of the plates shows, from the records of both phases.
 pub(super) fn show_pressures<const D: usize>(interface: &mut Interface<D>, records: &[StateRecord]) {
-    let mut screen = interface.screen.take().unwrap_or_else(|| Screen::new(&interface.parameters, records));
+    let positions =
+        || -> Vec<[f64; D]> { records.iter().map(|r| std::array::from_fn(|d| r.position[d])).collect() };
+    let mut screen =
+        interface.screen.take().unwrap_or_else(|| Screen::new(&interface.parameters, &positions()));
     screen.carry(&interface.solid, records);
     let mut sums = std::mem::take(&mut screen.sums);
     sums.resize(interface.solid_list.clusters(), Default::default());

@@ -23,11 +23,11 @@ pub struct Side<const D: usize> {
     /// sigma_ab / rho² (symmetric; a <= b filled).
     pub stress_term: [[Vec<f64>; D]; D],
     /// Position when the lists were made, m.
-    reference: [Vec<f64>; D],
+    pub(super) reference: [Vec<f64>; D],
     /// Record number of a slot.
-    record: Vec<u32>,
-    records: usize,
-    rows: Rows<D>,
+    pub(super) record: Vec<u32>,
+    pub(super) records: usize,
+    pub(super) rows: Rows<D>,
 }
 
 impl<const D: usize> Default for Side<D> {
@@ -84,9 +84,17 @@ impl<const D: usize> Side<D> {
             self.rows.permute(column);
         }
         self.rows.permute_ids(&mut self.record);
-        let slots = self.rows.slots();
         for d in 0..D {
             self.reference[d].clone_from(&self.position[d]);
+        }
+        self.fit_columns();
+        self.load(records);
+    }
+
+    /// Fits the columns that [`Self::load`] fills to the slots.
+    pub(super) fn fit_columns(&mut self) {
+        let slots = self.rows.slots();
+        for d in 0..D {
             self.velocity[d].resize(slots, 0.0);
             for b in d..D {
                 self.stress_term[d][b].resize(slots, 0.0);
@@ -95,7 +103,6 @@ impl<const D: usize> Side<D> {
         for column in [&mut self.density, &mut self.pressure, &mut self.mass, &mut self.own_mass] {
             column.resize(slots, 0.0);
         }
-        self.load(records);
     }
 
     pub(super) fn load(&mut self, records: &[StateRecord]) {

@@ -4,7 +4,7 @@
 //! are solid particles that see both; below 2h the fluid particles see each other.
 
 use halfstep_scene::geometry::Plate;
-use halfstep_scene::{Decision, Derived, EffectName, Scene, Shape, Treatment};
+use halfstep_scene::{Decision, Derived, EffectName, Scene, Shape, Treatment, dispatch};
 
 /// Relative tolerance of lengths.
 const TOLERANCE: f64 = 1e-9;
@@ -28,11 +28,13 @@ fn derive(scene: &Scene) -> Derived {
     if scene.interface.treatment == Treatment::PhaseBlind {
         return Derived::Impossible("phase-blind: solid particles show their own stress".into());
     }
-    match thinner::<2>(scene, 4.0, |_| true).first() {
-        Some(plate) => Derived::On(format!(
-            "{} is {} particles thick: they see the fluid on both faces",
-            plate.name,
-            plate.rows.round()
+    let thin = dispatch!(scene.dimension, D => {
+        thinner::<D>(scene, 4.0, |_| true).first().map(|plate| (plate.name.clone(), plate.rows))
+    });
+    match thin.flatten() {
+        Some((name, rows)) => Derived::On(format!(
+            "{name} is {} particles thick: they see the fluid on both faces",
+            rows.round()
         )),
         None => Derived::Impossible("no plate is thinner than 4h - dx".into()),
     }

@@ -3,7 +3,7 @@
 use super::config::FLUID;
 use super::hub::{Hub, Presence, Watch, attributes, port_error, service_name};
 use super::memory::SAMPLES;
-use super::{LinkConfig, LinkError, Participant, Transport};
+use super::{LinkConfig, LinkError, Participant, StateMessage, Transport};
 use crate::slot::Slot;
 use halfstep_wire::Name;
 use halfstep_wire::protocol::{ForceHeader, ForceRecord, Plain, ProbeHeader, StateHeader, StateRecord};
@@ -216,14 +216,12 @@ impl<S: Transport, R: Plain, H: Plain> Outgoing<S, R, H> {
 #[derive(Debug)]
 pub struct StateSample<S: Transport>(pub(super) Message<S, StateRecord, StateHeader>);
 
-impl<S: Transport> StateSample<S> {
-    /// What heads the message.
-    pub fn header(&self) -> &StateHeader {
+impl<S: Transport> StateMessage for StateSample<S> {
+    fn header(&self) -> &StateHeader {
         &self.0.user_header().0
     }
 
-    /// The interface particles, by ascending number.
-    pub fn records(&self) -> &[StateRecord] {
+    fn records(&self) -> &[StateRecord] {
         Slot::values(self.0.payload())
     }
 }

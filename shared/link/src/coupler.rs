@@ -3,7 +3,9 @@
 use super::channel::{Channel, Incoming, Outgoing, ProbeSample, StateSample};
 use super::check::{Expect, StateCheck, verify_probes};
 use super::hub::{Hub, Presence};
-use super::{Claim, LinkConfig, LinkError, LinkTimes, Participant, Transport, memory};
+use super::{
+    Claim, CouplerPort, LinkConfig, LinkError, LinkTimes, Participant, StateMessage, Transport, memory,
+};
 use halfstep_wire::Name;
 use halfstep_wire::protocol::{
     ForceHeader, ForceRecord, PROTOCOL, ProbeHeader, SCHEMA, StateHeader, StateRecord,
@@ -76,21 +78,20 @@ impl<S: Transport> CouplerLink<S> {
         memory::reserve::<S>(config)?;
         Ok(Self { sides, run_id: config.run_id, times: LinkTimes::default(), hub, _claim: claim })
     }
+}
 
-    /// Number of participants.
-    pub fn participants(&self) -> usize {
+impl<S: Transport> CouplerPort for CouplerLink<S> {
+    type State = StateSample<S>;
+
+    fn participants(&self) -> usize {
         self.sides.len()
     }
 
-    /// Name of a participant.
-    pub fn name(&self, place: usize) -> Name {
+    fn name(&self, place: usize) -> Name {
         self.sides[place].participant.name
     }
 
-    /// The state of a participant of this step and stage; sleeps until it is there.
-    ///
-    /// A message with another status than ok is returned as it is: look at the status first.
-    pub fn receive_state(&mut self, place: usize, expect: &Expect) -> Result<StateSample<S>, LinkError> {
+    fn receive_state(&mut self, place: usize, expect: &Expect) -> Result<StateSample<S>, LinkError> {
         let start = Instant::now();
         let side = &mut self.sides[place];
         let sample = side.state.receive(&mut self.hub);
@@ -102,23 +103,21 @@ impl<S: Transport> CouplerLink<S> {
         Ok(sample)
     }
 
-    /// The probe values of a participant on the state of this step; sleeps until they are there. `None` where it has no
-    /// probes.
-    pub fn receive_probes(&mut self, place: usize, step: u64) -> Result<Option<ProbeSample<S>>, LinkError> {
+    fn receive_probes(&mut self, place: usize, step: u64, values: &mut Vec<f64>) -> Result<(), LinkError> {
         let start = Instant::now();
         let Side { participant, probes, .. } = &mut self.sides[place];
-        let Some(probes) = probes else { return Ok(None) };
+        let Some(probes) = probes else { return Ok(()) };
         let sample = probes.receive(&mut self.hub);
         let arrival = Instant::now();
         self.times.wait += arrival - start;
         let sample = ProbeSample(sample?);
         verify_probes(self.run_id, participant, sample.header(), sample.values(), step)?;
+        values.extend_from_slice(sample.values());
         self.times.exchange += arrival.elapsed();
-        Ok(Some(sample))
+        Ok(())
     }
 
-    /// Answers a participant's state. Run id, protocol, schema and count of the header are filled in here.
-    pub fn send_forces(
+    fn send_forces(
         &mut self,
         place: usize,
         header: &ForceHeader,
@@ -139,8 +138,7 @@ impl<S: Transport> CouplerLink<S> {
         Ok(())
     }
 
-    /// Where the time went since the link was opened.
-    pub fn times(&self) -> LinkTimes {
+    fn times(&self) -> LinkTimes {
         self.times
     }
 }

@@ -29,7 +29,7 @@ pub use claim::{Claim, cleanup, cleanup_stale};
 pub use config::{FLUID, LinkConfig, Participant};
 pub use coupler::CouplerLink;
 pub use error::LinkError;
-pub use port::Port;
+pub use port::{CouplerPort, Port, StateMessage};
 pub use process::ProcessLink;
 pub use slot::Slot;
 

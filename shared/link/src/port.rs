@@ -70,3 +70,53 @@ pub trait Port {
         LinkTimes::default()
     }
 }
+
+/// A state message where the coupler reads it.
+pub trait StateMessage {
+    /// What heads the message.
+    fn header(&self) -> &StateHeader;
+    /// The interface particles, by ascending number.
+    fn records(&self) -> &[StateRecord];
+}
+
+/// What the coupler exchanges with the participants. A participant is named by its place in the run.
+pub trait CouplerPort {
+    /// A participant's state.
+    type State: StateMessage;
+
+    /// Number of participants.
+    fn participants(&self) -> usize;
+
+    /// Name of a participant.
+    fn name(&self, place: usize) -> Name;
+
+    /// The state of a participant of this step and stage; sleeps until it is there. A message with another status than
+    /// ok is returned as it is: look at the status first.
+    ///
+    /// # Errors
+    /// The participant is gone, is silent for too long, or sent something else.
+    fn receive_state(&mut self, place: usize, expect: &Expect) -> Result<Self::State, LinkError>;
+
+    /// Appends the probe values of a participant on the state of this step to `values`; sleeps until they are there.
+    /// Nothing where it has no probes.
+    ///
+    /// # Errors
+    /// As for [`Self::receive_state`].
+    fn receive_probes(&mut self, place: usize, step: u64, values: &mut Vec<f64>) -> Result<(), LinkError>;
+
+    /// Answers a participant's state. Run id, protocol, schema and count of the header are filled in here.
+    ///
+    /// # Errors
+    /// The message does not fit, or nobody takes it.
+    fn send_forces(
+        &mut self,
+        place: usize,
+        header: &ForceHeader,
+        records: &[ForceRecord],
+    ) -> Result<(), LinkError>;
+
+    /// Where the time went so far.
+    fn times(&self) -> LinkTimes {
+        LinkTimes::default()
+    }
+}

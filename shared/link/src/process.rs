@@ -3,7 +3,7 @@
 use super::channel::{Channel, Incoming, Outgoing};
 use super::check::{Expect, Identities, StateCheck, verify_forces};
 use super::hub::{Hub, Presence};
-use super::{Claim, LinkConfig, LinkError, LinkTimes, Port, Transport, memory};
+use super::{Claim, LinkConfig, LinkError, LinkTimes, Port, StateMessage, Transport, memory};
 use halfstep_wire::Name;
 use halfstep_wire::protocol::{
     ForceHeader, ForceRecord, PROTOCOL, ProbeHeader, SCHEMA, StateHeader, StateRecord, status,

@@ -5,6 +5,7 @@
 //! | `frames/{fluid,solid}_NNNNNN.hdf`, `frames/{fluid,solid}.hdf.series` | [`FrameWriter`], one per process |
 //! | `probes.csv` | [`ProbeLog`] |
 //! | `run.json` | [`RunReport`] |
+//! | `checkpoint-a/`, `checkpoint-b/` | [`checkpoint`] |
 //! | `plot.png`, `contact.png` | [`draw_plot`], [`draw_contact`] |
 //!
 //! A file that a reader can see is whole: except for `probes.csv`, which grows line by line, every file is written under a
@@ -12,6 +13,7 @@
 //! leaves nothing half-written under a final name.
 
 pub mod atomic;
+pub mod checkpoint;
 #[cfg(feature = "pictures")]
 pub mod pictures;
 pub mod probes;

@@ -2,6 +2,7 @@
 
 use super::OutputError;
 use std::fs::File;
+use std::io::{Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 /// Header of the first column.
@@ -21,13 +22,46 @@ impl ProbeLog {
     /// Creates the file with the header `time [s]` and then `columns` (see [`halfstep_scene::Probe::columns`]).
     pub fn create(path: &Path, columns: &[String]) -> Result<Self, OutputError> {
         let file = File::create(path).map_err(OutputError::io("create", path))?;
-        let mut writer =
-            csv::WriterBuilder::new().has_headers(false).buffer_capacity(ROW_CAPACITY).from_writer(file);
+        let mut writer = Self::writer(file);
         writer
             .write_record(std::iter::once(TIME_COLUMN).chain(columns.iter().map(String::as_str)))
             .and_then(|()| Ok(writer.flush()?))
             .map_err(|e| OutputError::Io { action: "write", path: path.into(), error: e.into() })?;
         Ok(Self { path: path.into(), writer, columns: columns.len() })
+    }
+
+    fn writer(file: File) -> csv::Writer<File> {
+        csv::WriterBuilder::new().has_headers(false).buffer_capacity(ROW_CAPACITY).from_writer(file)
+    }
+
+    /// Opens the log of an interrupted run and forgets what was written after its first `length` bytes.
+    ///
+    /// # Errors
+    /// The file is shorter, or has other columns.
+    pub fn resume(path: &Path, columns: &[String], length: u64) -> Result<Self, OutputError> {
+        let table = read_probes(path)?;
+        if table.columns.first().map(String::as_str) != Some(TIME_COLUMN) || table.columns[1..] != *columns {
+            return Err(OutputError::malformed(path, "its columns are not the scene's probes"));
+        }
+        let mut file = File::options().write(true).open(path).map_err(OutputError::io("open", path))?;
+        let found = file.metadata().map_err(OutputError::io("read", path))?.len();
+        if found < length {
+            let reason = format!("it has {found} bytes, and {length} at the checkpoint: rows are lost");
+            return Err(OutputError::malformed(path, reason));
+        }
+        file.set_len(length).map_err(OutputError::io("shorten", path))?;
+        file.seek(SeekFrom::End(0)).map_err(OutputError::io("read", path))?;
+        Ok(Self { path: path.into(), writer: Self::writer(file), columns: columns.len() })
+    }
+
+    /// Bytes written so far, with the guarantee that they outlive a crash of the machine.
+    ///
+    /// # Errors
+    /// The disk refuses.
+    pub fn synchronise(&self) -> Result<u64, OutputError> {
+        let file = self.writer.get_ref();
+        file.sync_data().map_err(OutputError::io("synchronise", &self.path))?;
+        Ok(file.metadata().map_err(OutputError::io("read", &self.path))?.len())
     }
 
     /// Appends the values at `time` (s), in the order and the units of the columns. The row is in the file when this
@@ -116,6 +150,24 @@ mod tests {
         assert_eq!(table.column("tip.x").unwrap(), table.column("tip.x [m]").unwrap());
         assert_eq!(table.position("tip"), None);
         assert_eq!(table.times(), [0.0, 1e-9, 0.1 + 0.2]);
+    }
+
+    #[test]
+    fn a_resumed_log_forgets_later_rows_and_goes_on() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("probes.csv");
+        let columns = ["level [m]".to_string()];
+        let mut log = ProbeLog::create(&path, &columns).unwrap();
+        log.row(0.0, &[1.0]).unwrap();
+        let length = log.synchronise().unwrap();
+        log.row(0.1, &[2.0]).unwrap();
+        drop(log);
+        let mut log = ProbeLog::resume(&path, &columns, length).unwrap();
+        log.row(0.05, &[3.0]).unwrap();
+        assert_eq!(read_probes(&path).unwrap().rows, [[0.0, 1.0], [0.05, 3.0]]);
+        let message = ProbeLog::resume(&path, &columns, 1000).unwrap_err().to_string();
+        assert!(message.contains("rows are lost"), "{message}");
+        assert!(ProbeLog::resume(&path, &["other [m]".to_string()], length).is_err());
     }
 
     #[test]

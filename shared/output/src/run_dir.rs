@@ -1,26 +1,23 @@
 //! The folder of a run: what may be in it, and what of it may be removed.
 
-use super::{OutputError, series};
+use super::{OutputError, checkpoint, series};
 use halfstep_wire::Name;
 use std::path::{Path, PathBuf};
 
 /// Files that a run leaves in its folder, beside the frames.
-pub const FILES: [&str; 9] = [
-    "run.json",
-    "probes.csv",
-    "plot.png",
-    "contact.png",
-    "checkpoint-a.hdf",
-    "checkpoint-b.hdf",
-    "log.txt",
-    "scene.json",
-    "solid.env",
-];
+pub const FILES: [&str; 7] =
+    ["run.json", "probes.csv", "plot.png", "contact.png", "log.txt", "scene.json", "solid.env"];
 
 /// Whether a file in the run's folder is one that a run leaves.
 fn is_run_file(name: &str) -> bool {
     let between = |start: &str, end: &str| name.strip_prefix(start).is_some_and(|rest| rest.ends_with(end));
     FILES.contains(&name) || between("report-", ".json") || between("solid-", ".env")
+}
+
+/// Whether a file in the folder of a checkpoint is part of one.
+fn is_checkpoint_file(name: &str) -> bool {
+    let participant = name.strip_suffix(".hdf").is_some_and(|stem| stem.parse::<Name>().is_ok());
+    name == checkpoint::MANIFEST || name == checkpoint::COUPLER || participant
 }
 
 /// A folder that is ready for a run: nothing of an earlier one is in it.
@@ -41,13 +38,44 @@ impl RunDirectory {
         let is_frame = |name: &str| is_frame_file(name, &stems);
         let mut found = files(dir, is_run_file)?;
         found.extend(files(&frames, is_frame)?);
+        let checkpoints = checkpoint::FOLDERS.map(|name| dir.join(name));
+        for folder in checkpoints.iter().filter(|folder| folder.is_dir()) {
+            found.extend(files(folder, is_checkpoint_file)?);
+        }
         if let (Some(first), false) = (found.first(), force) {
             let found = first.strip_prefix(dir).unwrap_or(first).display().to_string();
             return Err(OutputError::Occupied { dir: dir.into(), found });
         }
         found.extend(files(dir, |name| is_temporary(name, is_run_file))?);
         found.extend(files(&frames, |name| is_temporary(name, is_frame))?);
+        for folder in checkpoints.iter().filter(|folder| folder.is_dir()) {
+            found.extend(files(folder, |name| is_temporary(name, is_checkpoint_file))?);
+        }
         for file in found {
+            std::fs::remove_file(&file).map_err(OutputError::io("remove", &file))?;
+        }
+        for folder in checkpoints {
+            // One that holds files of others stays.
+            let _ = std::fs::remove_dir(folder);
+        }
+        Ok(this)
+    }
+
+    /// The folder of an interrupted run, to go on from a state with this number of frames: later frames are forgotten.
+    ///
+    /// # Errors
+    /// The folder cannot be read or changed.
+    pub fn reopen(dir: &Path, frames: u64) -> Result<Self, OutputError> {
+        let this = Self { path: dir.into() };
+        let folder = this.frames();
+        std::fs::create_dir_all(&folder).map_err(OutputError::io("create", &folder))?;
+        let stems = stems(&folder)?;
+        for stem in &stems {
+            series::forget_from(&folder, stem, frames as u32)?;
+        }
+        let mut left = files(dir, |name| is_temporary(name, is_run_file))?;
+        left.extend(files(&folder, |name| is_temporary(name, |name| is_frame_file(name, &stems)))?);
+        for file in left {
             std::fs::remove_file(&file).map_err(OutputError::io("remove", &file))?;
         }
         Ok(this)
@@ -173,6 +201,23 @@ mod tests {
         kept.sort();
         assert_eq!(listing(dir.path()), kept);
         assert!(dir.path().join("frames/solid_000009.hdf").is_dir());
+    }
+
+    #[test]
+    fn checkpoints_of_an_earlier_run_are_refused_and_removed_with_force() {
+        let dir = tempfile::tempdir().unwrap();
+        let folder = dir.path().join("checkpoint-b");
+        fs::create_dir_all(&folder).unwrap();
+        for name in ["gate.hdf", "coupler.hdf", "manifest.json", ".gate.hdf.tmp"] {
+            fs::write(folder.join(name), name).unwrap();
+        }
+        assert!(matches!(RunDirectory::create(dir.path(), false), Err(OutputError::Occupied { .. })));
+        RunDirectory::create(dir.path(), true).unwrap();
+        assert!(!folder.exists());
+        fs::create_dir_all(&folder).unwrap();
+        fs::write(folder.join("notes.txt"), "mine").unwrap();
+        RunDirectory::create(dir.path(), true).unwrap();
+        assert!(folder.join("notes.txt").exists());
     }
 
     #[test]

@@ -16,6 +16,8 @@ pub struct RunReport {
     pub scene: serde_json::Value,
     /// Version of the program.
     pub version: String,
+    /// Where the run went on after interruptions, in their order.
+    pub resumed: Vec<Resumption>,
     /// Steps done.
     pub steps: u64,
     /// Simulated time reached, s.
@@ -42,6 +44,18 @@ pub struct RunReport {
     pub participants: Vec<ParticipantReport>,
     /// The effects, with the reason for each.
     pub effects: Vec<EffectReport>,
+}
+
+/// The state that a run went on from after an interruption.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Resumption {
+    /// Number of the checkpoint.
+    pub checkpoint: u64,
+    /// Step n.
+    pub step: u64,
+    /// Its time, s.
+    pub time: f64,
 }
 
 /// One of those who own particles.

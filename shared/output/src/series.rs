@@ -50,6 +50,33 @@ pub fn index_name(stem: &str) -> String {
     format!("{stem}{INDEX_SUFFIX}")
 }
 
+/// Removes the frames of `stem` from this number on, from its index first.
+pub(crate) fn forget_from(folder: &Path, stem: &str, number: u32) -> Result<(), OutputError> {
+    let index = folder.join(index_name(stem));
+    if !index.try_exists().map_err(OutputError::io("read", &index))? {
+        return Ok(());
+    }
+    let mut series = Series::read(&index)?;
+    let later: Vec<String> = series
+        .files
+        .iter()
+        .map(|entry| entry.name.clone())
+        .filter(|name| *name >= frame_name(stem, number))
+        .collect();
+    series.keep_below(&frame_name(stem, number));
+    series.write(&index)?;
+    for name in later {
+        let path = folder.join(name);
+        match std::fs::remove_file(&path) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                return Err(OutputError::io("remove", &path)(error));
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
 impl Series {
     /// Reads an index.
     pub fn read(path: &Path) -> Result<Self, OutputError> {
@@ -67,10 +94,15 @@ impl Series {
         Ok(Self::read(&index)?.files.into_iter().map(|entry| (folder.join(entry.name), entry.time)).collect())
     }
 
+    /// Keeps the first entries: those below a frame's name.
+    fn keep_below(&mut self, name: &str) {
+        self.files.retain(|entry| entry.name.as_str() < name);
+    }
+
     /// Announces a frame, in place of those at its number and later ones.
     pub(crate) fn announce(&mut self, name: String, time: f64) {
         // Numbers have a fixed width, so names sort like numbers.
-        self.files.retain(|entry| entry.name < name);
+        self.keep_below(&name);
         self.files.push(SeriesEntry { name, time });
     }
 

@@ -30,7 +30,7 @@ pub fn write(path: &Path, frame: &Frame) -> Result<(), OutputError> {
 
 /// Files without the library's locks. A file under its final name never changes, so nobody needs them; and a lock
 /// outlives its file for as long as a process that is just being started has inherited it.
-fn unlocked() -> FileBuilder {
+pub(crate) fn unlocked() -> FileBuilder {
     let mut builder = FileBuilder::new();
     builder.with_fapl(|access| access.file_locking(false));
     builder

@@ -2,6 +2,9 @@
 
 mod latency;
 pub mod lockstep;
+mod published;
 pub mod report;
 pub mod role;
 pub mod serve;
+
+pub use published::Published;

@@ -1,6 +1,7 @@
 //! The one half-step loop: drives the participants of a process through whatever carries their messages.
 
 use crate::latency::Latency;
+use crate::published::Published;
 use crate::report::Report;
 use crate::role::{CoverageError, Peer, Role};
 use halfstep_link::{Expect, LinkError, Port};
@@ -11,6 +12,7 @@ use halfstep_wire::failure::{Diverged, Quantity};
 use halfstep_wire::frame::{FrameSink, SinkError};
 use halfstep_wire::half_step::{HalfStep, Stage};
 use halfstep_wire::protocol::{ForceRecord, LAST_STAGE, StateHeader, StateRecord, ability, order, status};
+use halfstep_wire::state::{Group, State, StateError, StateSink};
 use std::time::{Duration, Instant};
 
 /// Why a process of participants ended before it was told to.
@@ -40,12 +42,37 @@ pub enum RoleError {
     Start(String),
 }
 
-/// A participant and where its frames go.
+/// A participant, where its frames and checkpoints go, and where it begins.
 pub struct Member {
     /// Owner of the particles.
     pub role: Box<dyn Role>,
     /// Without one no frames are written.
     pub frames: Option<Box<dyn FrameSink>>,
+    /// Without one no checkpoints are written.
+    pub checkpoints: Option<Box<dyn StateSink>>,
+    /// The state that it goes on from; `None`: the scene's first.
+    pub resumed: Option<Published>,
+}
+
+impl Member {
+    /// At the scene's first state, with nothing written.
+    pub fn new(role: Box<dyn Role>) -> Self {
+        Self { role, frames: None, checkpoints: None, resumed: None }
+    }
+
+    /// Goes on from a checkpoint.
+    ///
+    /// # Errors
+    /// The checkpoint is not one of this participant in this scene.
+    pub fn resume(&mut self, checkpoint: &Group) -> Result<(), StateError> {
+        let mut published = Published::default();
+        published.load(checkpoint)?;
+        let own = || StateError::contradiction("this participant cannot be saved");
+        let role = checkpoint.groups.get("role").ok_or(StateError::Missing { field: "role".into() })?;
+        self.role.state().ok_or_else(own)?.load(role)?;
+        self.resumed = Some(published);
+        Ok(())
+    }
 }
 
 /// Takes the report of a participant that has ended, before its last message goes out.
@@ -58,39 +85,24 @@ pub type Deliver<'a> = &'a mut dyn FnMut(&Report) -> Result<(), SinkError>;
 /// Whatever ended it; the others were told where that was still possible, and the state that diverged was written as
 /// the last frame.
 pub fn drive(members: Vec<Member>, port: &mut dyn Port, deliver: Deliver<'_>) -> Result<(), RoleError> {
-    let peers = |k: usize| vec![Peer::default(); port.peers(k).len()];
-    let tracks = members.into_iter().enumerate().map(|(k, member)| Track::new(member, peers(k)));
-    let mut run = Drive { tracks: tracks.collect(), half_step: HalfStep::begin(0, 0.0), at: 0.0 };
-    let result = run.half_steps(port);
-    if let Err((k, error)) = &result {
-        run.report_failure(port, *k, error);
-        if let RoleError::Diverged(_) | RoleError::PeerEnded { .. } = error {
-            run.last_frames();
-        }
-    }
-    let written: Vec<Result<u32, SinkError>> = run.tracks.iter_mut().map(Track::finish).collect();
-    result.map_err(|(_, error)| error)?;
-    for (k, frames_safe) in written.into_iter().enumerate() {
-        // The last message says what is on disk.
-        let track = &mut run.tracks[k];
-        let frames_safe = frames_safe.map_err(RoleError::Output)?;
-        deliver(&track.report(port)).map_err(RoleError::Output)?;
-        let header = StateHeader {
-            status: status::FINISHED,
-            stage: LAST_STAGE,
-            frames_safe,
-            state_hash: track.role.state_hash(),
-            ..track.header
-        };
-        port.send_state(k, &header, &[])?;
-    }
-    Ok(())
+    let peers: Vec<usize> = (0..members.len()).map(|k| port.peers(k).len()).collect();
+    let mut run = Lockstep::new(members, &peers)?;
+    while run.half_step(port)? {}
+    run.end(port, deliver)
+}
+
+/// What a participant has on disk at its end.
+struct Written {
+    frames_safe: u32,
+    checkpoint_safe: u32,
 }
 
 /// A participant on its way.
 struct Track {
     role: Box<dyn Role>,
     frames: Option<Box<dyn FrameSink>>,
+    checkpoints: Option<Box<dyn StateSink>>,
+    resumed: Option<Published>,
     own: Vec<StateRecord>,
     peers: Vec<Peer>,
     /// The peers' states of this half-step are there.
@@ -114,6 +126,8 @@ impl Track {
         Self {
             role: member.role,
             frames: member.frames,
+            checkpoints: member.checkpoints,
+            resumed: member.resumed,
             own: Vec::new(),
             peers,
             have_peers: false,
@@ -140,17 +154,32 @@ impl Track {
             displacement: self.role.displacement(),
             sub_steps: self.role.sub_steps(),
             frames_safe: self.frames.as_ref().map_or(0, |frames| frames.safe()),
+            checkpoint_safe: self.checkpoints.as_ref().map_or(0, |checkpoints| checkpoints.safe() as u32),
             particles: self.role.particles(),
-            abilities: ability::PROBES | ability::WALLS_AND_CONTACTS,
+            abilities: self.abilities(),
             ..half_step.state_header()
         };
         if half_step.stage == Stage::First {
             header.dt_limit = self.role.dt_limit();
             header.audit = self.role.audit();
         }
+        if let Some(published) = self.resumed.take() {
+            // What the sums of the interrupted half-step changed afterwards does not belong to it.
+            header = published.header(header);
+        }
         self.header = header;
         self.compute += start.elapsed();
         self.sent = Instant::now();
+    }
+
+    fn publish_to(&mut self, port: &mut dyn Port, k: usize, half_step: &HalfStep) -> Result<(), RoleError> {
+        self.publish(half_step);
+        Ok(port.send_state(k, &self.header, &self.own)?)
+    }
+
+    fn abilities(&mut self) -> u32 {
+        let saves = self.checkpoints.is_some() && self.role.state().is_some();
+        ability::PROBES | ability::WALLS_AND_CONTACTS | if saves { ability::CHECKPOINTS } else { 0 }
     }
 
     fn own_sums(&mut self) {
@@ -219,8 +248,23 @@ impl Track {
         Ok(())
     }
 
-    fn finish(&mut self) -> Result<u32, SinkError> {
-        self.frames.take().map_or(Ok(0), |frames| frames.finish())
+    /// Hands over the state last published.
+    fn write_checkpoint(&mut self, number: u64) -> Result<(), SinkError> {
+        let (Some(checkpoints), Some(state)) = (&mut self.checkpoints, self.role.state()) else {
+            return Ok(());
+        };
+        let start = Instant::now();
+        let mut group = Published::of(&self.header).save();
+        group.groups.insert("role".into(), state.save());
+        checkpoints.submit(number, group)?;
+        self.output += start.elapsed();
+        Ok(())
+    }
+
+    fn finish(&mut self) -> Result<Written, SinkError> {
+        let frames_safe = self.frames.take().map_or(Ok(0), |frames| frames.finish());
+        let checkpoint_safe = self.checkpoints.take().map_or(Ok(0), |checkpoints| checkpoints.finish());
+        Ok(Written { frames_safe: frames_safe?, checkpoint_safe: checkpoint_safe? as u32 })
     }
 
     fn report(&mut self, port: &dyn Port) -> Report {
@@ -246,27 +290,99 @@ impl Track {
 /// Place of the participant that failed, and why.
 type Failed = (usize, RoleError);
 
-struct Drive {
+/// Participants in lock-step, driven half-step by half-step.
+pub struct Lockstep {
     tracks: Vec<Track>,
     half_step: HalfStep,
     /// Time of the participants' own states, s.
     at: f64,
+    begun: bool,
 }
 
-impl Drive {
-    /// All half-steps until the order to stop.
-    fn half_steps(&mut self, port: &mut dyn Port) -> Result<(), Failed> {
-        let expect = Expect::of(&self.half_step);
+impl Lockstep {
+    /// At the state that the participants begin with; `peers` are the numbers of their peers.
+    ///
+    /// # Errors
+    /// They begin at different steps.
+    pub fn new(members: Vec<Member>, peers: &[usize]) -> Result<Self, RoleError> {
+        let peers = |k: usize| vec![Peer::default(); peers.get(k).copied().unwrap_or(0)];
+        let tracks = members.into_iter().enumerate().map(|(k, member)| Track::new(member, peers(k)));
+        let tracks: Vec<Track> = tracks.collect();
+        let begins = |track: &Track| track.resumed.as_ref().map_or((0, 0.0), |from| (from.step, from.time));
+        let (step, time) = tracks.first().map_or((0, 0.0), begins);
+        if tracks.iter().any(|track| begins(track) != (step, time)) {
+            return Err(RoleError::Start("the participants' checkpoints are of different steps".into()));
+        }
+        Ok(Self { tracks, half_step: HalfStep::begin(step, time), at: time, begun: false })
+    }
+
+    /// The owners of particles, in the order of the members.
+    pub fn roles(&self) -> impl Iterator<Item = &dyn Role> {
+        self.tracks.iter().map(|track| &*track.role)
+    }
+
+    /// Time of the participants' own states, s.
+    pub fn time(&self) -> f64 {
+        self.at
+    }
+
+    /// One half-step; returns whether the run goes on.
+    ///
+    /// # Errors
+    /// As for [`drive`]; nothing can be done with the participants then.
+    pub fn half_step(&mut self, port: &mut dyn Port) -> Result<bool, RoleError> {
+        let result = self.exchange_and_advance(port);
+        result.map_err(|(k, error)| {
+            self.report_failure(port, k, &error);
+            if let RoleError::Diverged(_) | RoleError::PeerEnded { .. } = error {
+                self.last_frames();
+            }
+            let written = self.tracks.iter_mut().map(Track::finish).find_map(Result::err);
+            if let Some(error) = written {
+                tracing::warn!("what was written last is not safe: {error}");
+            }
+            error
+        })
+    }
+
+    /// Ends a run that was told to stop: everything is on disk, then reports and last messages go out.
+    ///
+    /// # Errors
+    /// Something could not be written, or a message not be sent.
+    pub fn end(&mut self, port: &mut dyn Port, deliver: Deliver<'_>) -> Result<(), RoleError> {
+        let written: Vec<Result<Written, SinkError>> = self.tracks.iter_mut().map(Track::finish).collect();
+        for (k, written) in written.into_iter().enumerate() {
+            // The last message says what is on disk.
+            let track = &mut self.tracks[k];
+            let Written { frames_safe, checkpoint_safe } = written.map_err(RoleError::Output)?;
+            deliver(&track.report(port)).map_err(RoleError::Output)?;
+            let header = StateHeader {
+                status: status::FINISHED,
+                stage: LAST_STAGE,
+                frames_safe,
+                checkpoint_safe,
+                state_hash: track.role.state_hash(),
+                ..track.header
+            };
+            port.send_state(k, &header, &[])?;
+        }
+        Ok(())
+    }
+
+    /// The fluid needs the solids' first states to choose what it publishes.
+    fn begin(&mut self, port: &mut dyn Port) -> Result<(), Failed> {
+        let half_step = self.half_step;
+        let fluid = |track: &Track| track.role.phase() == Phase::Fluid;
+        self.each(|k, track| if fluid(track) { Ok(()) } else { track.publish_to(port, k, &half_step) })?;
+        let expect = Expect::of(&half_step);
         self.each(|k, track| {
-            // The fluid needs the solids' first states to choose what it publishes.
-            if track.role.phase() == Phase::Fluid {
+            if fluid(track) {
                 track.receive_peers(port, k, &expect)?;
                 track.have_peers = true;
+                track.publish_to(port, k, &half_step)?;
             }
             Ok(())
-        })?;
-        while self.half_step(port)? {}
-        Ok(())
+        })
     }
 
     /// Does a part of the half-step for one participant after the other.
@@ -278,14 +394,13 @@ impl Drive {
         all.try_for_each(|(k, track)| part(k, track).map_err(|error| (k, error)))
     }
 
-    /// One half-step; returns whether the run goes on.
-    fn half_step(&mut self, port: &mut dyn Port) -> Result<bool, Failed> {
+    fn exchange_and_advance(&mut self, port: &mut dyn Port) -> Result<bool, Failed> {
         let half_step = self.half_step;
         let expect = Expect::of(&half_step);
-        self.each(|k, track| {
-            track.publish(&half_step);
-            Ok(port.send_state(k, &track.header, &track.own)?)
-        })?;
+        match std::mem::replace(&mut self.begun, true) {
+            true => self.each(|k, track| track.publish_to(port, k, &half_step))?,
+            false => self.begin(port)?,
+        }
         self.tracks.iter_mut().for_each(Track::own_sums);
         self.each(|k, track| {
             if !std::mem::take(&mut track.have_peers) {
@@ -307,6 +422,9 @@ impl Drive {
                 track.probes.clear();
                 track.role.probes(&mut track.probes);
                 port.send_probes(k, told.step, told.time, &track.probes)?;
+            }
+            if answer.order & order::WRITE_CHECKPOINT != 0 {
+                track.write_checkpoint(answer.checkpoint).map_err(RoleError::Output)?;
             }
             // All participants are stopped at the same state.
             stopped = answer.order & order::STOP != 0;

@@ -7,6 +7,7 @@ use halfstep_wire::failure::Diverged;
 use halfstep_wire::frame::Frame;
 use halfstep_wire::half_step::HalfStep;
 use halfstep_wire::protocol::{Audit, ForceRecord, StateRecord};
+use halfstep_wire::state::State;
 use std::time::Instant;
 
 /// A peer's state as last received.
@@ -99,6 +100,10 @@ pub trait Role: Send {
     }
     /// Which compiled composition of pair effects runs, where there are several.
     fn composition(&self) -> Option<&str> {
+        None
+    }
+    /// What it keeps over an interruption; `None`: it cannot be saved.
+    fn state(&mut self) -> Option<&mut dyn State> {
         None
     }
     /// What each effect costs, measured on the present state, which does not change. For the end of a run.

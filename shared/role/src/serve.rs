@@ -14,6 +14,9 @@ use std::sync::atomic::AtomicBool;
 pub const SCENE_VARIABLE: &str = "HALFSTEP_SCENE";
 /// Environment variable with the run's folder; without it neither frames nor reports are written.
 pub const FOLDER_VARIABLE: &str = "HALFSTEP_OUT";
+/// Environment variable with the folder of the checkpoint that a process's participants go on from; without it they begin
+/// as the scene does.
+pub const CHECKPOINT_VARIABLE: &str = "HALFSTEP_CHECKPOINT";
 /// Environment variable with the number of worker threads.
 pub const THREADS_VARIABLE: &str = "HALFSTEP_THREADS";
 
@@ -37,14 +40,14 @@ pub fn serve<S: Transport>(
 }
 
 /// Serves the participants of this process: what the `main` of such a process calls. `build` makes them from the scene,
-/// given their places among the scene's participants and the run's folder.
+/// given their places among the scene's participants, the run's folder, and that of the checkpoint that they go on from.
 ///
 /// # Errors
 /// The environment is not that of a run, or the run failed.
 pub fn serve_process(
     process: Name,
     abort: Arc<AtomicBool>,
-    build: impl FnOnce(&Scene, &[usize], Option<&Path>) -> Result<Vec<Member>, RoleError> + Send,
+    build: impl FnOnce(&Scene, &[usize], Option<&Path>, Option<&Path>) -> Result<Vec<Member>, RoleError> + Send,
     deliver: impl Fn(&Path, &Report) -> Result<(), SinkError> + Send,
 ) -> Result<(), RoleError> {
     let start = |reason: String| RoleError::Start(reason);
@@ -57,8 +60,9 @@ pub fn serve_process(
     let threads = variable(THREADS_VARIABLE).and_then(|v| v.to_str()?.parse().ok()).unwrap_or(1);
     let folder = variable(FOLDER_VARIABLE);
     let folder = folder.as_deref().map(Path::new);
+    let checkpoint = variable(CHECKPOINT_VARIABLE);
     on_threads(threads, move || {
-        let members = build(&scene, &config.members(process), folder)?;
+        let members = build(&scene, &config.members(process), folder, checkpoint.as_deref().map(Path::new))?;
         let mut deliver = |report: &Report| folder.map_or(Ok(()), |folder| deliver(folder, report));
         serve::<Processes>(members, &config, process, abort, &mut deliver)
     })?

@@ -3,11 +3,13 @@
 use super::document::Node;
 use super::error::{Report, listed, nearest};
 use super::*;
+use crate::dispatch;
 use crate::geometry::Plate;
 use crate::geometry::fewest_rows;
 
 /// Frames, rows and steps that no run can be meant to have.
 const MAX_FRAMES: f64 = 1e5;
+const MAX_CHECKPOINTS: f64 = 1e5;
 const MAX_ROWS: f64 = 1e7;
 const MAX_STEPS: f64 = 1e9;
 
@@ -29,7 +31,6 @@ impl Check<'_> {
         self.thin_plates();
         self.interface();
         self.times();
-        self.not_yet();
         self.probes();
         self.references();
         self.metrics();
@@ -148,8 +149,10 @@ impl Check<'_> {
         let Some(fewest) = fewest_rows(self.scene) else { return };
         for (index, shape) in self.scene.shapes.iter().enumerate() {
             let key = self.shape_key(index);
-            let Some(plate) = Plate::<2>::of(self.scene, shape) else { continue };
-            if plate.rows >= fewest || self.report.has(&key) {
+            let rows =
+                dispatch!(self.scene.dimension, D => Plate::<D>::of(self.scene, shape).map(|p| p.rows));
+            let Some(rows) = rows.flatten().filter(|rows| *rows < fewest) else { continue };
+            if self.report.has(&key) {
                 continue;
             }
             let place = match shape.geometry {
@@ -160,7 +163,7 @@ impl Check<'_> {
                 ["resolution", "smoothing_ratio", "numerics.lattice", "interface.treatment", "preset"];
             let corners = [format!("{place}.min"), format!("{place}.max")];
             let others: Vec<&str> = corners.iter().map(String::as_str).chain(others).collect();
-            let rows = plate.rows.round();
+            let rows = rows.round();
             let reason = format!(
                 "has {rows} of at least {fewest} particles across: fluid on one face reaches the other through it \
                  (2h) and leaks; effects.thin-plate-screen = \"off\" lets it pass"
@@ -204,20 +207,13 @@ impl Check<'_> {
             ("time_step", step, MAX_STEPS, "steps"),
             ("output.frame_interval", output.frame_interval, MAX_FRAMES, "frames"),
             ("output.probe_interval", output.probe_interval, MAX_ROWS, "rows in probes.csv"),
+            ("output.checkpoint_interval", output.checkpoint_interval, MAX_CHECKPOINTS, "checkpoints"),
         ] {
             let number = end / interval;
             if interval > 0.0 && number > most && !self.report.has(key) {
                 let reason = format!("would make {number:.0} {what} until {end} s; at most {most:.0}");
                 self.report.among(self.root, key, &["end_time", "preset"], reason);
             }
-        }
-    }
-
-    /// What the scene language has and the program does not do yet.
-    fn not_yet(&self) {
-        let key = "output.checkpoint_interval";
-        if self.scene.output.checkpoint_interval > 0.0 && !self.report.has(key) {
-            self.report.among(self.root, key, &[], "checkpoints cannot be written yet; leave it at 0");
         }
     }
 

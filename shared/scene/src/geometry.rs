@@ -14,7 +14,7 @@ mod points;
 #[cfg(test)]
 mod tests;
 
-use crate::{Block, CantileverMode, Geometry, Lattice, Phase, Scene, Shape};
+use crate::{Block, CantileverMode, Geometry, Lattice, Phase, Scene, Shape, dispatch};
 pub use nearest::nearest;
 use occupied::Occupied;
 pub use plate::Plate;
@@ -234,10 +234,7 @@ pub(crate) fn distance(geometry: &Geometry, at: &[f64; 3]) -> f64 {
 
 /// Whether each clamp of a solid shape holds one of its particles.
 pub(crate) fn clamp_catches(scene: &Scene, shape: &Shape) -> Vec<bool> {
-    match scene.dimension {
-        2 => catches::<2>(scene, shape),
-        _ => catches::<3>(scene, shape),
-    }
+    dispatch!(scene.dimension, D => catches::<D>(scene, shape)).unwrap_or_default()
 }
 
 fn catches<const D: usize>(scene: &Scene, shape: &Shape) -> Vec<bool> {

@@ -9,6 +9,7 @@ mod check;
 mod check_metric;
 mod check_probe;
 mod check_solid;
+mod dimension;
 mod document;
 mod effect;
 mod error;
@@ -183,7 +184,7 @@ pub struct Output {
     pub frame_interval: f64,
     /// Time between rows of `probes.csv`, s.
     pub probe_interval: f64,
-    /// Time between checkpoints, s; 0 writes none.
+    /// Simulated time between checkpoints, s; 0: one each ten minutes of computation.
     pub checkpoint_interval: f64,
 }
 

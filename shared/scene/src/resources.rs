@@ -3,6 +3,7 @@
 use super::document::Node;
 use super::error::Report;
 use super::*;
+use crate::dispatch;
 use crate::geometry::{self, Counts};
 
 /// Memory that a run needs for a particle, both stages and its neighbours, bytes.
@@ -89,10 +90,11 @@ pub(super) fn check_clamps(scene: &Scene, root: &Node, report: &Report) {
 
 /// Refuses a solid without particles, where there are several: earlier shapes may lie over all of its shapes.
 pub(super) fn check_solids(scene: &Scene, root: &Node, report: &Report) {
-    if scene.solids.len() < 2 || scene.dimension != 2 {
+    if scene.solids.len() < 2 {
         return;
     }
-    let counts = geometry::layout::<2>(scene).solid_counts(scene);
+    let counts = dispatch!(scene.dimension, D => geometry::layout::<D>(scene).solid_counts(scene));
+    let Some(counts) = counts else { return };
     for (k, solid) in scene.solids.iter().enumerate() {
         if let (0, Some(shape)) = (counts[k], scene.shapes.iter().find(|shape| shape.solid == Some(k))) {
             let key = format!("shape.{}", shape.name);

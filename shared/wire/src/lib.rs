@@ -5,6 +5,7 @@ pub mod frame;
 pub mod half_step;
 mod name;
 pub mod protocol;
+pub mod state;
 
 pub use name::{BadName, Name};
 

@@ -163,8 +163,8 @@ pub struct StateHeader {
     pub frames_safe: u32,
     /// What the sender does besides exchanging states, see [`ability`]; read from its first message.
     pub abilities: u32,
-    /// Zero.
-    pub reserved: u32,
+    /// Number of the last checkpoint on disk; 0: none.
+    pub checkpoint_safe: u32,
     /// What diverged (status diverged only).
     pub failure: Failure,
     /// Sums over all own particles (stage 0).
@@ -270,7 +270,7 @@ pub const LAYOUT: &str = concat!(
     "deviatoric_stress:f64[6]};",
     "ForceRecord{id:u32,flags:u32,cross_viscosity:f64[3],stress_force:f64[3]};",
     "StateHeader{run_id:u64,schema:u64,protocol:u32,status:u32,step:u64,stage:u32,count:u32,epoch:u64,time:f64,",
-    "dt:f64,dt_limit:f64,displacement:f64,sub_steps:u32,frames_safe:u32,abilities:u32,reserved:u32,",
+    "dt:f64,dt_limit:f64,displacement:f64,sub_steps:u32,frames_safe:u32,abilities:u32,checkpoint_safe:u32,",
     "failure:{participant:u32,quantity:u32,particle:u32,reserved:u32,value:f64,position:f64[3]},",
     "audit:{momentum:f64[3],kinetic_energy:f64,mass:f64,density_error:f64,gap:f64,stored_energy:f64},",
     "state_hash:u64,particles:u64};",

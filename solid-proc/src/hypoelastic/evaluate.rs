@@ -63,9 +63,9 @@ impl<const D: usize> Hypoelastic<D> {
             linear: self.material.artificial_viscosity.linear * self.material.sound_speed(),
             quadratic: self.material.artificial_viscosity.quadratic,
         };
-        pair::pass(self.isa, &law, &self.list, &mut sums);
+        pair::pass(self.isa, &law, &self.neighbours, &mut sums);
         self.sums = sums;
-        self.pair_evaluations += (self.list.entries() * LANES) as u64;
+        self.pair_evaluations += (self.neighbours.entries() * LANES) as u64;
     }
 
     fn sums<K: Kernel<D>>(&mut self, kernel: K) {

@@ -9,6 +9,7 @@ mod evaluate;
 mod gradient;
 mod model;
 mod rates;
+mod state;
 mod stress_rate;
 #[cfg(test)]
 mod tests;

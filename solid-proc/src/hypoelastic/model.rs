@@ -17,6 +17,7 @@ use halfstep_sph::lane::Isa;
 use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_wire::half_step::{HalfStep, Stage};
 use halfstep_wire::protocol::StateRecord;
+use halfstep_wire::state::StateError;
 use halfstep_wire::wire_component;
 
 const SKIN: f64 = 0.3;
@@ -46,21 +47,22 @@ pub struct Hypoelastic<const D: usize> {
     /// Slot of a particle.
     pub(super) slot_of: Vec<u32>,
     pub(super) now: State<D>,
-    at_n: State<D>,
+    pub(super) at_n: State<D>,
     /// State at n while sub-steps are under way.
-    step_start: State<D>,
+    pub(super) step_start: State<D>,
     pub(super) rates: Rates<D>,
     /// Velocity shown to the fluid: the mean over the sub-steps of a stage.
-    shown_velocity: [Vec<f64>; D],
+    pub(super) shown_velocity: [Vec<f64>; D],
     /// Positions at the start of a stage, by particle number.
     stage_start: Vec<[f64; D]>,
     courant: f64,
     pub(super) pressure: Vec<f64>,
     pub(super) sources: Vec<Source<D>>,
     pub(super) artificial: Vec<[[f64; D]; D]>,
-    reference: [Vec<f64>; D],
+    /// Position at the last sort, m.
+    pub(super) reference: [Vec<f64>; D],
     rows: Rows<D>,
-    pub(super) list: ClusterList,
+    pub(super) neighbours: ClusterList,
     pub(super) sums: Vec<SolidSum<D>>,
     pub(super) walls: Option<Walls<D>>,
     pub(super) pair_evaluations: u64,
@@ -118,7 +120,7 @@ impl<const D: usize> Hypoelastic<D> {
             sources: Vec::new(),
             artificial: Vec::new(),
             rows: Rows::default(),
-            list: ClusterList::default(),
+            neighbours: ClusterList::default(),
             sums: Vec::new(),
             walls,
             pair_evaluations: 0,
@@ -129,8 +131,27 @@ impl<const D: usize> Hypoelastic<D> {
         Some(model)
     }
 
-    pub(super) fn sort(&mut self) {
+    /// The rows as they were at the last sort.
+    pub(super) fn sort_rows_at_reference(&mut self) -> Result<(), StateError> {
+        let (low, high) = self.domain;
+        self.rows.sort(&self.reference, &self.id, 2.0 * self.resolution, low, high);
+        match self.rows.slots() == self.id.len() {
+            true => Ok(()),
+            false => Err(StateError::contradiction("the solid's rows are not where they were")),
+        }
+    }
+
+    /// Lists who is near whom, from the positions at the last sort.
+    pub(super) fn list(&mut self) {
         let reach = 2.0 * self.smoothing_length + self.skin;
+        self.neighbours.build(&self.reference, &self.reference, &self.rows, reach);
+        fit(&mut self.sums, self.neighbours.clusters(), SolidSum::default());
+        if let Some(walls) = &mut self.walls {
+            walls.relist(&self.reference, &self.rows, reach);
+        }
+    }
+
+    pub(super) fn sort(&mut self) {
         // Rows two spacings high: four neighbours in a row are a square.
         self.rows.sort(&self.now.position, &self.id, 2.0 * self.resolution, self.domain.0, self.domain.1);
         self.now.permute(&mut self.rows);
@@ -155,11 +176,7 @@ impl<const D: usize> Hypoelastic<D> {
             fit(&mut self.artificial, slots, [[0.0; D]; D]);
         }
         self.rates.resize(slots);
-        self.list.build(&self.now.position, &self.now.position, &self.rows, reach);
-        fit(&mut self.sums, self.list.clusters(), SolidSum::default());
-        if let Some(walls) = &mut self.walls {
-            walls.relist(&self.now.position, &self.rows, reach);
-        }
+        self.list();
     }
 
     pub(super) fn moved_too_far(&self) -> bool {
@@ -308,6 +325,10 @@ impl<const D: usize> SolidModel<D> for Hypoelastic<D> {
                 self.sources[s].volume * (self.pressure[s].powi(2) / (2.0 * k) + norm / (4.0 * g))
             })
             .sum()
+    }
+
+    fn state(&mut self) -> Option<&mut dyn halfstep_wire::state::State> {
+        Some(self)
     }
 
     fn costs(&mut self) -> Costs {

@@ -17,20 +17,21 @@ use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::{Arch, Isa, LANES, Lane};
 use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_sph::pair::{self, PairLaw, distance};
+use halfstep_wire::state::StateError;
 
 /// Distance, in smoothing lengths of the interface, that lists hold beyond reach.
 const SKIN: f64 = 0.3;
 
 /// Particles that may touch something, sorted by where they are now.
 pub(super) struct Contact<const D: usize> {
-    id: Vec<u32>,
+    pub(super) id: Vec<u32>,
     position: Vectors<D>,
     velocity: Vectors<D>,
     density: Vec<f64>,
     pressure: Vec<f64>,
     body: Vec<f64>,
     /// Positions at the last sort.
-    listed: Vectors<D>,
+    pub(super) listed: Vectors<D>,
     rows: Rows<D>,
     list: ClusterList,
     sums: Vec<Repulsion<D>>,
@@ -107,11 +108,36 @@ impl<const D: usize> Contact<D> {
         self.smoothing_length
     }
 
-    fn sort(&mut self) {
-        let skin = SKIN * self.smoothing_length;
-        let wall_reach = 2.0 * self.smoothing_length + skin;
-        let height = if self.walls.is_some() { wall_reach } else { self.spacing + skin };
+    /// Distance that lists hold beyond reach, m.
+    fn skin(&self) -> f64 {
+        SKIN * self.smoothing_length
+    }
+
+    /// Reach of the lists of walls, m.
+    fn wall_reach(&self) -> f64 {
+        2.0 * self.smoothing_length + self.skin()
+    }
+
+    /// Sorts the rows by the present positions.
+    fn sort_rows(&mut self) {
+        let height = if self.walls.is_some() { self.wall_reach() } else { self.spacing + self.skin() };
         self.rows.sort(&self.position, &self.id, height, self.domain.0, self.domain.1);
+    }
+
+    /// Lists who is near whom, from the positions at the sort.
+    fn list(&mut self) {
+        let (reach, wall_reach) = (self.spacing + self.skin(), self.wall_reach());
+        if self.several {
+            self.list.build(&self.listed, &self.listed, &self.rows, reach);
+            fit(&mut self.sums, self.list.clusters(), Repulsion::default());
+        }
+        if let Some(walls) = &mut self.walls {
+            walls.relist(&self.listed, &self.rows, wall_reach);
+        }
+    }
+
+    fn sort(&mut self) {
+        self.sort_rows();
         for d in 0..D {
             self.rows.permute(&mut self.position[d]);
             self.rows.permute(&mut self.velocity[d]);
@@ -123,13 +149,50 @@ impl<const D: usize> Contact<D> {
         for d in 0..D {
             copy(&mut self.listed[d], &self.position[d]);
         }
-        if self.several {
-            self.list.build(&self.position, &self.position, &self.rows, self.spacing + skin);
-            fit(&mut self.sums, self.list.clusters(), Repulsion::default());
+        self.list();
+    }
+
+    /// The body of each particle that may touch something, by particle number.
+    pub(super) fn bodies(&self) -> Vec<(u32, f64)> {
+        let slots = self.id.iter().zip(&self.body).filter(|&(&id, _)| id != PADDING);
+        let mut bodies: Vec<(u32, f64)> = slots.map(|(&id, &body)| (id, body)).collect();
+        bodies.sort_unstable_by_key(|&(id, _)| id);
+        bodies
+    }
+
+    /// Fits the columns to the order of `id` and `listed`, both as saved; `bodies` are those of the scene.
+    pub(super) fn reorder(&mut self, bodies: &[(u32, f64)]) -> Result<(), StateError> {
+        let n = self.id.len();
+        self.body = vec![0.0; n];
+        let mut found = 0;
+        for (slot, id) in self.id.iter().enumerate().filter(|&(_, &id)| id != PADDING) {
+            let place = bodies.binary_search_by_key(id, |&(id, _)| id);
+            let place =
+                place.map_err(|_| StateError::contradiction("a contact of a particle that has none"))?;
+            self.body[slot] = bodies[place].1;
+            found += 1;
         }
-        if let Some(walls) = &mut self.walls {
-            walls.relist(&self.position, &self.rows, wall_reach);
+        let mut ids: Vec<u32> = self.id.iter().copied().filter(|&id| id != PADDING).collect();
+        ids.sort_unstable();
+        ids.dedup();
+        if found != bodies.len() || ids.len() != found || !n.is_multiple_of(LANES) {
+            return Err(StateError::contradiction("contacts of other particles than the scene's"));
         }
+        self.position = self.listed.clone();
+        self.velocity = vectors(n);
+        self.density = vec![0.0; n];
+        self.pressure = vec![0.0; n];
+        Ok(())
+    }
+
+    /// Rows and lists as they were at the last sort.
+    pub(super) fn list_at_sort(&mut self) -> Result<(), StateError> {
+        self.sort_rows();
+        if self.rows.slots() != self.id.len() {
+            return Err(StateError::contradiction("the rows of contacts are not where they were"));
+        }
+        self.list();
+        Ok(())
     }
 
     /// There are contacts between bodies.

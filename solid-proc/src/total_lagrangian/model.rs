@@ -84,7 +84,7 @@ pub struct TotalLagrangian<const D: usize> {
     /// Displacements at the start of a stage.
     stage_start: Vectors<D>,
     /// Velocity shown to the fluid: the mean over the sub-steps of a stage.
-    shown_velocity: Vectors<D>,
+    pub(super) shown_velocity: Vectors<D>,
     /// Loads and gravity, m/s².
     load: Vectors<D>,
     /// F.
@@ -255,7 +255,7 @@ impl<const D: usize> TotalLagrangian<D> {
     }
 
     /// Copies the present state to the columns by particle number.
-    fn show_particles(&mut self) {
+    pub(super) fn show_particles(&mut self) {
         for p in 0..self.slot_of.len() {
             let slot = self.slot_of[p] as usize;
             self.shown.position[p] = self.position_at(slot);
@@ -354,6 +354,10 @@ impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {
 
     fn strain_energy(&self) -> f64 {
         self.energy()
+    }
+
+    fn state(&mut self) -> Option<&mut dyn halfstep_wire::state::State> {
+        Some(self)
     }
 
     fn costs(&mut self) -> Costs {

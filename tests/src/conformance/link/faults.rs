@@ -4,7 +4,7 @@ use super::Run;
 use super::end::End;
 use super::play;
 use super::raw::{RawCoupler, RawPhase, identified, identified_force};
-use halfstep_link::{CouplerLink, Expect, LinkError, Transport};
+use halfstep_link::{CouplerLink, CouplerPort, Expect, LinkError, Transport};
 use halfstep_wire::Name;
 use halfstep_wire::half_step::Stage::{First, Second};
 use halfstep_wire::protocol::{ForceHeader, ForceRecord, StateHeader, StateRecord, order};

@@ -1,7 +1,9 @@
 //! A run whose every value is known beforehand, so that each role can check all it receives.
 
 use super::end::End;
-use halfstep_link::{CouplerLink, Expect, LinkConfig, LinkError, LinkTimes, Transport};
+use halfstep_link::{
+    CouplerLink, CouplerPort, Expect, LinkConfig, LinkError, LinkTimes, StateMessage, Transport,
+};
 use halfstep_wire::Name;
 use halfstep_wire::half_step::{HalfStep, Stage};
 use halfstep_wire::protocol::{

@@ -1,0 +1,384 @@
+//! A simulation as a value of a program: put together, stepped, looked into.
+
+use crate::checkpoint::Checkpoint;
+use crate::error::Error;
+use crate::options::{Launcher, RunOptions, known_solid};
+use crate::participants::{report_outcome, report_participants};
+use crate::run;
+use halfstep_coupling::checkpoints::Checkpoints;
+use halfstep_coupling::clock::Clock;
+use halfstep_coupling::couple::Course;
+use halfstep_coupling::error::RunError;
+use halfstep_coupling::local::LocalRun;
+use halfstep_coupling::recorder::Recorder;
+use halfstep_coupling::roles;
+use halfstep_fluid::Fluid;
+use halfstep_fluid::effects::FluidEffect;
+use halfstep_output::{Frame, ProbeLog, RunDirectory, RunReport};
+use halfstep_role::role::Role;
+use halfstep_scene::{Phase, Scene};
+use halfstep_solid::{Solid, SolidModel};
+use halfstep_sph::lane::Isa;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Looks at a run after each of its steps, and may end it.
+type Observer<const D: usize> = Box<dyn FnMut(&Running<D>) -> ControlFlow<()>>;
+
+/// A simulation of a scene that has not begun, in `D` dimensions. `X` is an effect on the fluid that halfstep does not
+/// have itself.
+///
+/// Everything runs in the calling thread, with a pool of worker threads of its own for the sums over neighbours; the bits
+/// are those of the same scene run as processes. Nothing else of the process is touched: no signal handler, no log, and no
+/// file without [`Self::folder`].
+pub struct Simulation<X: FluidEffect<D> = (), const D: usize = 2> {
+    scene: Scene,
+    effect: Option<X>,
+    solids: Vec<(String, Box<dyn SolidModel<D>>)>,
+    observers: Vec<Observer<D>>,
+    folder: Option<PathBuf>,
+    replace: bool,
+    threads: Option<usize>,
+    stop: Arc<AtomicBool>,
+}
+
+impl Simulation {
+    /// Of a scene, as it says.
+    pub fn new(scene: Scene) -> Self {
+        Self {
+            scene,
+            effect: None,
+            solids: Vec::new(),
+            observers: Vec::new(),
+            folder: None,
+            replace: false,
+            threads: None,
+            stop: Arc::default(),
+        }
+    }
+
+    /// Of the scene in a file, with some keys changed (`KEY=VALUE`, dotted, as after `--set`).
+    ///
+    /// # Errors
+    /// Everything that is wrong with the scene at once, each with its place.
+    pub fn load(path: impl AsRef<Path>, changes: &[&str]) -> Result<Self, Error> {
+        let changes: Vec<String> = changes.iter().map(|&change| change.to_owned()).collect();
+        Ok(Self::new(halfstep_scene::load(path.as_ref(), &changes)?))
+    }
+
+    /// Runs the scene as processes of a launcher's program, as `halfstep run` does, to its end. Needs a folder.
+    ///
+    /// # Errors
+    /// Nothing could be started or written, or the run failed.
+    pub fn launch(self, launcher: Launcher) -> Result<RunReport, Error> {
+        if !self.solids.is_empty() || !self.observers.is_empty() {
+            let reason =
+                "own solids and observers live in this process; the launcher's program does not know them";
+            return Err(Error::Setup(reason.into()));
+        }
+        let folder = self.folder.ok_or_else(|| Error::Setup("processes need a folder to meet in".into()))?;
+        let options = RunOptions {
+            launcher: Some(launcher),
+            threads: self.threads,
+            force: self.replace,
+            stop: self.stop,
+            ..RunOptions::new(folder)
+        };
+        match run::run(&self.scene, &options)? {
+            (_, Some(error)) => Err(error.into()),
+            (report, None) => Ok(report),
+        }
+    }
+}
+
+impl<X: FluidEffect<D>, const D: usize> Simulation<X, D> {
+    /// With one more effect on the fluid, whose passes are compiled with it. It takes part where its
+    /// [`FluidEffect::decide`] says so.
+    pub fn effect<E: FluidEffect<D>>(self, effect: E) -> Simulation<E, D> {
+        let Self { scene, solids, observers, folder, replace, threads, stop, .. } = self;
+        Simulation { scene, effect: Some(effect), solids, observers, folder, replace, threads, stop }
+    }
+
+    /// With a model of one's own for a solid of the scene. Its material in the scene decides what the fluid takes it for
+    /// (density, stiffness); the number of its particles is its own.
+    ///
+    /// # Errors
+    /// The scene has no solid of this name.
+    pub fn solid(mut self, name: &str, model: Box<dyn SolidModel<D>>) -> Result<Self, Error> {
+        known_solid(&self.scene, name).map_err(Error::Setup)?;
+        if self.scene.interface.treatment == halfstep_scene::Treatment::PhaseBlind {
+            let reason = "phase-blind coupling asks for the stress of one's own model in every particle: use moving-wall";
+            return Err(Error::Setup(reason.into()));
+        }
+        self.solids.retain(|(known, _)| known != name);
+        self.solids.push((name.to_owned(), model));
+        Ok(self)
+    }
+
+    /// Calls `observer` after each step; `Break` ends the run in order.
+    #[must_use]
+    pub fn observe(mut self, observer: impl FnMut(&Running<D>) -> ControlFlow<()> + 'static) -> Self {
+        self.observers.push(Box::new(observer));
+        self
+    }
+
+    /// Writes what `halfstep run` writes (frames, probes, report, checkpoints, pictures) to a folder, which holds no
+    /// earlier run.
+    #[must_use]
+    pub fn folder(mut self, folder: impl Into<PathBuf>) -> Self {
+        self.folder = Some(folder.into());
+        self
+    }
+
+    /// An earlier run in the folder is removed.
+    #[must_use]
+    pub fn replace(mut self) -> Self {
+        self.replace = true;
+        self
+    }
+
+    /// Worker threads; without it as many as the scene gives the fluid.
+    #[must_use]
+    pub fn threads(mut self, threads: usize) -> Self {
+        self.threads = Some(threads.max(1));
+        self
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Begins at the scene's first state.
+    ///
+    /// # Errors
+    /// Something could not be made.
+    pub fn begin(self) -> Result<Running<D>, Error> {
+        let folder = self.folder.as_deref().map(|dir| RunDirectory::create(dir, self.replace)).transpose()?;
+        if let Some(folder) = &folder {
+            run::write_scene(&self.scene, folder)?;
+        }
+        self.begin_from(folder, None)
+    }
+
+    /// Begins at the newest checkpoint in the folder, to the same bits as if the run had never been interrupted.
+    ///
+    /// # Errors
+    /// There is no folder, or no checkpoint of this scene in it.
+    pub fn resume(self) -> Result<Running<D>, Error> {
+        let dir =
+            self.folder.clone().ok_or_else(|| Error::Setup("there is no folder to resume from".into()))?;
+        let checkpoint = Checkpoint::newest(&dir, &self.scene, Isa::detect())?;
+        let folder = RunDirectory::reopen(&dir, checkpoint.frames()?)?;
+        self.begin_from(Some(folder), Some(checkpoint))
+    }
+
+    /// Runs to the end and tells how it went.
+    ///
+    /// # Errors
+    /// Something could not be made or written, or the run diverged.
+    pub fn run(mut self) -> Result<RunReport, Error> {
+        let mut observers = std::mem::take(&mut self.observers);
+        let mut running = self.begin()?;
+        while running.step()? {
+            if observers.iter_mut().any(|observer| observer(&running).is_break()) {
+                running.stop();
+            }
+        }
+        running.finish()
+    }
+
+    fn begin_from(self, folder: Option<RunDirectory>, from: Option<Checkpoint>) -> Result<Running<D>, Error> {
+        let Self { scene, effect, solids, threads, stop, .. } = self;
+        if scene.dimension != D {
+            return Err(Error::Setup(format!(
+                "the scene has {} dimensions, the simulation {D}",
+                scene.dimension
+            )));
+        }
+        let isa = Isa::detect();
+        let threads = run::threads(&scene, threads);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let pool = pool.map_err(|e| Error::Setup(format!("cannot start {threads} threads: {e}")))?;
+        let names: Vec<String> = solids.iter().map(|(name, _)| name.clone()).collect();
+        let own = owners(&scene, effect, solids, isa)?;
+        let path = folder.as_ref().map(RunDirectory::path);
+        let at = from.as_ref().map(|from| from.folder.as_path());
+        let members = own.into_iter().map(|role| roles::equip(role, path, at)).collect::<Result<_, _>>()?;
+        let course = course(&scene, folder.as_ref(), from.as_ref(), Arc::clone(&stop), isa)?;
+        let coupler = from.as_ref().map(|from| &from.coupler);
+        let run = pool.install(|| LocalRun::new(members, &scene, course, isa, coupler))?;
+        Ok(Running { run, pool, scene, folder, own_solids: names, stop, isa, more: true })
+    }
+}
+
+/// Time line and recorder of a run in this process.
+fn course(
+    scene: &Scene,
+    folder: Option<&RunDirectory>,
+    from: Option<&Checkpoint>,
+    stop: Arc<AtomicBool>,
+    isa: Isa,
+) -> Result<Course, Error> {
+    let probes = folder.map(|folder| folder.file("probes.csv"));
+    let recorder = match from {
+        Some(from) => {
+            Recorder::new(scene, None, true).resume(scene, probes.as_deref(), from.part("recorder")?)?
+        }
+        None => {
+            let create = |path: PathBuf| ProbeLog::create(&path, &Recorder::columns(scene));
+            Recorder::new(scene, probes.map(create).transpose()?, true)
+        }
+    };
+    let at = from.map_or((0, 0.0), |from| (from.manifest.number, from.manifest.time));
+    let checkpoints = match folder {
+        None => None,
+        Some(folder) => {
+            let names = run::names(scene)?;
+            let checkpoints = Checkpoints::new(scene, folder.path(), names, isa.bits_name(), at);
+            Some(checkpoints.map_err(|e| Error::Setup(format!("scene.json: {e}")))?)
+        }
+    };
+    Ok(Course { clock: Clock::new(scene), recorder, checkpoints, stop })
+}
+
+/// Owners of the particles, in the scene's order.
+fn owners<X: FluidEffect<D>, const D: usize>(
+    scene: &Scene,
+    effect: Option<X>,
+    mut solids: Vec<(String, Box<dyn SolidModel<D>>)>,
+    isa: Isa,
+) -> Result<Vec<Box<dyn Role>>, Error> {
+    let participants = scene.participants();
+    let mut effect = effect;
+    let missing = |name: &str| Error::Setup(format!("the participant {name} cannot be made"));
+    let owner = |place: usize| -> Result<Box<dyn Role>, Error> {
+        let participant = &participants[place];
+        if let (Phase::Fluid, Some(effect)) = (participant.phase, effect.take()) {
+            let fluid = Fluid::with_effect(scene, isa, effect).ok_or_else(|| missing(&participant.name))?;
+            return Ok(Box::new(fluid));
+        }
+        match solids.iter().position(|(name, _)| *name == participant.name) {
+            Some(k) => {
+                let index = place - usize::from(scene.fluid.is_some());
+                Ok(Box::new(Solid::with_model(scene, index, isa, solids.swap_remove(k).1)))
+            }
+            None => roles::build(place, scene, isa).ok_or_else(|| missing(&participant.name)),
+        }
+    };
+    (0..participants.len()).map(owner).collect()
+}
+
+/// A run in this process.
+pub struct Running<const D: usize = 2> {
+    run: LocalRun<D>,
+    pool: rayon::ThreadPool,
+    scene: Scene,
+    folder: Option<RunDirectory>,
+    own_solids: Vec<String>,
+    stop: Arc<AtomicBool>,
+    isa: Isa,
+    more: bool,
+}
+
+impl<const D: usize> Running<D> {
+    /// One step; returns whether there is another one. The end is reached with a last call that takes no step.
+    ///
+    /// # Errors
+    /// The run diverged, or something could not be written. What was written before is whole.
+    pub fn step(&mut self) -> Result<bool, Error> {
+        if self.more {
+            let Self { run, pool, .. } = self;
+            self.more = pool.install(|| run.step())?;
+        }
+        Ok(self.more)
+    }
+
+    /// Lets the next call of [`Self::step`] be the last: the state that it finds is written as the end of a run is.
+    pub fn stop(&self) {
+        self.stop.store(true, Ordering::Relaxed);
+    }
+
+    /// Time of the present state, s.
+    pub fn time(&self) -> f64 {
+        self.run.participants().time()
+    }
+
+    /// Number of steps so far.
+    pub fn steps(&self) -> u64 {
+        self.run.course().clock.step()
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// All probes on the present state: names as in the columns of `probes.csv` (`tip.x [m]`), and values.
+    pub fn probes(&self) -> Vec<(String, f64)> {
+        let mut values = Vec::new();
+        let of_role = |role: &dyn Role| {
+            let mut own = Vec::new();
+            role.probes(&mut own);
+            own.into_iter()
+        };
+        let mut by_place: Vec<_> = self.run.participants().roles().map(of_role).collect();
+        for (place, probe) in roles::measured_by(&self.scene).into_iter().zip(&self.scene.probes) {
+            for column in probe.columns(self.scene.dimension) {
+                let value = by_place.get_mut(place).and_then(Iterator::next);
+                values.push((column, value.unwrap_or(f64::NAN)));
+            }
+        }
+        values
+    }
+
+    /// A probe's component on the present state, by its column with or without unit (`tip.x`); `None`: there is none.
+    pub fn probe(&self, name: &str) -> Option<f64> {
+        let mut all = self.probes().into_iter();
+        all.find(|(column, _)| column == name || halfstep_output::probes::split_unit(column).0 == name)
+            .map(|(_, value)| value)
+    }
+
+    /// The particles of a participant (`fluid` with its walls, or a solid by its name) in the present state, in single
+    /// precision as in a file; `None`: there is none.
+    pub fn particles(&self, participant: &str) -> Option<Frame> {
+        let role = self.run.participants().roles().find(|role| role.name().as_str() == participant)?;
+        let mut frame = Frame::default();
+        role.fill_frame(self.time(), &mut frame);
+        Some(frame)
+    }
+
+    /// Ends the run where it is, writes what a run leaves, and tells how it went.
+    ///
+    /// # Errors
+    /// The run diverged, or something could not be written.
+    pub fn finish(mut self) -> Result<RunReport, Error> {
+        if self.more {
+            self.stop();
+            self.step()?;
+        }
+        let Self { mut run, scene, folder, own_solids, isa, .. } = self;
+        let mut report = run::begin_report(&scene, isa)?;
+        let options =
+            RunOptions::new(folder.as_ref().map_or_else(PathBuf::new, |folder| folder.path().into()));
+        let result = run.end().map(|(outcome, reports)| {
+            report_outcome(&scene, &outcome, &mut report);
+            let reports: Vec<_> = reports.into_iter().map(Some).collect();
+            report_participants(&scene, &options, &outcome.last, &reports, None, &mut report);
+            outcome.stopped
+        });
+        for own in report.participants.iter_mut().filter(|own| own_solids.contains(&own.name)) {
+            own.model = Some("own".into());
+        }
+        let Course { clock, recorder, .. } = run.into_course();
+        recorder.finish(&mut report);
+        let error = run::conclude(result, &scene, &clock, &[], &mut report);
+        if let Some(folder) = &folder {
+            report.write(&folder.file("run.json"))?;
+            run::draw(&scene, folder);
+        }
+        error.map_or(Ok(report), |error: RunError| Err(error.into()))
+    }
+}

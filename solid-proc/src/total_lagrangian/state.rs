@@ -1,0 +1,65 @@
+//! What the total-Lagrangian solid keeps over an interruption at a state n: displacements, velocities and the inner
+//! acceleration, which the next sub-step begins with, and the order of contacts. The reference configuration and its
+//! pairs come from the scene, stresses and energies from the displacements.
+
+use super::contact::Contact;
+use super::model::{State as Columns, TotalLagrangian};
+use halfstep_wire::state::{Fields, State, StateError};
+
+impl<const D: usize> State for TotalLagrangian<D> {
+    fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
+        let slots = self.id.len();
+        let mut id = self.id.clone();
+        fields.numbers("id", &mut id)?;
+        if id != self.id {
+            return Err(StateError::contradiction("the solid's reference configuration is another one"));
+        }
+        fields.part("particles", &mut self.now)?;
+        fields.vectors("shown_velocity", &mut self.shown_velocity)?;
+        fields.count("pair_evaluations", &mut self.pair_evaluations)?;
+        let now = [&self.now.displacement, &self.now.velocity, &self.now.acceleration, &self.shown_velocity];
+        now.into_iter().flatten().try_for_each(|column| fields.length("particles", slots, column.len()))?;
+        match &mut self.contact {
+            Some(contact) => fields.part("contact", contact),
+            None => Ok(()),
+        }
+    }
+
+    fn restored(&mut self) -> Result<(), StateError> {
+        if let Some(contact) = &mut self.contact {
+            contact.restored()?;
+        }
+        let (acceleration, evaluations) = (self.now.acceleration.clone(), self.pair_evaluations);
+        self.evaluate();
+        // Damping took the velocities in the middle of the last sub-step.
+        self.now.acceleration = acceleration;
+        self.pair_evaluations = evaluations;
+        self.show_particles();
+        Ok(())
+    }
+}
+
+impl<const D: usize> State for Columns<D> {
+    fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
+        fields.vectors("displacement", &mut self.displacement)?;
+        fields.vectors("velocity", &mut self.velocity)?;
+        fields.vectors("acceleration", &mut self.acceleration)
+    }
+}
+
+impl<const D: usize> State for Contact<D> {
+    fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
+        let body = self.bodies();
+        fields.numbers("id", &mut self.id)?;
+        fields.vectors("position_at_sort", &mut self.listed)?;
+        self.listed.iter().try_for_each(|x| fields.length("position_at_sort", self.id.len(), x.len()))?;
+        if fields.loading() {
+            self.reorder(&body)?;
+        }
+        Ok(())
+    }
+
+    fn restored(&mut self) -> Result<(), StateError> {
+        self.list_at_sort()
+    }
+}

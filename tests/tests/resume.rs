@@ -1,0 +1,134 @@
+//! A run that was interrupted goes on to the bits of a run that never was: hash, probes and frames.
+
+use halfstep_output::checkpoint::{FOLDERS, MANIFEST, Manifest};
+use halfstep_output::run_json::RunStatus;
+use halfstep_sph::lane::Isa;
+use halfstep_tests::baseline::baselines;
+use halfstep_tests::run::{Outcome, whole_machine};
+use halfstep_tests::scene;
+use std::collections::BTreeMap;
+use std::hash::{BuildHasher, RandomState};
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// A number in 0 .. 1 that is another one in each run of the tests.
+fn random() -> f64 {
+    let bits = RandomState::new().hash_one(Instant::now());
+    (bits >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+/// Every shipped scene, stopped short at a random time: the run is prolonged from its last checkpoint before that end.
+#[test]
+fn every_shipped_scene_goes_on_to_the_stored_bits() {
+    let level = Isa::detect();
+    let mut wrong = Vec::new();
+    for baseline in baselines() {
+        let share = 0.2 + 0.6 * random();
+        let folder = tempfile::tempdir().unwrap();
+        let dir = folder.path().join("run");
+        // Intervals of the whole run, and a few checkpoints on the way.
+        let sets = |key: &str| baseline.set.iter().any(|set| set.starts_with(key));
+        let mut short = baseline.builder_until(level, share * baseline.until);
+        for (key, count) in [("output.frame_interval", 50.0), ("output.probe_interval", 2000.0)] {
+            if !sets(key) {
+                short = short.set(key, baseline.until / count);
+            }
+        }
+        short.set("output.checkpoint_interval", 0.3 * share * baseline.until).out(&dir).run();
+        let resumed = scene(&baseline.case).resume(&dir).until(baseline.until).in_process().run();
+        let came_from = resumed.report.resumed.clone();
+        assert_eq!(came_from.len(), 1);
+        assert!(came_from[0].step > 0 && came_from[0].time < share * baseline.until, "{came_from:?}");
+        let what = format!("{} / {}, stopped at {share} of the run", baseline.case, baseline.name);
+        if let Some(difference) = baseline.difference(level, &baseline.record(level, &resumed)) {
+            wrong.push(format!("{what}: {difference}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// The plate in the gate, with every file compared: interrupted by Ctrl-C or killed, as processes.
+#[test]
+fn a_killed_run_leaves_the_files_of_one_that_was_not() {
+    let gate = || {
+        scene("elastic-gate")
+            .set("resolution", 0.0025)
+            .set("output.checkpoint_interval", 0.002)
+            .set("output.frame_interval", 0.004)
+            .until(0.08)
+    };
+    let whole = gate().run();
+    for signal in [libc::SIGKILL, libc::SIGINT] {
+        let folder = tempfile::tempdir().unwrap();
+        let dir = folder.path().join("run");
+        let cut = interrupted(gate().out(&dir), &dir, signal, 1.0 + 4.0 * random());
+        if signal == libc::SIGINT {
+            assert_eq!(cut.report().status, Some(RunStatus::Stopped));
+            assert!(cut.stdout.contains("halfstep resume"), "{}", cut.stdout);
+        }
+        let resumed = scene("elastic-gate").resume(&dir).run();
+        assert_eq!(resumed.state_hash(), whole.state_hash(), "{:?}", resumed.report.resumed);
+        assert_eq!(resumed.report.steps, whole.report.steps);
+        assert_eq!(resumed.report.dt, whole.report.dt);
+        assert_eq!(resumed.report.audit, whole.report.audit);
+        assert_eq!(files(&dir), files(whole.dir()), "{:?}", resumed.report.resumed);
+    }
+}
+
+/// Starts a run and interrupts it when it has left some checkpoints.
+fn interrupted(run: halfstep_tests::RunBuilder, dir: &Path, signal: i32, checkpoints: f64) -> Outcome {
+    let _machine = whole_machine();
+    let mut running = run.start();
+    let newest = || FOLDERS.iter().filter_map(|f| Manifest::read(&dir.join(f)).ok()?).map(|m| m.number).max();
+    while (newest().unwrap_or(0) as f64) < checkpoints {
+        assert!(running.is_alive(), "{:?}", running.wait());
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    // SAFETY: the launcher is a child of this process that has not been waited for.
+    unsafe { libc::kill(running.pid() as i32, signal) };
+    running.wait()
+}
+
+/// Probes and frames of a run.
+fn files(dir: &Path) -> BTreeMap<String, Vec<u8>> {
+    let frames = std::fs::read_dir(dir.join("frames")).unwrap().map(|entry| entry.unwrap().path());
+    let all = frames.chain([dir.join("probes.csv")]);
+    all.map(|path| (path.file_name().unwrap().to_string_lossy().into_owned(), std::fs::read(path).unwrap()))
+        .collect()
+}
+
+#[test]
+fn a_torn_generation_is_passed_over_and_a_changed_run_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let dir = folder.path().join("run");
+    let tank = || {
+        let tank = scene("hydrostatic-tank").set("output.checkpoint_interval", 0.01);
+        tank.set("output.frame_interval", 0.01).set("output.probe_interval", 0.01)
+    };
+    tank().until(0.05).out(&dir).run();
+    let refused = |expected: &str| {
+        let outcome = scene("hydrostatic-tank").resume(&dir).until(0.06).outcome();
+        assert_eq!(outcome.code(), Some(1));
+        assert!(outcome.stderr.contains(expected), "{}", outcome.stderr);
+    };
+    let finished = scene("hydrostatic-tank").resume(&dir).outcome();
+    assert!(finished.stderr.contains("--until SECONDS gives it a later one"), "{}", finished.stderr);
+    let text = std::fs::read_to_string(dir.join("scene.json")).unwrap();
+    std::fs::write(dir.join("scene.json"), text.replace("-9.81", "-9.82")).unwrap();
+    refused("is of another scene than scene.json beside it");
+    std::fs::write(dir.join("scene.json"), &text).unwrap();
+    let number = |folder: &str| Manifest::read(&dir.join(folder)).unwrap().unwrap().number;
+    let (newer, older) = if number(FOLDERS[0]) > number(FOLDERS[1]) {
+        (FOLDERS[0], FOLDERS[1])
+    } else {
+        (FOLDERS[1], FOLDERS[0])
+    };
+    std::fs::write(dir.join(newer).join("fluid.hdf"), b"torn").unwrap();
+    let resumed = scene("hydrostatic-tank").resume(&dir).until(0.06).run();
+    assert!(resumed.outcome.stderr.contains("is passed over"), "{}", resumed.outcome.stderr);
+    let whole = tank().until(0.06).run();
+    assert_eq!(resumed.state_hash(), whole.state_hash(), "from the older one");
+    std::fs::remove_dir_all(dir.join(newer)).unwrap();
+    std::fs::remove_file(dir.join(older).join(MANIFEST)).unwrap();
+    refused("has no whole checkpoint");
+}
