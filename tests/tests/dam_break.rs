@@ -2,8 +2,8 @@
 
 use halfstep_tests::{Curve, scene};
 
-/// The experiment's clock does not begin when the column is released, and a diaphragm had to burst: the computed front is
-/// delayed so that it passes the first measured point (Z about 1.2) when the experiment's does. The delay must stay
+/// The experiment's clock does not begin when the column is released, and a diaphragm had to burst: the computed front
+/// is delayed so that it passes the first measured point (Z about 1.2) when the experiment's does. The delay must stay
 /// within what it may mean.
 const LONGEST_DELAY: f64 = 0.015;
 /// Band of inviscid computations about the experiment.

@@ -190,12 +190,12 @@ fn sound_and_noise(run: &Finished) -> f64 {
 /// full of it.
 #[test]
 #[ignore = "a minute: two gates to 0.4 s"]
-fn the_plate_does_not_sing() {
+fn the_plates_viscosity_keeps_sound_out_of_the_water() {
     let gate = || scene("elastic-gate").set("resolution", THREE_ACROSS).threads(2);
-    let quiet = sound_and_noise(&gate().run());
-    let singing = sound_and_noise(&gate().set("solid.artificial_viscosity.linear", 0).run());
+    let damped = sound_and_noise(&gate().run());
+    let undamped = sound_and_noise(&gate().set("solid.artificial_viscosity.linear", 0).run());
     println!(
-        "pressures about their mean field: {quiet:.0} Pa, {singing:.0} Pa without the plate's viscosity"
+        "pressures about their mean field: {damped:.0} Pa, {undamped:.0} Pa without the plate's viscosity"
     );
-    assert!(quiet < 40.0 && singing > 60.0, "{quiet} {singing}");
+    assert!(damped < 40.0 && undamped > 60.0, "{damped} {undamped}");
 }

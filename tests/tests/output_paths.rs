@@ -136,7 +136,10 @@ fn every_scene_has_a_page_that_the_index_links_to() {
     for case in cases {
         let page = format!("validation/{case}/README.md");
         assert!(repository().join(&page).is_file(), "{page} is missing");
-        assert!(links(&index).any(|target| target == format!("../{page}")), "docs/validation.md has no {page}");
+        assert!(
+            links(&index).any(|target| target == format!("../{page}")),
+            "docs/validation.md has no {page}"
+        );
     }
 }
 

@@ -217,7 +217,7 @@ impl<S: Transport, R: Plain, H: Plain> Outgoing<S, R, H> {
 pub struct StateSample<S: Transport>(pub(super) Message<S, StateRecord, StateHeader>);
 
 impl<S: Transport> StateSample<S> {
-    /// What heads the message.
+    /// Header of the message.
     pub fn header(&self) -> &StateHeader {
         &self.0.user_header().0
     }
@@ -233,7 +233,7 @@ impl<S: Transport> StateSample<S> {
 pub struct ProbeSample<S: Transport>(pub(super) Message<S, f64, ProbeHeader>);
 
 impl<S: Transport> ProbeSample<S> {
-    /// What heads the message.
+    /// Header of the message.
     pub fn header(&self) -> &ProbeHeader {
         &self.0.user_header().0
     }
@@ -249,7 +249,7 @@ impl<S: Transport> ProbeSample<S> {
 pub struct ForceSample<S: Transport>(pub(super) Message<S, ForceRecord, ForceHeader>);
 
 impl<S: Transport> ForceSample<S> {
-    /// What heads the message.
+    /// Header of the message.
     pub fn header(&self) -> &ForceHeader {
         &self.0.user_header().0
     }
