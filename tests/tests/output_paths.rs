@@ -76,7 +76,7 @@ fn in_backticks(text: &str) -> impl Iterator<Item = &str> {
 /// Whether a word means a file or folder of the repository.
 fn is_repository_path(word: &str) -> bool {
     let placeholder = word.chars().any(|c| " <>{}*$=|\"'[]()…".contains(c))
-        || ["NNNN", "my_", "DIR", "SCENE", "..", "://", "::"].iter().any(|part| word.contains(part));
+        || ["NNNN", "my_", "DIR", "SCENE", "CASE", "..", "://", "::"].iter().any(|part| word.contains(part));
     let path = word.contains('/') || [".rs", ".toml", ".md"].iter().any(|end| word.ends_with(end));
     path && !placeholder && !MADE.iter().any(|start| word.starts_with(start))
 }
