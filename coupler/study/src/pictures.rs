@@ -16,7 +16,7 @@ const HEAD: i32 = 44;
 /// Width and height of a panel, pixels.
 const PANEL: (i32, i32) = (620, 400);
 /// Width of a panel of the convergence, pixels.
-const WIDE: i32 = 760;
+const WIDE: i32 = 860;
 /// Height of a bar of the time's shares, with its distance to the next, pixels.
 const BAR: (i32, i32) = (24, 34);
 const FRONT: RGBColor = RGBColor(170, 170, 170);
