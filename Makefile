@@ -1,6 +1,6 @@
 # What people run. Every target first installs what is missing (setup.sh) and then calls cargo.
 
-.PHONY: gate test validate stability baselines bench prices docs setup
+.PHONY: gate test validate stability baselines bench prices docs book setup
 
 # Where rustup puts cargo, for shells that were open before.
 export PATH := $(PATH):$(HOME)/.cargo/bin
@@ -42,6 +42,16 @@ bench: setup
 # The documentation of the crates, in target/doc.
 docs: setup
 	RUSTDOCFLAGS="-D warnings" cargo doc --release --no-deps --workspace
+
+# All pages as a book, in target/book; nothing is fetched when it is read. Its tool goes to target/tools.
+MDBOOK_VERSION := 0.5.4
+MDBOOK := target/tools/mdbook-$(MDBOOK_VERSION)/bin/mdbook
+book: setup $(MDBOOK)
+	sh docs/book.sh $(abspath $(MDBOOK))
+
+$(MDBOOK):
+	cargo install --locked --version $(MDBOOK_VERSION) --root target/tools/mdbook-$(MDBOOK_VERSION) \
+		--no-default-features --features search mdbook
 
 setup:
 	@./setup.sh

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Installs what building and testing halfstep needs and this machine lacks: a C compiler, make, pkg-config, HDF5's
-# headers (1.10.7 or later), and for the tests alone Python's venv module and valgrind. Does nothing where all of it is there.
-# Works on Debian and its relatives, as root or with sudo; elsewhere it says what to install.
-# A HDF5 of your own is used where HDF5_DIR names its folder.
+# headers (1.10.7 or later), and for the tests alone Python's venv module and valgrind. Does nothing where all of it is
+# there. Works on Debian and its relatives, as root or with sudo; elsewhere it says what to install. A HDF5 of your own
+# is used where HDF5_DIR names its folder.
 set -euo pipefail
 
 say() { printf 'setup: %s\n' "$*" >&2; }

@@ -22,35 +22,44 @@ price() {
 
 all="oscillating-plate hydrostatic-tank taylor-green standing-wave dam-break hydrostatic-plate elastic-gate"
 wanted=${*:-$all}
-price oscillating-plate --until 0.4 --set resolution=0.004 --vary resolution=0.002,0.0028571428571428571,0.0066666666666666667 \
+price oscillating-plate --until 0.4 --set resolution=0.004 \
+    --vary resolution=0.002,0.0028571428571428571,0.0066666666666666667 \
     --vary solid.model=hypoelastic --vary solid.material=st-venant-kirchhoff --vary solid.hourglass=0.1 \
     --vary effects.clamp-face=off --vary solid.smoothing_ratio=1.33 --vary numerics.solid_cfl=0.3,0.9
-price hydrostatic-tank --set resolution=0.02 --vary resolution=0.015,0.03 --vary fluid.density_diffusion=simple,hydrostatic,none \
+price hydrostatic-tank --set resolution=0.02 --vary resolution=0.015,0.03 \
+    --vary fluid.density_diffusion=simple,hydrostatic,none \
     --vary fluid.artificial_viscosity.linear=1 --vary numerics.cfl=0.2
-price taylor-green --vary resolution=0.025,0.04,0.05 --vary numerics.kernel=cubic-spline --vary smoothing_ratio=1.33,2.4 \
+price taylor-green --vary resolution=0.025,0.04,0.05 --vary numerics.kernel=cubic-spline \
+    --vary smoothing_ratio=1.33,2.4 \
     --vary fluid.density_diffusion=none --vary numerics.cfl=0.2
-price standing-wave --set resolution=0.025 --vary resolution=0.0357142857142857143,0.05 --vary numerics.kernel=cubic-spline \
+price standing-wave --set resolution=0.025 --vary resolution=0.0357142857142857143,0.05 \
+    --vary numerics.kernel=cubic-spline \
     --vary smoothing_ratio=1.33,2.4
-price dam-break --set resolution=0.0028575 --vary resolution=0.00408214285714285714,0.005715 --vary numerics.cfl=0.2,0.6 \
+price dam-break --set resolution=0.0028575 --vary resolution=0.00408214285714285714,0.005715 \
+    --vary numerics.cfl=0.2,0.6 \
     --vary numerics.kernel=wendland-c2 --vary fluid.density_diffusion=simple,none
 price hydrostatic-plate --until 0.25 --set resolution=0.01666666666666666667 --vary resolution=0.0125,0.025 \
     --vary solid.model=hypoelastic --vary fluid.density_diffusion=simple
 price elastic-gate --until 0.25 --set resolution=0.00166666666666666667 --vary resolution=0.00125,0.0025 \
-    --vary solid.model=hypoelastic --vary interface.treatment=phase-blind --vary solid.sub_steps=20 --vary numerics.cfl=0.2,0.6 \
-    --vary numerics.kernel=wendland-c2 --vary fluid.density_diffusion=simple --vary fluid.artificial_viscosity.linear=0.02
+    --vary solid.model=hypoelastic --vary interface.treatment=phase-blind --vary solid.sub_steps=20 \
+    --vary numerics.cfl=0.2,0.6 \
+    --vary numerics.kernel=wendland-c2 --vary fluid.density_diffusion=simple \
+    --vary fluid.artificial_viscosity.linear=0.02
 
 {
     cat <<'HEAD'
 # Price lists
 
-What accuracy costs in the shipped scenes: coarse ladders that a small machine runs in minutes. [Studies](study.md) explains every number. Errors
-and pair evaluations do not depend on what else the machine does; wall times do, and where more programs waited than there are processors they say little: compare pair evaluations.
+What accuracy costs in the shipped scenes: coarse ladders that a small machine runs in minutes. [Studies](study.md)
+explains every number. Errors and pair evaluations do not depend on what else the machine does; wall times do, and where
+more programs waited than there are processors they say little: compare pair evaluations.
 
 Renewed by `make prices`, which runs the commands below; do not edit.
 
 HEAD
     model=$(sed -n 's/^model name[[:space:]]*: //p' /proc/cpuinfo | head -n 1)
-    echo "Machine: ${model:-unknown}, $(nproc) processors, $(cut -d ' ' -f 2 /proc/loadavg) programs waiting for them on average at the end."
+    waiting=$(cut -d ' ' -f 2 /proc/loadavg)
+    echo "Machine: ${model:-unknown}, $(nproc) processors, $waiting programs waiting for them on average at the end."
     for scene in $all; do
         [ -f "$lists/$scene.txt" ] || continue
         printf '\n## %s\n\n```\n%s\n```\n\n```\n' "$scene" "$(cat "$lists/$scene.command")"

@@ -181,8 +181,8 @@ fn main() -> Result<(), Error> {
 mod tests {
     use super::*;
 
-    /// Without water: m = 8000 * 0.04 * 0.14 = 44.8 kg/m on 4.48e5 N/m, so omega = 100 1/s; v(0) = 0.1 m/s gives 1 mm at
-    /// t = pi / 200 s.
+    /// Without water: m = 8000 * 0.04 * 0.14 = 44.8 kg/m on 4.48e5 N/m, so omega = 100 1/s; v(0) = 0.1 m/s gives 1 mm
+    /// at t = pi / 200 s.
     #[test]
     fn a_dry_block_swings_as_by_hand() {
         let begin = BASIN.find("[solid]").unwrap();

@@ -17,11 +17,11 @@ use halfstep_wire::half_step::Stage;
 
 /// An effect on the fluid.
 pub trait FluidEffect<const D: usize>: Send + Sync + Sized + 'static {
-    /// Its name in scenes and reports.
+    /// Name of the effect in scenes and reports.
     const NAME: &'static str;
-    /// What it adds to a pair of fluid particles; [`NoShare`] where it acts in another way.
+    /// What the effect adds to a pair of fluid particles; [`NoShare`] where it acts in another way.
     type Pair<'a>: PairEffect<D>;
-    /// What it adds to a pair of a fluid and a wall particle.
+    /// What the effect adds to a pair of a fluid and a wall particle.
     type AtWall<'a>: PairEffect<D>;
 
     /// Whether it takes part in a scene with fluid, and why.
@@ -33,15 +33,16 @@ pub trait FluidEffect<const D: usize>: Send + Sync + Sized + 'static {
     /// Fits its columns to the slots of the fluid and of the walls, after each sort. What the columns held belongs to
     /// the order before.
     fn resize(&mut self, _slots: usize, _walls: Option<&Walls<D>>) {}
-    /// Its own pass, before the pass that gives the rates at a stage. Returns the number of pairs that it evaluated.
+    /// The effect's own pass, before the pass that gives the rates at a stage. Returns the number of pairs that it
+    /// evaluated.
     fn prepare<K: Kernel<D>>(&mut self, _: Stage, _: &Neighbourhood<'_, K, D>) -> u64 {
         0
     }
-    /// Its share of a pair of fluid particles.
+    /// The effect's share of a pair of fluid particles.
     fn pair(&self) -> Option<Self::Pair<'_>> {
         None
     }
-    /// Its share of a pair of a fluid and a wall particle.
+    /// The effect's share of a pair of a fluid and a wall particle.
     fn at_wall(&self) -> Option<Self::AtWall<'_>> {
         None
     }

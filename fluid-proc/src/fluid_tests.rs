@@ -38,8 +38,8 @@ fn walls_show_the_hydrostatic_pressure() {
     let mut seen = 0;
     for s in (0..walls.slots()).filter(|&s| walls.id[s] != PADDING) {
         let x: [f64; 2] = std::array::from_fn(|d| walls.shown.position[d][s]);
-        // Two layers are within reach of the water: p = rho g (0.1 - y), exact for a linear field but for the compressed
-        // density in the extrapolation (0.2 %).
+        // Two layers are within reach of the water: p = rho g (0.1 - y), exact for a linear field but for the
+        // compressed density in the extrapolation (0.2 %).
         let deep_corner = x[1] < -0.01 && !(0.0..0.2).contains(&x[0]);
         if !deep_corner && x[1] < 0.09 && x[1] > -0.02 && x[0] > -0.02 && x[0] < 0.22 {
             let exact = 1000.0 * 9.81 * (0.1 - x[1]);

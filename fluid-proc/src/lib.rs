@@ -1,7 +1,7 @@
 //! The fluid process: a weakly compressible liquid with delta-SPH and the walls around it.
 //!
-//! Midpoint steps (Kayaki's eqs. 30 and 31) over particles sorted into rows; each physical or numerical effect is a type
-//! that adds its share to one pass over the neighbours.
+//! Midpoint steps (Kayaki's eqs. 30 and 31) over particles sorted into rows; each physical or numerical effect is a
+//! type that adds its share to one pass over the neighbours.
 
 pub mod columns;
 pub mod composition;

@@ -1,4 +1,5 @@
-//! The one pass that gives acceleration and density rate: pressure, continuity and whatever effects the scene calls for.
+//! The one pass that gives acceleration and density rate: pressure, continuity and whatever effects the scene calls
+//! for.
 
 use crate::columns::Shown;
 use crate::composition::Composition;
@@ -52,9 +53,9 @@ pub struct PairRates<const D: usize> {
 
 /// An effect in the pair pass. An absent effect is `()`; several are nested pairs.
 pub trait PairEffect<const D: usize>: Copy + Send + Sync {
-    /// What it loads of four targets before their neighbours are visited.
+    /// What the effect loads of four targets before their neighbours are visited.
     type Own: Copy;
-    /// It adds to [`PairRates::vector`].
+    /// The effect adds to [`PairRates::vector`].
     const VECTOR: bool = false;
     /// Loads the targets at `slot..slot + 4`.
     fn own(&self, slot: usize) -> Self::Own;
@@ -147,7 +148,7 @@ pub struct RateLaw<'a, K, E, const D: usize> {
     pub effects: E,
     /// Particles whose rates are wanted.
     pub targets: &'a Shown<D>,
-    /// Their neighbours.
+    /// Neighbours of the targets.
     pub sources: &'a Shown<D>,
 }
 

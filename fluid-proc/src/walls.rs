@@ -3,9 +3,9 @@
 //! For wall particle w, sums over the fluid particles f around it with weights W_wf:
 //!   v~ = sum v_f W / sum W,   p_w = sum [ p_f + rho_f g . (x_w - x_f) ] W / sum W;
 //! the velocity shown to the fluid is 2 u_w - v~ along the normal and v~ (free slip) or 2 u_w - v~ (no slip) along the
-//! wall, u_w its own velocity; in a corner all components are reversed. The density shown is the equation of
-//! state's at p_w, the mass rho0 V. Without fluid around: p_w = 0, rho0, u_w. Of a wall that moves by prescription, g is
-//! less its own acceleration.
+//! wall, u_w its own velocity; in a corner all components are reversed. The density shown is the equation of state's at
+//! p_w, the mass rho0 V. Without fluid around: p_w = 0, rho0, u_w. Of a wall that moves by prescription, g is less its
+//! own acceleration.
 
 pub mod moving;
 
@@ -174,7 +174,8 @@ impl<const D: usize> Default for WallSum<D> {
     }
 }
 
-/// The law of the pass over wall particles: the pressure's extrapolation, and the fluid's velocity with the same weights.
+/// The law of the pass over wall particles: the pressure's extrapolation, and the fluid's velocity with the same
+/// weights.
 pub struct WallLaw<'a, K, const D: usize> {
     kernel: K,
     gravity: [f64; D],

@@ -3,8 +3,8 @@
 //! An elastic body that is let go from rest goes farthest within half of its slowest period. If no particle was farther
 //! than [`TOLERANCE`] dx from its place in the reference configuration during all of that time, none will be later: the
 //! body sleeps in the state that it has. The first force that is not zero wakes it, in the same half-step. The slowest
-//! period is that of a cantilever as long as the longest and as thick as the shortest side of the solid's box:
-//! T = 1.787 L² / H sqrt(12 rho (1 - nu²) / E) (first bending mode, beta L = 1.875). Where that box says too little (rings,
+//! period is that of a cantilever as long as the longest and as thick as the shortest side of the solid's box: T =
+//! 1.787 L² / H sqrt(12 rho (1 - nu²) / E) (first bending mode, beta L = 1.875). Where that box says too little (rings,
 //! several plates), gravity sets a least time: a mode that sags by more than the tolerance has fallen by it after
 //! sqrt(8 tolerance / |g|), whatever its period. Only solids that are clamped and begin at rest may sleep.
 

@@ -1,6 +1,6 @@
 //! Rigid walls toward the solid (Kayaki section 4.1, after Adami): velocity zero always, pressure extrapolated from the
-//! solid around, density rho_w = rho_s0 (1 + p_w / K), no deviatoric stress. A wall that could pull would glue the solid
-//! to it, so only pressures above zero act, and only walls that the scene lets the solid touch are here.
+//! solid around, density rho_w = rho_s0 (1 + p_w / K), no deviatoric stress. A wall that could pull would glue the
+//! solid to it, so only pressures above zero act, and only walls that the scene lets the solid touch are here.
 //!
 //! The pressure at a surface is nearly zero, so that alone a wall would carry a body by its damping only, and a body at
 //! rest would creep into it. Below the spacing dx, at which two surfaces meet, particles repel each other as those of

@@ -44,7 +44,7 @@ fn after_ten_steps(scene: &Scene, solid: usize) -> (u64, u64) {
 }
 
 #[test]
-fn a_solid_beside_another_is_the_solid_alone() {
+fn a_solid_beside_another_computes_as_if_alone() {
     let both = two();
     for (k, (material, left)) in [(GATE, 0.0), (LID, 0.1)].into_iter().enumerate() {
         let alone = scene(&["[solid]\n", material, &block("alone", "", left)]);
@@ -56,7 +56,7 @@ fn a_solid_beside_another_is_the_solid_alone() {
 }
 
 #[test]
-fn a_list_of_one_is_the_one() {
+fn a_list_of_one_solid_computes_as_a_single_section() {
     let of = |heading: &str| scene(&[heading, GATE, &block("a", "", 0.0), &block("b", "", 0.1)]);
     let [plain, listed] = [of("[solid]\n"), of("[[solid]]\nname = \"gate\"\n")];
     assert_eq!(after_ten_steps(&plain, 0), after_ten_steps(&listed, 0));

@@ -1,4 +1,5 @@
-//! The table of ratios: `cargo bench --bench table [-- huge]`. One line a figure; `target/bench.json` has the same numbers.
+//! The table of ratios: `cargo bench --bench table [-- huge]`. One line a figure; `target/bench.json` has the same
+//! numbers.
 //!
 //! "Mstep/s" is million fluid particles times whole steps (two stages, walls and neighbour lists included) per second.
 //! One-thread figures are CPU time, which other programs on the machine change little; all are medians of interleaved

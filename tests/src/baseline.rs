@@ -29,7 +29,7 @@ pub struct Baseline {
     /// The case's folder and scene; the folder says it, not the file.
     #[serde(skip)]
     pub case: String,
-    /// Its name, unique in the case.
+    /// Name of the run, unique in the case.
     pub name: String,
     /// Overrides, `KEY=VALUE`.
     #[serde(default)]

@@ -22,12 +22,12 @@ impl Curve {
         Self { times: table.times(), values }
     }
 
-    /// A column of `tests/reference/CASE/FILE.csv`.
+    /// A column of `validation/CASE/reference/FILE`.
     ///
     /// # Panics
     /// There is no such file or column.
-    pub fn reference(file: &str, column: &str) -> Self {
-        let path = repository().join("tests/reference").join(file);
+    pub fn reference(case: &str, file: &str, column: &str) -> Self {
+        let path = repository().join("validation").join(case).join("reference").join(file);
         let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_path(&path).expect("reference");
         let headers = reader.headers().expect("headers").clone();
         let at = |name: &str| {
@@ -158,8 +158,8 @@ mod tests {
 
     #[test]
     fn the_references_read() {
-        let x = Curve::reference("elastic-gate/experiment.csv", "x [mm]");
+        let x = Curve::reference("elastic-gate", "experiment.csv", "x [mm]");
         assert_eq!(x.peak(), (0.16, 46.4));
-        assert_eq!(Curve::reference("dam-break-plate/published-peaks.csv", "x [mm]").times.len(), 7);
+        assert_eq!(Curve::reference("dam-break-plate", "published-peaks.csv", "x [mm]").times.len(), 7);
     }
 }

@@ -1,7 +1,7 @@
 //! A reference that owes nothing to particles: the slowest period of a clamped plane-strain block by finite elements.
 //!
-//! 8-node serendipity quadrilaterals with 3 x 3 Gauss points, consistent mass (Bathe, Finite element procedures, sections 5.3 and
-//! 5.5); the lowest mode by inverse iteration.
+//! 8-node serendipity quadrilaterals with 3 x 3 Gauss points, consistent mass (Bathe, Finite element procedures,
+//! sections 5.3 and 5.5); the lowest mode by inverse iteration.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn, SMatrix};
 

@@ -29,7 +29,7 @@ pub struct Particle {
 pub struct Patch {
     /// The particles.
     pub shown: Shown<2>,
-    /// Their neighbours.
+    /// Neighbours of the particles.
     pub list: ClusterList,
     /// Number of the particle in each slot, or padding.
     pub id: Vec<u32>,

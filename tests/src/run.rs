@@ -16,7 +16,8 @@ use std::time::Instant;
 /// Who has the machine: coupled runs write, others read.
 static MACHINE: RwLock<()> = RwLock::new(());
 
-/// The program: `coupler/cli/src/main.rs`, which this package builds as well, so that it is up to date when a test runs.
+/// The program: `coupler/cli/src/main.rs`, which this package builds as well, so that it is up to date when a test
+/// runs.
 pub fn program() -> &'static Path {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
     PROGRAM.get_or_init(|| {
@@ -212,9 +213,9 @@ impl Drop for Running {
 pub struct Outcome {
     /// How the launcher ended.
     pub status: ExitStatus,
-    /// What it printed.
+    /// Standard output.
     pub stdout: String,
-    /// What it complained about.
+    /// Standard error.
     pub stderr: String,
     /// The folder of the run.
     pub dir: PathBuf,

@@ -28,13 +28,14 @@ fn instructions(arguments: &[&str]) -> u64 {
 #[test]
 fn an_absent_effect_takes_no_instruction() {
     let mut counts = Vec::new();
-    for composition in ["damping", "simple", "delta-sph"] {
+    for composition in ["artificial-viscosity", "simple", "delta-sph"] {
         let (chosen, alone) = (instructions(&[composition, "chosen"]), instructions(&[composition, "alone"]));
         println!("{composition}: {chosen} instructions as chosen, {alone} alone");
         assert_eq!(chosen, alone, "{composition}");
         counts.push(chosen);
     }
-    // The counter counts the pass: 1600 particles in 400 clusters with some 40 neighbours, 30 instructions or more each.
+    // The counter counts the pass: 1600 particles in 400 clusters with some 40 neighbours, 30 instructions or more
+    // each.
     assert!(counts[0] > 400 * 40 * 30, "{counts:?}");
     assert!(counts[0] < counts[1] && counts[1] < counts[2], "each effect costs: {counts:?}");
 }
@@ -51,8 +52,8 @@ fn bytes_per_particle(overrides: &[&str]) -> f64 {
 
 #[test]
 fn an_absent_effect_takes_no_memory() {
-    // Per slot, padding included: two components of the density gradient; four of the stress. Padding and spare room add
-    // up to 10 % here.
+    // Per slot, padding included: two components of the density gradient; four of the stress. Padding and spare room
+    // add up to 10 % here.
     let lean = bytes_per_particle(&["fluid.density_diffusion=simple"]);
     let full = bytes_per_particle(&["fluid.density_diffusion=delta-sph"]) - lean;
     assert!((16.0..17.6).contains(&full), "{full}");

@@ -56,7 +56,7 @@ fn every_shipped_scene_has_a_baseline() {
 }
 
 #[test]
-fn what_is_stored_belongs_to_a_run() {
+fn every_stored_result_belongs_to_a_run() {
     let strays = leftovers(&baselines());
     assert!(strays.is_empty(), "remove what no run in baseline.toml has made:\n{}", strays.join("\n"));
 }

@@ -60,7 +60,7 @@ fn dependencies() -> BTreeMap<String, BTreeSet<String>> {
 }
 
 #[test]
-fn arrows_go_one_way() {
+fn crates_depend_in_one_direction() {
     let found = dependencies();
     let known: BTreeSet<&str> = ARROWS.iter().map(|(name, _)| *name).collect();
     let names: BTreeSet<&str> = found.keys().map(String::as_str).collect();
@@ -81,7 +81,7 @@ fn arrows_go_one_way() {
 }
 
 #[test]
-fn heavy_libraries_stay_in_one_room() {
+fn heavy_libraries_are_used_by_one_crate_each() {
     let found = dependencies();
     for (library, rooms) in ALONE {
         let users: Vec<&str> = found

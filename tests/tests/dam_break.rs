@@ -2,8 +2,8 @@
 
 use halfstep_tests::{Curve, scene};
 
-/// The experiment's clock does not begin when the column is released, and a diaphragm had to burst: the computed front is
-/// delayed so that it passes the first measured point (Z about 1.2) when the experiment's does. The delay must stay
+/// The experiment's clock does not begin when the column is released, and a diaphragm had to burst: the computed front
+/// is delayed so that it passes the first measured point (Z about 1.2) when the experiment's does. The delay must stay
 /// within what it may mean.
 const LONGEST_DELAY: f64 = 0.015;
 /// Band of inviscid computations about the experiment.
@@ -14,7 +14,7 @@ fn the_front_runs_as_measured() {
     let run = scene("dam-break").set("resolution", 0.0028575).run();
     let front = run.curve("front.x");
     for file in ["martin-moyce-2.25in.csv", "martin-moyce-1.125in.csv"] {
-        let experiment = Curve::reference(&format!("dam-break/{file}"), "front [m]");
+        let experiment = Curve::reference("dam-break", file, "front [m]");
         let passed = front.first_above(experiment.values[0]).expect("the front moves");
         let delay = experiment.times[0] - passed;
         assert!((0.0..LONGEST_DELAY).contains(&delay), "{file}: delay {delay} s");

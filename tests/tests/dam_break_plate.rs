@@ -2,12 +2,12 @@
 //!
 //! Beam theory: a jet of 2 m/s over the whole height of the 12 mm plate (4 kPa) moves its tip by q L^4 / (8 D), which
 //! is 0.6 mm for E = 0.22 GPa, 1.0 mm for a plate of 10 mm, and 10 mm for E = 12 MPa. The plate with E = 1 MPa of the
-//! literature goes 41-49 mm at 0.23-0.26 s (`tests/reference/dam-break-plate`). The total-Lagrangian plate does, too: 47.0, 47.3
-//! and 45.5 mm @ 0.217-0.226 s with three, four and six particles across. The hypoelastic plate is too soft: 85 mm @ 0.28 s with
-//! six.
+//! literature goes 41-49 mm at 0.23-0.26 s (`validation/dam-break-plate/reference`). The total-Lagrangian plate does,
+//! too: 47.0, 47.3 and 45.5 mm @ 0.217-0.226 s with three, four and six particles across. The hypoelastic plate is too
+//! soft: 85 mm @ 0.28 s with six.
 //!
-//! The paper's scheme (`preset = "kayaki"`) has a plate of five rows, 10 mm. Its time step of 1e-5 s is 1.77 dx / c_P for
-//! E = 0.22 GPa, where the plate blows up (`tests/tests/divergence.rs`): 5e-6 s there.
+//! The paper's scheme (`preset = "kayaki"`) has a plate of five rows, 10 mm. Its time step of 1e-5 s is 1.77 dx / c_P
+//! for E = 0.22 GPa, where the plate blows up (`tests/tests/divergence.rs`): 5e-6 s there.
 
 use halfstep_tests::{Curve, Finished, RunBuilder, scene};
 
@@ -108,7 +108,7 @@ fn plates_at_full_resolution() {
     assert!((1.0..41.0).contains(&peak.1), "{peak:?}");
     let run = plate(0.002, 1e6).set("solid.poissons_ratio", 0).until(0.3).run();
     let (curve, _) = tip("E 1 MPa, 2 mm", &run);
-    let published = Curve::reference("dam-break-plate/published-peaks.csv", "x [mm]");
+    let published = Curve::reference("dam-break-plate", "published-peaks.csv", "x [mm]");
     let least = published.values.iter().copied().fold(f64::INFINITY, f64::min);
     // After the impact the tip first dips toward the jet.
     let (first, most) = (curve.between(0.17, 1.0).first_peak(0.5), published.peak().1);

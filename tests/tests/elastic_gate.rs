@@ -1,9 +1,9 @@
 //! Elastic gate (Antoci, Gallati and Sibilla 2007): the plate's free end against the experiment and against what
 //! others computed.
 //!
-//! The experiment's points and the published peaks are in `tests/reference/elastic-gate`. Computations of a plate that
-//! is as linear as the datasheet's E peak early and low; the total-Lagrangian solid is one of them. The hypoelastic
-//! solid is softer than its E says and comes nearer to the experiment by that.
+//! The experiment's points and the published peaks are in `validation/elastic-gate/reference`. Computations of a plate
+//! that is as linear as the datasheet's E peak early and low; the total-Lagrangian solid is one of them. The
+//! hypoelastic solid is softer than its E says and comes nearer to the experiment by that.
 
 use halfstep_tests::{Curve, Finished, scene};
 use halfstep_wire::frame::FLUID;
@@ -29,7 +29,7 @@ fn state(what: &str, run: &Finished) -> (f64, f64) {
         .filter(|t| **t <= run.report.time)
         .map(|&t| format!("{:.1}", x.at(t)))
         .collect();
-    let experiment = Curve::reference("elastic-gate/experiment.csv", "x [mm]");
+    let experiment = Curve::reference("elastic-gate", "experiment.csv", "x [mm]");
     println!(
         "{what}: peak x {peak:.1} mm @ {time:.3} s, y {:.1} mm; x at .04 .08 ... s: {}; rms to the experiment \
          {:.1} mm; closest {:.2} dx; {} steps, {:.0} s",
@@ -68,7 +68,7 @@ fn as_a_linear_plate((time, peak): (f64, f64)) {
 
 /// The experiment itself, while the gate opens: published computations are up to 5 mm off there.
 fn opens_as_in_the_experiment(run: &Finished) {
-    let experiment = Curve::reference("elastic-gate/experiment.csv", "x [mm]");
+    let experiment = Curve::reference("elastic-gate", "experiment.csv", "x [mm]");
     for time in [0.04, 0.08] {
         let (found, truth) = (tip(run, "x").at(time), experiment.at(time));
         assert!((found - truth).abs() < 5.0, "{found} mm at {time} s, {truth} mm in the experiment");
@@ -132,7 +132,7 @@ fn the_hypoelastic_gate_at_5_across() {
     let run = scene("elastic-gate").set("solid.model", "hypoelastic").until(0.24).threads(2).run();
     sound(&run);
     within_literature(state("hypoelastic gate, 5 across", &run));
-    let experiment = Curve::reference("elastic-gate/experiment.csv", "x [mm]");
+    let experiment = Curve::reference("elastic-gate", "experiment.csv", "x [mm]");
     let rms = tip(&run, "x").rms_to(&experiment);
     // As close as the published computation that comes with the experiment (Antoci et al. 2007: 50.1 for 46.4 mm).
     assert!(rms < 4.0, "{rms} mm");
@@ -190,12 +190,12 @@ fn sound_and_noise(run: &Finished) -> f64 {
 /// full of it.
 #[test]
 #[ignore = "a minute: two gates to 0.4 s"]
-fn the_plate_does_not_sing() {
+fn the_plates_viscosity_keeps_sound_out_of_the_water() {
     let gate = || scene("elastic-gate").set("resolution", THREE_ACROSS).threads(2);
-    let quiet = sound_and_noise(&gate().run());
-    let singing = sound_and_noise(&gate().set("solid.artificial_viscosity.linear", 0).run());
+    let damped = sound_and_noise(&gate().run());
+    let undamped = sound_and_noise(&gate().set("solid.artificial_viscosity.linear", 0).run());
     println!(
-        "pressures about their mean field: {quiet:.0} Pa, {singing:.0} Pa without the plate's viscosity"
+        "pressures about their mean field: {damped:.0} Pa, {undamped:.0} Pa without the plate's viscosity"
     );
-    assert!(quiet < 40.0 && singing > 60.0, "{quiet} {singing}");
+    assert!(damped < 40.0 && undamped > 60.0, "{damped} {undamped}");
 }

@@ -44,8 +44,8 @@ macro_rules! conformance {
             }
 
             #[test]
-            fn last_words() {
-                suite::last_words::<$transport>();
+            fn last_message() {
+                suite::last_message::<$transport>();
             }
 
             #[test]
@@ -64,8 +64,8 @@ macro_rules! conformance {
             }
 
             #[test]
-            fn strangers() {
-                suite::strangers::<$transport>();
+            fn incompatible_processes() {
+                suite::incompatible_processes::<$transport>();
             }
 
             #[test]

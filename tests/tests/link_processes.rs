@@ -188,7 +188,7 @@ fn a_killed_launcher_leaves_nothing() {
 }
 
 #[test]
-fn a_later_run_removes_what_a_massacre_left() {
+fn a_later_run_removes_the_memory_of_killed_processes() {
     let dir = tempfile::tempdir().unwrap();
     let (mut launcher, run, pids) = launch(dir.path());
     // The launcher first, stopped, so that its children do not hear of each other's end from it.

@@ -1,9 +1,9 @@
 //! Oscillating plate (Gray, Monaghan and Swift 2001): a cantilever in its first bending mode.
 //!
-//! Thin-plate theory (Landau and Lifshitz): 0.2541 s. Plane-strain elasticity with a clamped face: 0.2552 s, the limit of
-//! finite elements (`tests/src/finite_elements.rs`; 2 to 16 across: 0.2537, 0.2547, 0.2550, 0.2552).
-//! The hypoelastic solid without gradient renormalisation is too soft and slower: published computations and this one
-//! come closer with resolution. The total-Lagrangian one converges to elasticity.
+//! Thin-plate theory (Landau and Lifshitz): 0.2541 s. Plane-strain elasticity with a clamped face: 0.2552 s, the limit
+//! of finite elements (`tests/src/finite_elements.rs`; 2 to 16 across: 0.2537, 0.2547, 0.2550, 0.2552). The hypoelastic
+//! solid without gradient renormalisation is too soft and slower: published computations and this one come closer with
+//! resolution. The total-Lagrangian one converges to elasticity.
 
 use halfstep_tests::finite_elements::Block;
 use halfstep_tests::{Finished, scene};

@@ -1,4 +1,5 @@
-//! `setup.sh` installs exactly what is missing, and says clearly what it cannot do. Every program it calls is a stand-in.
+//! `setup.sh` installs exactly what is missing, and says clearly what it cannot do. Every program it calls is a
+//! stand-in.
 
 use std::fs;
 use std::os::unix::fs::{PermissionsExt, symlink};

@@ -116,9 +116,9 @@ fn coupler(config: &LinkConfig, steps: u64, dt: f64) -> Vec<(f64, f64)> {
 }
 
 /// Shows what the script printed if the test fails.
-struct Shown(PathBuf);
+struct PrintOnPanic(PathBuf);
 
-impl Drop for Shown {
+impl Drop for PrintOnPanic {
     fn drop(&mut self) {
         if std::thread::panicking() {
             eprintln!("{}", std::fs::read_to_string(&self.0).unwrap_or_default());
@@ -136,7 +136,7 @@ fn a_python_block_swings_about_its_equilibrium() {
     let scene_path = dir.path().join("scene.json");
     std::fs::write(&scene_path, scene().to_string()).unwrap();
     let log = dir.path().join("log.txt");
-    let _shown = Shown(log.clone());
+    let _shown = PrintOnPanic(log.clone());
 
     let run = Run::new(0, 50);
     let config: &LinkConfig = &run;

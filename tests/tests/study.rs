@@ -1,4 +1,5 @@
-//! `halfstep study` from end to end: a tiny scene, interrupted and resumed, and asked for errors it can and cannot reach.
+//! `halfstep study` from end to end: a tiny scene, interrupted and resumed, and asked for errors it can and cannot
+//! reach.
 
 use halfstep_tests::process::{is_alive, kill};
 use halfstep_tests::run::program;

@@ -136,8 +136,8 @@ fn two_rows_bend_under_the_difference_of_both_levels() {
     let theory = bend(LEVELS[0]) - bend(LEVELS[1]);
     let ratio = run.curve("top.x").between(0.1, 0.4).mean() / theory;
     println!("deflection over beam theory: {ratio:.3}");
-    // Two rows of this solid, dry, bend by 0.92 of the thin plate's; the thrust of water at rest is good for 2 %, and the
-    // mean of a few swings for as much.
+    // Two rows of this solid, dry, bend by 0.92 of the thin plate's; the thrust of water at rest is good for 2 %, and
+    // the mean of a few swings for as much.
     assert!((ratio / 0.92 - 1.0).abs() < 0.05, "{ratio}");
     assert!(run.report.audit.action_reaction.unwrap() <= 1e-12);
 }

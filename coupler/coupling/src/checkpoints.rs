@@ -105,8 +105,8 @@ impl Checkpoints {
         Ok(self.number)
     }
 
-    /// Completes the pending checkpoint where all participants have theirs on disk. `safe` are the numbers of their last
-    /// ones.
+    /// Completes the pending checkpoint where all participants have theirs on disk. `safe` are the numbers of their
+    /// last ones.
     ///
     /// # Errors
     /// The manifest cannot be written.

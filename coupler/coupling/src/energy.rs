@@ -5,10 +5,10 @@
 //! S      = |E(0)| + max |G| + max |W| + m U² / 2
 //! ```
 //!
-//! S is the energy in play, U the speed that the flow is expected to reach ([`flow_speed`]). Every sum is there anyway: G
-//! follows from the momenta (dG/dt = g . P), W from the forces on the solid over the ways of its particles. Dissipation
-//! makes growth negative. Above [`LIMIT`] or [`SOLID_LIMIT`] for [`PATIENCE`] states the run ends: a fast blow-up leaves the bounds of a
-//! particle before that, and a particle says more.
+//! S is the energy in play, U the speed that the flow is expected to reach ([`flow_speed`]). Every sum is there anyway:
+//! G follows from the momenta (dG/dt = g . P), W from the forces on the solid over the ways of its particles.
+//! Dissipation makes growth negative. Above [`LIMIT`] or [`SOLID_LIMIT`] for [`PATIENCE`] states the run ends: a fast
+//! blow-up leaves the bounds of a particle before that, and a particle says more.
 //!
 //! The walls of a scene must be at rest for the fluid to be judged. A foreign solid's energy is not known. With the
 //! phase-blind interface the fluid strains the solid as well, so both are judged as one.

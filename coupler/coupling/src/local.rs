@@ -233,7 +233,8 @@ impl<const D: usize> LocalRun<D> {
         self.with(|participants, desk| Ok(participants.half_step(desk)? && participants.half_step(desk)?))
     }
 
-    /// Writes what is to be written at the end. Returns how the run went and what the participants say about themselves.
+    /// Writes what is to be written at the end. Returns how the run went and what the participants say about
+    /// themselves.
     ///
     /// # Errors
     /// As for [`Self::step`].

@@ -21,8 +21,8 @@ pub(crate) struct Checkpoint {
 }
 
 impl Checkpoint {
-    /// The newest checkpoint of the run in a folder that is whole, on a processor with this instruction set. A newer one
-    /// that is torn is passed over with a warning.
+    /// The newest checkpoint of the run in a folder that is whole, on a processor with this instruction set. A newer
+    /// one that is torn is passed over with a warning.
     ///
     /// # Errors
     /// There is none, or it is of another scene, program or instruction set.

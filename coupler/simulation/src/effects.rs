@@ -78,8 +78,8 @@ pub(crate) fn ledger(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
     list
 }
 
-/// Puts the shares of the computing time of all roles into the ledger, as the participants reported them. `coupler`: the
-/// coupler's own computing time, s.
+/// Puts the shares of the computing time of all roles into the ledger, as the participants reported them. `coupler`:
+/// the coupler's own computing time, s.
 pub(crate) fn share(report: &mut RunReport, reports: &[(Phase, Report)], coupler: f64) {
     let total = coupler + reports.iter().map(|(_, own)| own.compute).sum::<f64>();
     let sum = |part: &dyn Fn(&Report) -> f64| reports.iter().map(|(_, own)| part(own)).sum::<f64>() / total;
@@ -107,8 +107,8 @@ pub(crate) fn share(report: &mut RunReport, reports: &[(Phase, Report)], coupler
     }
 }
 
-/// The ledger has a row that can show what the effect costs. (A solid's artificial viscosity has none without a fluid's:
-/// then it is part of the solid.)
+/// The ledger has a row that can show what the effect costs. (A solid's artificial viscosity has none without a
+/// fluid's: then it is part of the solid.)
 fn is_on(report: &RunReport, effect: EffectName) -> bool {
     report.effects.iter().any(|row| row.on && row.name == effect.name())
 }

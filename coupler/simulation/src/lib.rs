@@ -14,9 +14,9 @@
 //! # Ok::<(), halfstep::Error>(())
 //! ```
 //!
-//! A [`Simulation`] takes one's own solid (any [`SolidModel`]) or one's own effect on the fluid ([`FluidEffect`]), is stepped
-//! and looked into, writes a run's folder if it is told to, and leaves the rest of the process alone. [`run`](mod@run) is what
-//! the command `halfstep run` does: participants as processes, supervised.
+//! A [`Simulation`] takes one's own solid (any [`SolidModel`]) or one's own effect on the fluid ([`FluidEffect`]), is
+//! stepped and looked into, writes a run's folder if it is told to, and leaves the rest of the process alone.
+//! [`run`](mod@run) is what the command `halfstep run` does: participants as processes, supervised.
 
 mod advice;
 pub mod check;

@@ -19,8 +19,8 @@ pub enum SolidSource {
 /// Starts the participants' processes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Launcher {
-    /// A program that serves a process of participants when it is started with the arguments `role NAME`: `halfstep`, or
-    /// any program that calls [`crate::role_main`] first.
+    /// A program that serves a process of participants when it is started with the arguments `role NAME`: `halfstep`,
+    /// or any program that calls [`crate::role_main`] first.
     pub program: PathBuf,
 }
 

@@ -14,8 +14,8 @@ use halfstep_scene::{Phase, Scene};
 use halfstep_wire::Name;
 use halfstep_wire::protocol::StateHeader;
 
-/// The participants of a coupled scene with the sizes of their messages: each in the process that the scene names, those
-/// in `foreign` in one of their own.
+/// The participants of a coupled scene with the sizes of their messages: each in the process that the scene names,
+/// those in `foreign` in one of their own.
 ///
 /// # Errors
 /// A name of the scene is none.

@@ -37,8 +37,8 @@ pub fn run(scene: &Scene, options: &RunOptions) -> Result<Ended, RunError> {
     execute(scene, options, &directory, None)
 }
 
-/// Goes on with the interrupted run in the folder of the options: from its last whole checkpoint, to the same bits as if it
-/// had never been interrupted. `until` (s) gives it another end.
+/// Goes on with the interrupted run in the folder of the options: from its last whole checkpoint, to the same bits as
+/// if it had never been interrupted. `until` (s) gives it another end.
 ///
 /// # Errors
 /// There is no checkpoint to go on from, or nothing could be started or written.

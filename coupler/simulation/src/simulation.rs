@@ -30,9 +30,9 @@ type Observer<const D: usize> = Box<dyn FnMut(&Running<D>) -> ControlFlow<()>>;
 /// A simulation of a scene that has not begun, in `D` dimensions. `X` is an effect on the fluid that halfstep does not
 /// have itself.
 ///
-/// Everything runs in the calling thread, with a pool of worker threads of its own for the sums over neighbours; the bits
-/// are those of the same scene run as processes. Nothing else of the process is touched: no signal handler, no log, and no
-/// file without [`Self::folder`].
+/// Everything runs in the calling thread, with a pool of worker threads of its own for the sums over neighbours; the
+/// bits are those of the same scene run as processes. Nothing else of the process is touched: no signal handler, no
+/// log, and no file without [`Self::folder`].
 pub struct Simulation<X: FluidEffect<D> = (), const D: usize = 2> {
     scene: Scene,
     effect: Option<X>,
@@ -101,8 +101,8 @@ impl<X: FluidEffect<D>, const D: usize> Simulation<X, D> {
         Simulation { scene, effect: Some(effect), solids, observers, folder, replace, threads, stop }
     }
 
-    /// With a model of one's own for a solid of the scene. Its material in the scene decides what the fluid takes it for
-    /// (density, stiffness); the number of its particles is its own.
+    /// With a model of one's own for a solid of the scene. Its material in the scene decides what the fluid takes it
+    /// for (density, stiffness); the number of its particles is its own.
     ///
     /// # Errors
     /// The scene has no solid of this name.

@@ -11,8 +11,8 @@ use std::time::Instant;
 /// Steps that are timed.
 const STEPS: u64 = 4;
 
-/// Seconds of a participant's own step of length `dt`, s: the fastest of a few, without the other phase; `None` where it
-/// leaves its bounds.
+/// Seconds of a participant's own step of length `dt`, s: the fastest of a few, without the other phase; `None` where
+/// it leaves its bounds.
 pub(crate) fn step_cost(role: Box<dyn Role>, dt: f64) -> Option<f64> {
     let mut port = Stopwatch {
         names: [role.name()],

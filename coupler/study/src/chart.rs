@@ -1,9 +1,10 @@
-//! A coordinate system of logarithms with grid, labels and legend.
+//! A coordinate system of logarithms with grid and labels, and the legend of several of them.
 
 use halfstep_output::pictures::canvas::{Area, Drawn, FONT};
 use halfstep_output::pictures::plot;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
+use std::cell::RefCell;
 use std::ops::Range;
 
 /// Pixels drawn for each pixel of the picture, in each direction.
@@ -12,6 +13,10 @@ const GRID: RGBColor = RGBColor(228, 228, 228);
 const FRAME: RGBColor = RGBColor(90, 90, 90);
 /// Height of a legend entry, pixels.
 const ENTRY: i32 = 17;
+/// Radius of a mark, pixels.
+const MARK: i32 = 5;
+/// Size of a note beside a mark, pixels.
+const NOTE: i32 = 11;
 
 pub(super) fn px(n: i32) -> i32 {
     n * OVERSAMPLING
@@ -25,12 +30,63 @@ pub(super) fn stroke(color: RGBColor, width: i32) -> ShapeStyle {
     ShapeStyle { color: color.to_rgba(), filled: false, stroke_width: px(width) as u32 }
 }
 
-/// Colour of the k-th series: a palette, then its lighter shades.
+/// Colours of a palette.
+const COLORS: usize = plot::CURVES.len() + plot::REFERENCES.len();
+
+/// Colour of the k-th series: a palette, then its lighter shades, then its darker ones.
 pub(super) fn color(k: usize) -> RGBColor {
     let all = [&plot::CURVES[..], &plot::REFERENCES[..]].concat();
-    let RGBColor(r, g, b) = all[k % all.len()];
-    let lighter = |c: u8| if k < all.len() { c } else { c / 2 + 127 };
-    RGBColor(lighter(r), lighter(g), lighter(b))
+    let RGBColor(r, g, b) = all[k % COLORS];
+    let shade = |c: u8| match k / COLORS % 3 {
+        0 => c,
+        1 => c / 2 + 110,
+        _ => c / 2,
+    };
+    RGBColor(shade(r), shade(g), shade(b))
+}
+
+/// Shape of a series' marks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Shape {
+    Circle,
+    Square,
+    Triangle,
+    Diamond,
+}
+
+/// How the points of a series are marked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Mark {
+    pub(super) color: RGBColor,
+    pub(super) shape: Shape,
+}
+
+impl Mark {
+    /// Mark of the k-th series: another shape for each turn of the palette.
+    pub(super) fn of(k: usize) -> Self {
+        let shapes = [Shape::Circle, Shape::Square, Shape::Triangle, Shape::Diamond];
+        Self { color: color(k), shape: shapes[k / COLORS % shapes.len()] }
+    }
+
+    fn draw(self, area: &Area<'_>, (x, y): (i32, i32), radius: i32, filled: bool) -> Drawn {
+        let style = ShapeStyle { color: self.color.to_rgba(), filled, stroke_width: px(2) as u32 };
+        let r = px(radius);
+        let corners: &[(i32, i32)] = match self.shape {
+            Shape::Circle => {
+                return Ok(area.draw(&Circle::new((x, y), r, style)).map_err(|e| e.to_string())?);
+            }
+            Shape::Square => &[(-r, -r), (r, -r), (r, r), (-r, r)],
+            Shape::Triangle => &[(0, -r), (r, r), (-r, r)],
+            Shape::Diamond => &[(0, -r - r / 4), (r + r / 4, 0), (0, r + r / 4), (-r - r / 4, 0)],
+        };
+        let polygon = |parts: i32, color: RGBColor| -> Drawn {
+            let outline: Vec<_> =
+                corners.iter().map(|(dx, dy)| (x + dx * parts / r, y + dy * parts / r)).collect();
+            Ok(area.draw(&Polygon::new(outline, color.filled())).map_err(|e| e.to_string())?)
+        };
+        polygon(r, self.color)?;
+        if filled { Ok(()) } else { polygon(r - px(2), WHITE) }
+    }
 }
 
 pub(super) fn write(area: &Area<'_>, text: &str, at: (i32, i32), size: i32, place: (HPos, VPos)) -> Drawn {
@@ -78,8 +134,33 @@ pub(super) struct Axis<'f> {
 /// A name with the mark it explains.
 pub(super) struct Entry {
     pub(super) name: String,
-    pub(super) color: RGBColor,
+    pub(super) mark: Mark,
     pub(super) filled: bool,
+}
+
+/// Columns in which entries fit into a width, pixels.
+fn columns(entries: &[Entry], width: i32) -> usize {
+    // A letter of the legend is at most 8 pixels wide on average.
+    let widest = entries.iter().map(|e| e.name.chars().count()).max().unwrap_or(0) as i32 * 8 + 40;
+    (width / widest).max(1) as usize
+}
+
+/// Height of the legend of entries in a picture of that width, pixels.
+pub(super) fn legend_height(entries: &[Entry], width: i32) -> i32 {
+    ENTRY * (entries.len().div_ceil(columns(entries, width)) as i32 + 1)
+}
+
+/// Draws the legend: columns of equal length.
+pub(super) fn legend(area: &Area<'_>, entries: &[Entry]) -> Drawn {
+    let width = area.dim_in_pixel().0 as i32;
+    let columns = columns(entries, width / OVERSAMPLING);
+    let rows = entries.len().div_ceil(columns);
+    for (k, entry) in entries.iter().enumerate() {
+        let at = (px(30) + (k / rows) as i32 * (width / columns as i32), px(ENTRY * (k % rows) as i32 + 8));
+        entry.mark.draw(area, at, MARK - 1, entry.filled)?;
+        write(area, &entry.name, (at.0 + px(12), at.1), 12, (HPos::Left, VPos::Center))?;
+    }
+    Ok(())
 }
 
 /// Where points go.
@@ -87,21 +168,21 @@ pub(super) struct Chart<'a, 'b> {
     area: &'a Area<'b>,
     ranges: [Range<f64>; 2],
     inside: [i32; 4],
+    /// Rectangles that marks and notes take, pixels: left, top, right, bottom.
+    taken: RefCell<Vec<[i32; 4]>>,
 }
 
 impl<'a, 'b> Chart<'a, 'b> {
-    /// Draws grid, frame, labels, and the legend below.
+    /// Draws grid, frame and labels.
     pub(super) fn new(
         area: &'a Area<'b>,
         title: &str,
         [x, y]: [Axis<'_>; 2],
-        legend: &[Entry],
     ) -> Result<Self, Box<dyn std::error::Error>> {
         let (width, height) = area.dim_in_pixel();
-        let below = px(54 + ENTRY * legend.len() as i32);
-        let inside = [px(84), px(34), width as i32 - px(24), height as i32 - below];
+        let inside = [px(84), px(34), width as i32 - px(24), height as i32 - px(54)];
         let [left, top, right, bottom] = inside;
-        let chart = Self { area, ranges: [x.range, y.range], inside };
+        let chart = Self { area, ranges: [x.range, y.range], inside, taken: RefCell::default() };
         for t in ticks(&chart.ranges[0]) {
             let at = chart.at(t, chart.ranges[1].start).0;
             chart.path(&[(at, top), (at, bottom)], stroke(GRID, 1))?;
@@ -119,11 +200,6 @@ impl<'a, 'b> Chart<'a, 'b> {
         write(area, &x.title, (middle.0, bottom + px(26)), 13, (HPos::Center, VPos::Top))?;
         let side = font(13).pos(Pos::new(HPos::Center, VPos::Top)).transform(FontTransform::Rotate270);
         area.draw(&Text::new(y.title, (px(6), middle.1), side)).map_err(|e| e.to_string())?;
-        for (k, entry) in legend.iter().enumerate() {
-            let y = bottom + px(54 + ENTRY * k as i32);
-            chart.circle((left + px(12), y), 4, entry.color, entry.filled)?;
-            write(area, &entry.name, (left + px(24), y), 12, (HPos::Left, VPos::Center))?;
-        }
         Ok(chart)
     }
 
@@ -144,13 +220,11 @@ impl<'a, 'b> Chart<'a, 'b> {
         Ok(self.area.draw(&PathElement::new(points.to_vec(), style)).map_err(|e| e.to_string())?)
     }
 
-    fn circle(&self, at: (i32, i32), radius: i32, color: RGBColor, filled: bool) -> Drawn {
-        let style = ShapeStyle { color: color.to_rgba(), filled, stroke_width: px(2) as u32 };
-        Ok(self.area.draw(&Circle::new(at, px(radius), style)).map_err(|e| e.to_string())?)
-    }
-
-    pub(super) fn mark(&self, point: (f64, f64), color: RGBColor, filled: bool) -> Drawn {
-        self.circle(self.pixel(point), 5, color, filled)
+    pub(super) fn mark(&self, point: (f64, f64), mark: Mark, filled: bool) -> Drawn {
+        let (x, y) = self.pixel(point);
+        let r = px(MARK);
+        self.taken.borrow_mut().push([x - r, y - r, x + r, y + r]);
+        mark.draw(self.area, (x, y), MARK, filled)
     }
 
     pub(super) fn line(&self, points: &[(f64, f64)], style: ShapeStyle) -> Drawn {
@@ -158,21 +232,62 @@ impl<'a, 'b> Chart<'a, 'b> {
         self.path(&points, style)
     }
 
-    /// A word above a point.
+    /// A word beside a marked point, where it covers no mark and no other word; else none. Draw all marks first.
     pub(super) fn note(&self, point: (f64, f64), text: &str) -> Drawn {
-        let (x, y) = self.pixel(point);
-        write(self.area, text, (x, y - px(8)), 11, (HPos::Center, VPos::Bottom))
+        let at = self.pixel(point);
+        let (width, height) = self.area.estimate_text_size(text, &font(NOTE)).map_err(|e| e.to_string())?;
+        let mut taken = self.taken.borrow_mut();
+        let Some(room) = room(at, (width as i32, height as i32), self.inside, &taken) else { return Ok(()) };
+        taken.push(room);
+        write(self.area, text, (room[0], (room[1] + room[3]) / 2), NOTE, (HPos::Left, VPos::Center))
     }
 }
 
-/// Height that a legend takes, pixels.
-pub(super) fn legend_height(entries: usize) -> i32 {
-    ENTRY * entries as i32
+/// Place of a word of that size beside a point: above, below, right or left of it, within `inside` and free of `taken`.
+fn room((x, y): (i32, i32), (w, h): (i32, i32), inside: [i32; 4], taken: &[[i32; 4]]) -> Option<[i32; 4]> {
+    let gap = px(MARK + 3);
+    let corners =
+        [(x - w / 2, y - gap - h), (x - w / 2, y + gap), (x + gap, y - h / 2), (x - gap - w, y - h / 2)];
+    let places = corners.map(|(left, top)| [left, top, left + w, top + h]);
+    let within =
+        |p: &[i32; 4]| p[0] >= inside[0] && p[1] >= inside[1] && p[2] <= inside[2] && p[3] <= inside[3];
+    let meet = |a: &[i32; 4], b: &[i32; 4]| a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3];
+    places.into_iter().find(|place| within(place) && !taken.iter().any(|other| meet(place, other)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn marks_do_not_repeat_soon() {
+        for k in 0..4 * COLORS {
+            assert!((0..k).all(|other| Mark::of(other) != Mark::of(k)), "{k}");
+        }
+        assert!((0..3 * COLORS).all(|k| (0..k).all(|other| color(other) != color(k))));
+    }
+
+    #[test]
+    fn notes_go_where_there_is_room() {
+        let inside = [0, 0, 400, 400];
+        let (at, size) = ((200, 200), (60, 20));
+        let above = room(at, size, inside, &[]).unwrap();
+        assert_eq!(above, [170, 164, 230, 184]);
+        let below = room(at, size, inside, &[above]).unwrap();
+        assert!(below[1] > 200, "{below:?}");
+        // At the top of the frame there is no room above, and where all is taken there is none.
+        assert!(room((200, 10), size, inside, &[]).unwrap()[1] > 10);
+        assert_eq!(room(at, size, inside, &[inside]), None);
+    }
+
+    #[test]
+    fn a_legend_has_as_many_columns_as_fit() {
+        let entry = |name: &str| Entry { name: name.into(), mark: Mark::of(0), filled: true };
+        let short: Vec<Entry> = (0..7).map(|_| entry("numerics.cfl=0.2")).collect();
+        assert_eq!(columns(&short, 1240), 7);
+        assert_eq!(legend_height(&short, 1240), 2 * ENTRY);
+        assert_eq!(columns(&[entry(&"x".repeat(300))], 1240), 1);
+    }
 
     #[test]
     fn axes_end_at_round_numbers_and_have_ticks() {

@@ -3,7 +3,7 @@
 use super::fit::{Fit, Point, Prediction};
 use super::result::{MetricResult, Row};
 
-/// What is wanted.
+/// Goal of a study.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
     /// This relative error at least cost.
@@ -17,7 +17,7 @@ pub enum Goal {
 pub struct Candidate {
     /// Where it lies.
     pub point: Point,
-    /// Its row, where it has been run.
+    /// Row of the candidate, where it has been run.
     pub row: Option<usize>,
     /// Relative error.
     pub error: Prediction,
@@ -25,7 +25,8 @@ pub struct Candidate {
     pub time: Prediction,
 }
 
-/// How wrong the law of the coarser runs was about the finest ones: what residuals do not show, that the law may be none.
+/// How wrong the law of the coarser runs was about the finest ones: what residuals do not show, that the law may be
+/// none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surprise {
     /// Largest |ln(error / predicted error)| of the finest runs.
@@ -186,7 +187,8 @@ mod tests {
         assert!((best.error.value - 0.005).abs() < 1e-8 && best.error.high() > 0.006);
     }
 
-    /// Errors 8, 4, 2 % at 4, 2, 1 promised 1 % at 1/2, and it was 2 %: a factor of two, and as much again for each halving.
+    /// Errors 8, 4, 2 % at 4, 2, 1 promised 1 % at 1/2, and it was 2 %: a factor of two, and as much again for each
+    /// halving.
     #[test]
     fn an_interval_is_as_wide_as_the_last_prediction_was_wrong() {
         let rows: Vec<Row> = [4.0, 2.0, 1.0, 0.5].map(|dx| row(dx, &[], 1.0 / dx, 0.0)).into();

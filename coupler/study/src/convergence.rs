@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn no_order_is_invented() {
+    fn results_that_do_not_converge_have_no_order() {
         assert_eq!(richardson(&[(1.0, 1.0), (2.0, 2.0)]), Convergence::TooFew);
         assert_eq!(richardson(&[(1.0, 1.0), (2.0, 2.0), (4.0, 1.5)]), Convergence::NotMonotone);
         assert_eq!(richardson(&[(1.0, 1.0), (2.0, 1.0), (4.0, 1.5)]), Convergence::NotMonotone);

@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn the_interval_is_students() {
+    fn the_interval_follows_students_distribution() {
         // Logarithms 0, 1 at one spacing: mean 1/2, deviation sqrt(1/2), one spare run. t(0.9, 1) = 3.0777;
         // the half width is 3.0777 sqrt(1/2) sqrt(3/2).
         let runs = [(at(1.0, &[]), 1.0), (at(1.0, &[]), 1.0_f64.exp())];
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_runs_cannot_tell_apart_is_not_predicted_alone() {
+    fn keys_that_only_changed_together_are_not_predicted_apart() {
         let both = &["a=1", "b=1"][..];
         let fit = Fit::new(&[(at(1.0, &[]), 1.0), (at(1.0, both), 4.0), (at(1.0, both), 4.0)]).unwrap();
         assert!((fit.predict(&at(1.0, both)).unwrap().value - 4.0).abs() < 1e-9);

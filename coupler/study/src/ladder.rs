@@ -246,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn what_repeats_the_scenes_own_value_is_no_run_of_its_own() {
+    fn a_value_that_is_the_scenes_own_makes_no_further_run() {
         let (_dir, path) = scene_file();
         let ladder = [vary("resolution=0.1,0.2"), vary("numerics.cfl=0.25,0.4")];
         let settings = settings(&path, &[], &ladder, false).unwrap();

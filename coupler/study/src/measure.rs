@@ -20,7 +20,7 @@ pub enum Unmeasured {
     /// There is nothing in the window.
     #[error("has fewer than two values in its window")]
     Empty,
-    /// A value is no number.
+    /// A value is NaN or infinite.
     #[error("meets a value that is no number")]
     NotFinite,
     /// The curve does not pass the level often enough.
@@ -34,12 +34,12 @@ pub enum Unmeasured {
 /// Points (time s, value), ascending in time.
 pub type Curve = Vec<[f64; 2]>;
 
-/// What a metric should be, with where that comes from.
+/// Reference of a metric, with its source.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Target {
     /// The number.
     pub value: f64,
-    /// Its source.
+    /// Source of the reference.
     pub source: String,
     /// What errors are relative to.
     pub scale: f64,
@@ -91,7 +91,7 @@ fn number(metric: &Metric, curve: &Curve) -> Result<f64, Unmeasured> {
         MetricKind::Mean => Ok(mean(&part)),
         MetricKind::Period { level } => period(&part, level),
         MetricKind::Decay { level } => decay(&part, level),
-        // Both need more than a window; see the callers.
+        // A period and a decay need more than a window; the callers compute them.
         MetricKind::Value { .. } | MetricKind::Rms => Err(Unmeasured::Empty),
     }
 }
@@ -228,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn what_only_falls_has_a_decay_and_no_period() {
+    fn a_curve_that_only_falls_has_a_decay_and_no_period() {
         let fall = sampled(|t| 3.0 * (-1.5 * t).exp());
         assert!((number(&metric(MetricKind::Decay { level: 0.0 }), &fall).unwrap() - 1.5).abs() < 1e-9);
         let period = number(&metric(MetricKind::Period { level: 0.0 }), &fall);

@@ -13,13 +13,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_what_nobody_beats_is_on_the_front() {
+    fn settings_that_another_one_beats_are_not_on_the_front() {
         let points = [(1.0, 9.0), (2.0, 4.0), (3.0, 5.0), (4.0, 1.0), (4.0, 2.0), (f64::NAN, 0.0)];
         assert_eq!(front(&points), [true, true, false, true, false, false]);
     }
 
     #[test]
-    fn equals_share_the_front() {
+    fn settings_of_equal_error_and_cost_are_both_on_the_front() {
         assert_eq!(front(&[(1.0, 1.0), (1.0, 1.0)]), [true, true]);
         assert!(front(&[]).is_empty());
     }

@@ -1,6 +1,8 @@
 //! What a study's numbers look like: error over cost, error over resolution, and where the time went.
 
-use super::chart::{Axis, Chart, Entry, axis, color, font, legend_height, px, stroke, write};
+use super::chart::{
+    Axis, Chart, Entry, Mark, Shape, axis, color, font, legend, legend_height, px, stroke, write,
+};
 use super::report::{Study, readable, short};
 use super::result::{MetricResult, Row};
 use halfstep_output::OutputError;
@@ -11,12 +13,14 @@ use std::path::Path;
 
 /// Height of a picture's heading, pixels.
 const HEAD: i32 = 44;
-/// Width and height of a panel without its legend, pixels.
+/// Width and height of a panel, pixels.
 const PANEL: (i32, i32) = (620, 400);
+/// Width of a panel of the convergence, pixels.
+const WIDE: i32 = 860;
 /// Height of a bar of the time's shares, with its distance to the next, pixels.
 const BAR: (i32, i32) = (24, 34);
 const FRONT: RGBColor = RGBColor(170, 170, 170);
-const HOLLOW: RGBColor = RGBColor(120, 120, 120);
+const HOLLOW: Mark = Mark { color: RGBColor(120, 120, 120), shape: Shape::Circle };
 
 /// Draws `work-precision.png`, `convergence.png` and `time-share.png`.
 ///
@@ -24,23 +28,27 @@ const HOLLOW: RGBColor = RGBColor(120, 120, 120);
 /// A picture cannot be drawn or written.
 pub fn draw(study: &Study, folder: &Path) -> Result<(), OutputError> {
     let metrics = study.metrics.len();
-    let families = families(&study.rows).len();
     let heading = |what: &str| format!("{} · {what}", study.scene);
-    let height = |entries: usize| HEAD + metrics as i32 * (PANEL.1 + legend_height(entries));
-    let size = (2 * PANEL.0, height(families + 1));
+    let panels = metrics as i32 * PANEL.1;
+    let entries = entries(study, "hollow: another run is as cheap and better");
+    let width = 2 * PANEL.0;
+    let size = (width, HEAD + panels + legend_height(&entries, width));
     picture(&folder.join("work-precision.png"), size, &heading("what accuracy costs"), |area| {
-        for (panel, metric) in area.split_evenly((metrics, 2)).chunks(2).zip(&study.metrics) {
+        let (charts, below) = area.split_vertically(px(panels));
+        for (panel, metric) in charts.split_evenly((metrics, 2)).chunks(2).zip(&study.metrics) {
             work_precision(&panel[0], study, metric, Cost::Time)?;
             work_precision(&panel[1], study, metric, Cost::Work)?;
         }
-        Ok(())
+        legend(&below, &entries)
     })?;
-    let size = (760, height(2 * families));
+    let entries = self::entries(study, "hollow: error against the finest runs");
+    let size = (WIDE, HEAD + panels + legend_height(&entries, WIDE));
     picture(&folder.join("convergence.png"), size, &heading("convergence"), |area| {
-        for (panel, metric) in area.split_evenly((metrics, 1)).iter().zip(&study.metrics) {
+        let (charts, below) = area.split_vertically(px(panels));
+        for (panel, metric) in charts.split_evenly((metrics, 1)).iter().zip(&study.metrics) {
             convergence(panel, study, metric)?;
         }
-        Ok(())
+        legend(&below, &entries)
     })?;
     let size = (900, HEAD + 60 + BAR.1 * study.rows.len() as i32);
     picture(&folder.join("time-share.png"), size, &heading("where the time goes"), |area| shares(area, study))
@@ -97,6 +105,19 @@ fn family_name(choices: &[String]) -> String {
     if choices.is_empty() { "as in the scene".into() } else { readable(&choices.join(" ")) }
 }
 
+/// The legend of all panels: a mark for each set of choices, and what hollow marks say.
+fn entries(study: &Study, hollow: &str) -> Vec<Entry> {
+    let families = families(&study.rows);
+    let family = |(k, choices): (usize, &&Vec<String>)| Entry {
+        name: family_name(choices),
+        mark: Mark::of(k),
+        filled: true,
+    };
+    let mut entries: Vec<Entry> = families.iter().enumerate().map(family).collect();
+    entries.push(Entry { name: hollow.into(), mark: HOLLOW, filled: false });
+    entries
+}
+
 fn error_label(error: f64) -> String {
     format!("{} %", tick(100.0 * error))
 }
@@ -117,32 +138,29 @@ fn work_precision(area: &Area<'_>, study: &Study, metric: &MetricResult, cost: C
         Cost::Work => metric.errors[k].front_work,
     };
     let families = families(&study.rows);
-    let entry = |(k, choices): (usize, &&Vec<String>)| Entry {
-        name: family_name(choices),
-        color: color(k),
-        filled: true,
-    };
-    let mut legend: Vec<Entry> = families.iter().enumerate().map(entry).collect();
-    let name = "hollow: another run is as cheap and better".into();
-    legend.push(Entry { name, color: HOLLOW, filled: false });
     let heading = format!("{}: {}", metric.name, Study::against(metric));
     let axes = [
         Axis { range: x, title: title.into(), label },
         Axis { range: y, title: "relative error".into(), label: &error_label },
     ];
-    let chart = Chart::new(area, &heading, axes, &legend)?;
+    let chart = Chart::new(area, &heading, axes)?;
     let mut front: Vec<_> = (0..study.rows.len()).filter(|k| on_front(*k)).filter_map(point).collect();
     front.sort_by(|a, b| a.0.total_cmp(&b.0));
     chart.line(&front, stroke(FRONT, 2))?;
     for (k, row) in study.rows.iter().enumerate() {
         let Some(p) = point(k) else { continue };
-        let family = families.iter().position(|f| **f == row.choices).unwrap_or(0);
+        let mark = Mark::of(families.iter().position(|f| **f == row.choices).unwrap_or(0));
         let (shortest, longest) = row.spread();
         if cost == Cost::Time && longest > shortest {
-            chart.line(&[(shortest, p.1), (longest, p.1)], stroke(color(family), 1))?;
+            chart.line(&[(shortest, p.1), (longest, p.1)], stroke(mark.color, 1))?;
         }
-        chart.mark(p, color(family), on_front(k))?;
-        chart.note(p, &format!("{} m", short(row.resolution).trim_end_matches('0')))?;
+        chart.mark(p, mark, on_front(k))?;
+    }
+    // Spacings: of the runs on the front first, where room is short.
+    let (first, then): (Vec<usize>, Vec<usize>) = (0..study.rows.len()).partition(|k| on_front(*k));
+    for k in first.into_iter().chain(then) {
+        let Some(p) = point(k) else { continue };
+        chart.note(p, &format!("{} m", short(study.rows[k].resolution).trim_end_matches('0')))?;
     }
     Ok(())
 }
@@ -163,31 +181,26 @@ fn convergence(area: &Area<'_>, study: &Study, metric: &MetricResult) -> Drawn {
     let (Some(x), Some(y)) = (axis(spacings), axis(all())) else { return nothing(area, &metric.name) };
     let verdict = metric.largest_group().map_or(String::new(), |group| group.convergence.verdict());
     let families = families(&study.rows);
-    let (mut legend, mut curves) = (Vec::new(), Vec::new());
+    let mut curves = Vec::new();
     for (family, choices) in families.iter().enumerate() {
         for (filled, error) in [(true, &shown as &dyn Fn(usize) -> Option<f64>), (false, &finest)] {
             let of_family = (0..study.rows.len()).filter(|k| study.rows[*k].choices == **choices);
             let mut points: Vec<_> =
                 of_family.filter_map(|k| Some((study.rows[k].resolution, error(k)?))).collect();
             points.sort_by(|a, b| a.0.total_cmp(&b.0));
-            if points.is_empty() {
-                continue;
-            }
-            let what = if filled { Study::against(metric) } else { "error against the finest runs".into() };
-            let name = if choices.is_empty() { what } else { format!("{}: {what}", family_name(choices)) };
-            legend.push(Entry { name, color: color(family), filled });
-            curves.push((points, color(family), filled));
+            curves.push((points, Mark::of(family), filled));
         }
     }
     let axes = [
         Axis { range: x, title: "particle spacing [m]".into(), label: &tick },
         Axis { range: y, title: "relative error".into(), label: &error_label },
     ];
-    let chart = Chart::new(area, &format!("{} · {verdict}", metric.name), axes, &legend)?;
-    for (points, color, filled) in curves {
-        chart.line(&points, stroke(color, if filled { 2 } else { 1 }))?;
+    let heading = format!("{}: {} · {verdict}", metric.name, Study::against(metric));
+    let chart = Chart::new(area, &heading, axes)?;
+    for (points, mark, filled) in curves {
+        chart.line(&points, stroke(mark.color, if filled { 2 } else { 1 }))?;
         for point in points {
-            chart.mark(point, color, filled)?;
+            chart.mark(point, mark, filled)?;
         }
     }
     Ok(())

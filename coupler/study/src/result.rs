@@ -41,12 +41,12 @@ pub struct Row {
     pub pair_evaluations: Option<u64>,
     /// Where the first repeat's time went.
     pub roles: Roles,
-    /// Its effects.
+    /// Effects of the first run.
     pub effects: Vec<EffectReport>,
     /// Each metric of the study, or why it could not be taken.
     #[serde(serialize_with = "numbers_or_reasons")]
     pub values: Vec<Result<f64, String>>,
-    /// It was chosen for a goal, and is not of the ladder.
+    /// The setting was chosen for a goal and is not of the ladder.
     pub chosen: bool,
     /// Folders of the repeats.
     pub folders: Vec<PathBuf>,
@@ -131,11 +131,11 @@ pub enum Against {
 /// A metric over all settings.
 #[derive(Clone, Debug, Serialize)]
 pub struct MetricResult {
-    /// Its name.
+    /// Name of the metric.
     pub name: String,
     /// Unit of its values.
     pub unit: String,
-    /// What it should be.
+    /// Reference of the metric.
     pub reference: Option<f64>,
     /// Where that comes from.
     pub source: Option<String>,
@@ -150,9 +150,9 @@ pub struct MetricResult {
 /// Settings that differ in resolution alone.
 #[derive(Clone, Debug, Serialize)]
 pub struct Group {
-    /// What they have in common.
+    /// Choices that all runs of the group share.
     pub choices: Vec<String>,
-    /// Their spacings, finest first, m.
+    /// Spacings of the runs, finest first, m.
     pub resolutions: Vec<f64>,
     /// What the three finest say.
     pub convergence: Convergence,

@@ -26,7 +26,7 @@ const TICK: Duration = Duration::from_millis(50);
 /// Which program made a run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Program {
-    /// Its version.
+    /// Version of the program.
     pub version: String,
     /// Hash of its file: versions under development have the same number.
     pub build: String,
@@ -36,7 +36,7 @@ impl Program {
     /// The one that is running.
     ///
     /// # Errors
-    /// Its file cannot be read.
+    /// The program's file cannot be read.
     pub fn own() -> Result<Self, StudyError> {
         let bytes = own_path().and_then(std::fs::read).map_err(StudyError::system("the own program"))?;
         Ok(Self { version: env!("CARGO_PKG_VERSION").into(), build: format!("{:016x}", xxh3_64(&bytes)) })
@@ -50,15 +50,15 @@ fn own_path() -> std::io::Result<PathBuf> {
 /// One run to make.
 #[derive(Clone, Debug)]
 pub struct Job {
-    /// What it shows of itself.
+    /// Name of the run in the progress display.
     pub label: String,
-    /// Its folder.
+    /// Folder of the run.
     pub dir: PathBuf,
     /// The scene's file.
     pub scene: PathBuf,
-    /// What is set.
+    /// Overrides, `KEY=VALUE`.
     pub overrides: Vec<String>,
-    /// Its end, s.
+    /// End time, s.
     pub end_time: f64,
     /// Expected cost, in any unit.
     pub cost: f64,
@@ -214,7 +214,7 @@ fn end(running: &mut [(usize, Child)]) {
         unsafe { libc::kill(child.id() as libc::pid_t, libc::SIGTERM) };
     }
     for (_, child) in running.iter_mut() {
-        // One that cannot be waited for is gone.
+        // A child that cannot be waited for is gone.
         let _ = child.wait();
     }
 }

@@ -40,7 +40,7 @@ impl Session<'_> {
                 let Some(found) = pick(goal, &open).cloned() else {
                     return Ok(Reached::No(out_of_reach(goal, &all)));
                 };
-                // What the scene does not allow is no candidate.
+                // A setting that the scene refuses is no candidate.
                 match self.setting(&found) {
                     Some(setting) => break (found, setting),
                     None => open.retain(|c| *c != found),

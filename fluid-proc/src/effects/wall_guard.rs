@@ -2,9 +2,10 @@
 //!
 //! Between fluid and wall the same Pi_ij acts as between fluid particles (Kayaki's eq. 23), with the velocity that the
 //! wall shows. The guard raises its A to 1 along free-slip walls: what the cross-phase f_i is between fluid and solid.
-//! Without it single particles of a thin film sink into the wall by up to 1.7 dx before their pressure stops them (elastic
-//! gate, 2.5 mm); with it 0.25 dx. There the wall shows the particle's own tangential velocity, so nothing drags along
-//! it. No-slip walls and corners reverse the whole velocity and keep the scene's A: a guard would be friction.
+//! Without it single particles of a thin film sink into the wall by up to 1.7 dx before their pressure stops them
+//! (elastic gate, 2.5 mm); with it 0.25 dx. There the wall shows the particle's own tangential velocity, so nothing
+//! drags along it. No-slip walls and corners reverse the whole velocity and keep the scene's A: a guard would be
+//! friction.
 
 use super::artificial_viscosity::ArtificialViscosity;
 use super::{FluidEffect, Listed};

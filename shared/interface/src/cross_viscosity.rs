@@ -1,5 +1,5 @@
-//! The cross-phase artificial viscosity f_i, Kayaki's eq. (32): what keeps fluid and solid particles from passing through
-//! each other.
+//! The cross-phase artificial viscosity f_i, Kayaki's eq. (32): what keeps fluid and solid particles from passing
+//! through each other.
 //!
 //!   f_i = -sum_j m_j Pi_ij grad W,  Pi_ij = -C c_ij theta_ij / rho_ij where v_ij . x_ij < 0, else 0,
 //!   theta_ij = h v_ij . x_ij / (r² + 0.01 h²),  rho_ij = (rho_i + rho_j) / 2,

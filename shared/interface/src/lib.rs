@@ -1,8 +1,8 @@
 //! The interface between fluid and solid, seen from the records that both sides published.
 //!
 //! Fluid process and coupler hold the same two records and run the same code on them in the same order, so what both
-//! need (the pressure that solid particles show to the fluid, the cross-phase pair force) has the same bits on each side
-//! without a further message.
+//! need (the pressure that solid particles show to the fluid, the cross-phase pair force) has the same bits on each
+//! side without a further message.
 
 pub mod cross_viscosity;
 mod moving_wall;
@@ -193,7 +193,7 @@ impl<const D: usize> Interface<D> {
         match self.parameters.treatment {
             Treatment::MovingWall => match &self.screen {
                 None => moving_wall::act_on_fluid(self, &mut sums),
-                Some(screen) => moving_wall::push_fluid(self, screen.shown(self), &mut sums),
+                Some(screen) => moving_wall::push_fluid(self, screen.wall(self), &mut sums),
             },
             Treatment::PhaseBlind => phase_blind::act_on_fluid(self, &mut sums),
         }
@@ -211,7 +211,7 @@ impl<const D: usize> Interface<D> {
         match self.parameters.treatment {
             Treatment::MovingWall => match &self.screen {
                 None => moving_wall::act_on_solid(self, &mut sums),
-                Some(screen) => moving_wall::push_solid(self, screen.shown(self), &mut sums),
+                Some(screen) => moving_wall::push_solid(self, screen.wall(self), &mut sums),
             },
             Treatment::PhaseBlind => phase_blind::act_on_solid(self, &mut sums),
         }

@@ -4,7 +4,8 @@
 //!   p_s = sum_f [ p_f + rho_f g . (x_s - x_f) ] W_sf / sum_f W_sf,
 //! the density of the fluid's equation of state at that pressure, the mass of the fluid that it displaces,
 //! m_s = rho_f0 V_s0, and its own velocity. With grad W = F x_ij,
-//!   D rho_f / Dt += rho_f sum_s m_s / rho_s v_fs . grad W,   m_f a_f += -sum_s m_f m_s (p_f/rho_f² + p_s/rho_s²) grad W,
+//!   D rho_f / Dt += rho_f sum_s m_s / rho_s v_fs . grad W,
+//!   m_f a_f += -sum_s m_f m_s (p_f/rho_f² + p_s/rho_s²) grad W,
 //! and the solid receives the opposite of each pair force. Its density and strain do not see the fluid.
 
 use super::{FluidSum, Interface, Parameters, Side, SolidForce};
@@ -48,14 +49,15 @@ pub(super) fn extrapolation<K: Kernel<D>, const D: usize>(
     }
 }
 
-/// The pressure that the k-th of four solid particles shows; 0 without fluid around, and not below 0 unless the scene lets it.
+/// The pressure that the k-th of four solid particles shows; 0 without fluid around, and not below 0 unless the scene
+/// lets it.
 pub(super) fn extrapolated<const D: usize>(p: &Parameters<D>, sum: &ExtrapolationSum, k: usize) -> f64 {
     let pressure = sum.pressure(k).unwrap_or(0.0);
     if p.non_negative_pressure { pressure.max(0.0) } else { pressure }
 }
 
-/// What a solid particle shows the fluid, which may depend on where the fluid is.
-pub(super) trait Shown<const D: usize>: Copy + Send + Sync {
+/// Pressure of a solid particle toward the fluid, which for a particle of a thin plate depends on where the fluid is.
+pub(super) trait WallPressure<const D: usize>: Copy + Send + Sync {
     /// What is loaded of four solid particles.
     type Own: Copy;
     /// Loads the solid particles at `slot..slot + 4`.
@@ -66,11 +68,11 @@ pub(super) trait Shown<const D: usize>: Copy + Send + Sync {
     fn to<A: Arch>(&self, j: usize, to_fluid: [Lane; D]) -> (Lane, Lane);
 }
 
-/// The same on all sides: the columns of the solid.
+/// One pressure whatever the fluid's place is: the columns of the solid.
 #[derive(Clone, Copy)]
-struct AllSides<'a, const D: usize>(&'a Side<D>);
+struct OneFace<'a, const D: usize>(&'a Side<D>);
 
-impl<const D: usize> Shown<D> for AllSides<'_, D> {
+impl<const D: usize> WallPressure<D> for OneFace<'_, D> {
     type Own = Lane;
 
     #[inline(always)]
@@ -102,10 +104,10 @@ struct OnFluid<'a, K, S, const D: usize> {
     kernel: K,
     targets: &'a Side<D>,
     sources: &'a Side<D>,
-    shown: S,
+    wall: S,
 }
 
-impl<K: Kernel<D>, S: Shown<D>, const D: usize> PairLaw<D> for OnFluid<'_, K, S, D> {
+impl<K: Kernel<D>, S: WallPressure<D>, const D: usize> PairLaw<D> for OnFluid<'_, K, S, D> {
     type Target = OfFluid<D>;
     type Sum = FluidSum<D>;
 
@@ -130,7 +132,7 @@ impl<K: Kernel<D>, S: Shown<D>, const D: usize> PairLaw<D> for OnFluid<'_, K, S,
     #[inline(always)]
     fn add<A: Arch>(&self, i: &OfFluid<D>, j: usize, dx: [Lane; D], r2: Lane, sum: &mut FluidSum<D>) {
         let f = self.kernel.gradient_over_r::<A>(distance(r2, self.kernel.smoothing_length()));
-        let (term, volume) = self.shown.to::<A>(j, dx);
+        let (term, volume) = self.wall.to::<A>(j, dx);
         let s = self.sources;
         let coefficient = Lane::splat(s.mass[j]) * (i.pressure_term + term) * f;
         let dv = std::array::from_fn(|d| i.velocity[d] - Lane::splat(s.velocity[d][j]));
@@ -145,10 +147,10 @@ struct OnSolid<'a, K, S, const D: usize> {
     kernel: K,
     targets: &'a Side<D>,
     sources: &'a Side<D>,
-    shown: S,
+    wall: S,
 }
 
-impl<K: Kernel<D>, S: Shown<D>, const D: usize> PairLaw<D> for OnSolid<'_, K, S, D> {
+impl<K: Kernel<D>, S: WallPressure<D>, const D: usize> PairLaw<D> for OnSolid<'_, K, S, D> {
     /// Mass, and what it shows.
     type Target = (Lane, S::Own);
     type Sum = SolidForce<D>;
@@ -159,7 +161,7 @@ impl<K: Kernel<D>, S: Shown<D>, const D: usize> PairLaw<D> for OnSolid<'_, K, S,
     }
     #[inline(always)]
     fn target(&self, slot: usize) -> Self::Target {
-        (Lane::load(&self.targets.mass, slot), self.shown.own(slot))
+        (Lane::load(&self.targets.mass, slot), self.wall.own(slot))
     }
     #[inline(always)]
     fn source_position(&self, j: usize) -> [f64; D] {
@@ -171,8 +173,8 @@ impl<K: Kernel<D>, S: Shown<D>, const D: usize> PairLaw<D> for OnSolid<'_, K, S,
         let (mass, own) = i;
         let (s, rho) = (self.sources, self.sources.density[j]);
         let term = Lane::splat(s.pressure[j] / (rho * rho));
-        let shown = self.shown.of::<A>(own, dx.map(|x| -x));
-        let coefficient = *mass * (Lane::splat(s.mass[j]) * (shown + term) * f);
+        let own_term = self.wall.of::<A>(own, dx.map(|x| -x));
+        let coefficient = *mass * (Lane::splat(s.mass[j]) * (own_term + term) * f);
         for d in 0..D {
             sum.0[d] = A::mul_add(-coefficient, dx[d], sum.0[d]);
         }
@@ -180,33 +182,33 @@ impl<K: Kernel<D>, S: Shown<D>, const D: usize> PairLaw<D> for OnSolid<'_, K, S,
 }
 
 pub(super) fn act_on_fluid<const D: usize>(interface: &Interface<D>, sums: &mut [FluidSum<D>]) {
-    push_fluid(interface, AllSides(&interface.solid), sums);
+    push_fluid(interface, OneFace(&interface.solid), sums);
 }
 
 pub(super) fn act_on_solid<const D: usize>(interface: &Interface<D>, sums: &mut [SolidForce<D>]) {
-    push_solid(interface, AllSides(&interface.solid), sums);
+    push_solid(interface, OneFace(&interface.solid), sums);
 }
 
 pub(super) fn push_fluid<const D: usize>(
     interface: &Interface<D>,
-    shown: impl Shown<D>,
+    wall: impl WallPressure<D>,
     sums: &mut [FluidSum<D>],
 ) {
     let p = &interface.parameters;
     with_kernel!(p.kernel, p.smoothing_length, D, |kernel| {
-        let law = OnFluid { kernel, targets: &interface.fluid, sources: &interface.solid, shown };
+        let law = OnFluid { kernel, targets: &interface.fluid, sources: &interface.solid, wall };
         pair::pass(p.isa, &law, &interface.fluid_list, sums);
     });
 }
 
 pub(super) fn push_solid<const D: usize>(
     interface: &Interface<D>,
-    shown: impl Shown<D>,
+    wall: impl WallPressure<D>,
     sums: &mut [SolidForce<D>],
 ) {
     let p = &interface.parameters;
     with_kernel!(p.kernel, p.smoothing_length, D, |kernel| {
-        let law = OnSolid { kernel, targets: &interface.solid, sources: &interface.fluid, shown };
+        let law = OnSolid { kernel, targets: &interface.solid, sources: &interface.fluid, wall };
         pair::pass(p.isa, &law, &interface.solid_list, sums);
     });
 }

@@ -7,13 +7,14 @@
 //! pressure from each side, with the weights chi W and (1 - chi) W, and shows fluid the state
 //! chi (...)_+ + (1 - chi) (...)_-.
 //!
-//! The normal is carried along with the plate's material (Nanson): from the positions X at the first half-step and x now of
-//! the plate's particles j within 2h,
-//!   n_s = F^-T N_s / |F^-T N_s|,  F = A M^-1,  A = sum_j (x_j - x_s) (X_j - X_s)^T,  M = sum_j (X_j - X_s) (X_j - X_s)^T.
+//! The normal is carried along with the plate's material (Nanson): from the positions X at the first half-step and x
+//! now of the plate's particles j within 2h,
+//!   n_s = F^-T N_s / |F^-T N_s|,  F = A M^-1,
+//!   A = sum_j (x_j - x_s) (X_j - X_s)^T,  M = sum_j (X_j - X_s) (X_j - X_s)^T.
 //! Fluid and coupler have the same records, so they have the same normals without a message. Solid particles of no thin
 //! plate have n = 0, o = 0: half of everything on either side, which is the one state that they show.
 
-use super::moving_wall::{Shown, extrapolated, extrapolation};
+use super::moving_wall::{WallPressure, extrapolated, extrapolation};
 use super::{Interface, Parameters, Side};
 use halfstep_sph::extrapolation::{Extrapolation, ExtrapolationSum};
 use halfstep_sph::kernel::Kernel;
@@ -25,7 +26,7 @@ use halfstep_sph::with_kernel;
 use halfstep_wire::protocol::StateRecord;
 use nalgebra::{SMatrix, SVector};
 
-/// One side of the plates: what their particles show there, by slot of the solid.
+/// One face of the plates: pressures there, by slot of the solid.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Face {
     /// p / rho².
@@ -142,10 +143,10 @@ impl<const D: usize> Screen<D> {
         }
     }
 
-    /// What the plates show.
-    pub(super) fn shown(&self, interface: &Interface<D>) -> BothSides<'_, D> {
+    /// Pressures at both faces of the plates.
+    pub(super) fn wall(&self, interface: &Interface<D>) -> TwoFaces<'_, D> {
         let sharpness = 1.0 / interface.parameters.resolution;
-        BothSides { normal: &self.normal, before: &self.before, faces: &self.faces, sharpness }
+        TwoFaces { normal: &self.normal, before: &self.before, faces: &self.faces, sharpness }
     }
 }
 
@@ -174,7 +175,7 @@ fn share<const D: usize, A: Arch>(
 
 /// A state on each side.
 #[derive(Clone, Copy)]
-pub(super) struct BothSides<'a, const D: usize> {
+pub(super) struct TwoFaces<'a, const D: usize> {
     normal: &'a [Vec<f64>; D],
     before: &'a [f64],
     faces: &'a [Face; 2],
@@ -194,7 +195,7 @@ fn between<A: Arch>([against, along]: [Lane; 2], share: Lane) -> Lane {
     A::mul_add(share, along - against, against)
 }
 
-impl<const D: usize> Shown<D> for BothSides<'_, D> {
+impl<const D: usize> WallPressure<D> for TwoFaces<'_, D> {
     type Own = Own<D>;
 
     #[inline(always)]
@@ -220,12 +221,12 @@ impl<const D: usize> Shown<D> for BothSides<'_, D> {
 }
 
 /// The law of the pass over the solid: a pressure from each side.
-struct FromBothSides<'a, K, const D: usize> {
+struct FromTwoFaces<'a, K, const D: usize> {
     extrapolation: Extrapolation<'a, K, D>,
-    shown: BothSides<'a, D>,
+    wall: TwoFaces<'a, D>,
 }
 
-impl<K: Kernel<D>, const D: usize> PairLaw<D> for FromBothSides<'_, K, D> {
+impl<K: Kernel<D>, const D: usize> PairLaw<D> for FromTwoFaces<'_, K, D> {
     type Target = ([Lane; D], Lane);
     type Sum = [ExtrapolationSum; 2];
 
@@ -239,19 +240,19 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for FromBothSides<'_, K, D> {
     }
     #[inline(always)]
     fn target(&self, slot: usize) -> Self::Target {
-        let normal = std::array::from_fn(|d| Lane::load(&self.shown.normal[d], slot));
-        (normal, Lane::load(self.shown.before, slot))
+        let normal = std::array::from_fn(|d| Lane::load(&self.wall.normal[d], slot));
+        (normal, Lane::load(self.wall.before, slot))
     }
     #[inline(always)]
     fn add<A: Arch>(&self, i: &Self::Target, j: usize, dx: [Lane; D], r2: Lane, sum: &mut Self::Sum) {
         let (w, p) = self.extrapolation.source::<A>(j, dx, r2);
-        let along = w * share::<D, A>(i.0, i.1, dx.map(|x| -x), self.shown.sharpness);
+        let along = w * share::<D, A>(i.0, i.1, dx.map(|x| -x), self.wall.sharpness);
         sum[0].add::<A>(w - along, p);
         sum[1].add::<A>(along, p);
     }
 }
 
-/// What each side of the plates shows, from the records of both phases.
+/// Pressure at each face of the plates, from the records of both phases.
 pub(super) fn show_pressures<const D: usize>(interface: &mut Interface<D>, records: &[StateRecord]) {
     let positions =
         || -> Vec<[f64; D]> { records.iter().map(|r| std::array::from_fn(|d| r.position[d])).collect() };
@@ -263,7 +264,7 @@ pub(super) fn show_pressures<const D: usize>(interface: &mut Interface<D>, recor
     let p = &interface.parameters;
     with_kernel!(p.kernel, p.smoothing_length, D, |kernel| {
         let law =
-            FromBothSides { extrapolation: extrapolation(interface, kernel), shown: screen.shown(interface) };
+            FromTwoFaces { extrapolation: extrapolation(interface, kernel), wall: screen.wall(interface) };
         pair::pass(p.isa, &law, &interface.solid_list, &mut sums);
     });
     let displaced = p.fluid.density / p.solid_density;

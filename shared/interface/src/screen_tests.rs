@@ -69,7 +69,7 @@ fn normal(interface: &Interface<2>, record: usize) -> [f64; 2] {
 }
 
 #[test]
-fn each_face_shows_the_pressure_of_its_own_side() {
+fn each_face_has_the_pressure_of_the_water_before_it() {
     let (mut screened, mut mixed) = (interface(""), interface("effects.thin-plate-screen = \"off\""));
     screened.update(&water(), &plate(), 1);
     mixed.update(&water(), &plate(), 1);
@@ -97,7 +97,7 @@ fn each_face_shows_the_pressure_of_its_own_side() {
 }
 
 #[test]
-fn a_dry_face_shows_nothing_and_none_pulls() {
+fn a_dry_face_has_no_pressure_and_no_face_a_negative_one() {
     let left: Vec<StateRecord> = water().into_iter().filter(|r| r.position[0] < 0.0).collect();
     let mut screened = interface("");
     screened.update(&left, &plate(), 1);
@@ -165,7 +165,7 @@ fn on_fluid(interface: &mut Interface<2>, fluid: &[StateRecord]) -> Vec<[f64; 2]
 }
 
 #[test]
-fn beyond_the_end_one_side_goes_over_into_the_other() {
+fn pressure_goes_over_from_face_to_face_around_the_plates_end() {
     let mut fluid = water();
     let last = fluid.len();
     let (end, middle) = (LENGTH as f64 * DX, 0.5 * DX * ROWS as f64);
@@ -211,7 +211,7 @@ fn action_is_reaction_on_faces_and_around_the_end() {
 }
 
 #[test]
-fn particles_of_no_thin_plate_show_one_state() {
+fn particles_outside_thin_plates_have_one_pressure() {
     // A block 10 dx away from the plate, with the plate's water around it.
     let mut solid = plate();
     for k in 0..25 {

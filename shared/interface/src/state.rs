@@ -1,5 +1,5 @@
-//! What an interface keeps over an interruption: the order of both records and where the lists were made, since sums run
-//! in that order, and the plates' first positions, since their normals belong to the undeformed plate.
+//! What an interface keeps over an interruption: the order of both records and where the lists were made, since sums
+//! run in that order, and the plates' first positions, since their normals belong to the undeformed plate.
 
 use super::screen::Screen;
 use super::{Interface, Side};

@@ -231,7 +231,7 @@ impl<S: Transport> StateMessage for StateSample<S> {
 pub struct ProbeSample<S: Transport>(pub(super) Message<S, f64, ProbeHeader>);
 
 impl<S: Transport> ProbeSample<S> {
-    /// What heads the message.
+    /// Header of the message.
     pub fn header(&self) -> &ProbeHeader {
         &self.0.user_header().0
     }
@@ -247,7 +247,7 @@ impl<S: Transport> ProbeSample<S> {
 pub struct ForceSample<S: Transport>(pub(super) Message<S, ForceRecord, ForceHeader>);
 
 impl<S: Transport> ForceSample<S> {
-    /// What heads the message.
+    /// Header of the message.
     pub fn header(&self) -> &ForceHeader {
         &self.0.user_header().0
     }

@@ -160,7 +160,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_last_one_removes_the_files() {
+    fn the_last_process_removes_the_files() {
         let config = LinkConfig::of_two(1, 1);
         let object = Path::new(SHM).join(format!("{}object", config.prefix));
         let (first, second) = (Claim::new(&config).unwrap(), Claim::new(&config).unwrap());

@@ -23,10 +23,10 @@ const PROCESSES: &str = "HALFSTEP_PROCESSES";
 /// Environment variable with their numbers of probe values, `name:count`.
 const PROBES: &str = "HALFSTEP_PROBES";
 
-/// One of those who own particles and publish their states.
+/// A participant of a run: it owns particles and publishes their states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Participant {
-    /// Its name, unique in the run.
+    /// Name of the participant, unique in the run.
     pub name: Name,
     /// The process that it runs in.
     pub process: Name,
@@ -150,7 +150,7 @@ impl LinkConfig {
         variables
     }
 
-    /// The variables of [`Self::to_env`] and those that tell a foreign participant which one it is.
+    /// The variables of [`Self::to_env`] and those that tell an external participant which one it is.
     pub fn to_env_of(&self, participant: &Participant) -> Vec<(&'static str, String)> {
         let mut variables = self.to_env();
         variables.push(("HALFSTEP_NAME", participant.name.to_string()));

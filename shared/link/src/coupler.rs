@@ -16,7 +16,7 @@ use std::time::Instant;
 
 /// What the coupler holds toward one participant.
 #[derive(Debug)]
-struct Side<S: Transport> {
+struct Partner<S: Transport> {
     participant: Participant,
     forces: Outgoing<S, ForceRecord, ForceHeader>,
     state: Incoming<S, StateRecord, StateHeader>,
@@ -24,7 +24,7 @@ struct Side<S: Transport> {
     check: StateCheck,
 }
 
-impl<S: Transport> Side<S> {
+impl<S: Transport> Partner<S> {
     fn open(hub: &Hub<S>, config: &LinkConfig, place: usize) -> Result<Self, LinkError> {
         let participant = config.participants[place];
         let Participant { name, process, .. } = participant;
@@ -43,7 +43,7 @@ impl<S: Transport> Side<S> {
 /// Use it in the thread that opened it. Start child processes before: a process must not fork once it has a link.
 #[derive(Debug)]
 pub struct CouplerLink<S: Transport> {
-    sides: Vec<Side<S>>,
+    partners: Vec<Partner<S>>,
     run_id: u64,
     times: LinkTimes,
     hub: Hub<S>,
@@ -59,11 +59,11 @@ impl<S: Transport> CouplerLink<S> {
         let claim = Claim::new(config)?;
         memory::check_room::<S>(config, Name::COUPLER)?;
         let mut hub = Hub::<S>::open(config, Name::COUPLER, abort)?;
-        let sides = (0..config.participants.len()).map(|place| Side::open(&hub, config, place));
-        let mut sides = sides.collect::<Result<Vec<_>, LinkError>>()?;
+        let partners = (0..config.participants.len()).map(|place| Partner::open(&hub, config, place));
+        let mut partners = partners.collect::<Result<Vec<_>, LinkError>>()?;
         hub.gather(|other, watch| {
             let mut all = Presence::Here;
-            for side in sides.iter_mut().filter(|side| side.participant.process == other) {
+            for side in partners.iter_mut().filter(|side| side.participant.process == other) {
                 all = all.and(side.state.meet_sender(watch)?);
                 // The probes' channel is made before the state's: one that is not there never comes.
                 if let Some(probes) = &mut side.probes {
@@ -72,11 +72,11 @@ impl<S: Transport> CouplerLink<S> {
             }
             Ok(all)
         })?;
-        for side in &sides {
+        for side in &partners {
             side.forces.connect()?;
         }
         memory::reserve::<S>(config)?;
-        Ok(Self { sides, run_id: config.run_id, times: LinkTimes::default(), hub, _claim: claim })
+        Ok(Self { partners, run_id: config.run_id, times: LinkTimes::default(), hub, _claim: claim })
     }
 }
 
@@ -84,16 +84,16 @@ impl<S: Transport> CouplerPort for CouplerLink<S> {
     type State = StateSample<S>;
 
     fn participants(&self) -> usize {
-        self.sides.len()
+        self.partners.len()
     }
 
     fn name(&self, place: usize) -> Name {
-        self.sides[place].participant.name
+        self.partners[place].participant.name
     }
 
     fn receive_state(&mut self, place: usize, expect: &Expect) -> Result<StateSample<S>, LinkError> {
         let start = Instant::now();
-        let side = &mut self.sides[place];
+        let side = &mut self.partners[place];
         let sample = side.state.receive(&mut self.hub);
         let arrival = Instant::now();
         self.times.wait += arrival - start;
@@ -105,7 +105,7 @@ impl<S: Transport> CouplerPort for CouplerLink<S> {
 
     fn receive_probes(&mut self, place: usize, step: u64, values: &mut Vec<f64>) -> Result<(), LinkError> {
         let start = Instant::now();
-        let Side { participant, probes, .. } = &mut self.sides[place];
+        let Partner { participant, probes, .. } = &mut self.partners[place];
         let Some(probes) = probes else { return Ok(()) };
         let sample = probes.receive(&mut self.hub);
         let arrival = Instant::now();
@@ -131,7 +131,7 @@ impl<S: Transport> CouplerPort for CouplerLink<S> {
             count: records.len() as u32,
             ..*header
         };
-        let side = &mut self.sides[place];
+        let side = &mut self.partners[place];
         side.forces.send(&self.hub, &header, records.len(), |slot| records[slot])?;
         self.hub.notify(Some(side.participant.process));
         self.times.exchange += start.elapsed();

@@ -12,9 +12,9 @@ pub enum LinkError {
         peer: Name,
         /// The field that differs.
         field: &'static str,
-        /// What it should be.
+        /// The right value.
         expected: String,
-        /// What it is.
+        /// The value received.
         found: String,
         /// The step that the receiver is at.
         step: u64,

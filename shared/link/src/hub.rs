@@ -110,11 +110,11 @@ impl<S: Transport> Watch<S> {
 /// Whether a participant has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Presence {
-    /// It has not been seen.
+    /// The process has not been seen.
     NotYet,
-    /// It is there, and connected to.
+    /// The process is there, and connected to.
     Here,
-    /// It was there, and connected to, and has left.
+    /// The process was there, and connected to, and has left.
     Left,
 }
 

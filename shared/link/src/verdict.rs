@@ -26,7 +26,7 @@ pub(super) enum Verdict {
 
 /// Why a service could not be opened or created.
 pub(super) trait OpenError: Debug {
-    /// What it means.
+    /// Meaning of the error.
     fn verdict(&self) -> Verdict;
 }
 
@@ -119,7 +119,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_taken_place_is_no_race() {
+    fn errors_of_the_transport_are_told_apart_by_value() {
         let open = PublishSubscribeOpenOrCreateError::PublishSubscribeOpenError;
         let wake = EventOpenOrCreateError::EventOpenError;
         for (verdict, expected) in [

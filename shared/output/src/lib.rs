@@ -8,8 +8,8 @@
 //! | `checkpoint-a/`, `checkpoint-b/` | [`checkpoint`] |
 //! | `plot.png`, `contact.png` | [`draw_plot`], [`draw_contact`] |
 //!
-//! A file that a reader can see is whole: except for `probes.csv`, which grows line by line, every file is written under a
-//! temporary name (`.NAME.tmp`), synchronised with the disk and renamed. Killing the program at any moment
+//! A file that a reader can see is whole: except for `probes.csv`, which grows line by line, every file is written
+//! under a temporary name (`.NAME.tmp`), synchronised with the disk and renamed. Killing the program at any moment
 //! leaves nothing half-written under a final name.
 
 pub mod atomic;

@@ -191,7 +191,7 @@ mod tests {
             dir.path(),
             &["frames/fluid_000000.hdf", "frames/solid_1234567.hdf", "frames/fluid.hdf.series"],
         );
-        // A participant of another name has an index, which strangers' files lack.
+        // Frames of a participant of any name are known by their index, which other programs' files lack.
         touch(dir.path(), &["frames/gate-2_000000.hdf", "frames/gate-2.hdf.series", "report-gate-2.json"]);
         touch(dir.path(), &[".run.json.tmp", "frames/.fluid_000001.hdf.tmp", "frames/.solid.hdf.series.tmp"]);
         touch(dir.path(), &FOREIGN);

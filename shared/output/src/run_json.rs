@@ -40,7 +40,7 @@ pub struct RunReport {
     pub round_trip_us: Option<Percentiles>,
     /// What the run checked about itself.
     pub audit: Audit,
-    /// Those who own particles: the fluid, then the solids in the scene's order. `particles` and `roles` are their sums.
+    /// Owners of particles: the fluid, then the solids in the scene's order. `particles` and `roles` are their sums.
     pub participants: Vec<ParticipantReport>,
     /// The effects, with the reason for each.
     pub effects: Vec<EffectReport>,
@@ -58,11 +58,11 @@ pub struct Resumption {
     pub time: f64,
 }
 
-/// One of those who own particles.
+/// One participant: an owner of particles.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ParticipantReport {
-    /// Its name.
+    /// Name of the participant.
     pub name: String,
     /// `fluid` or `solid`.
     pub phase: String,
@@ -72,9 +72,9 @@ pub struct ParticipantReport {
     pub command: Option<String>,
     /// The process that it ran in.
     pub process: String,
-    /// Its particles, at the end.
+    /// Number of particles at the end.
     pub particles: u64,
-    /// Their mass at the end, kg (2D: kg/m).
+    /// Mass of the particles at the end, kg (2D: kg/m).
     pub mass: f64,
     /// Largest number of its particles in a message; `null` where nothing was exchanged.
     pub capacity: Option<u32>,
@@ -86,7 +86,7 @@ pub struct ParticipantReport {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RunStatus {
-    /// It reached its end time.
+    /// The run reached its end time.
     Finished,
     /// Somebody stopped it before.
     Stopped,
@@ -218,13 +218,13 @@ pub struct Audit {
 /// One effect of the run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct EffectReport {
-    /// Its name, as in the scene.
+    /// Name of the effect, as in the scene.
     pub name: String,
     /// Whether it was computed.
     pub on: bool,
     /// The reason.
     pub why: String,
-    /// Its share of the computing time of all roles, 0 to 1; `null` where it was not measured.
+    /// Share of the computing time that the effect takes of all roles, 0 to 1; `null` where it was not measured.
     pub share: Option<f64>,
     /// Memory that it takes, bytes per particle of its phase; `null`: none of its own.
     pub bytes_per_particle: Option<f64>,

@@ -42,7 +42,7 @@ pub fn frame_name(stem: &str, number: u32) -> String {
     format!("{stem}_{number:06}.hdf")
 }
 
-/// What the name of an index ends with.
+/// Ending of the name of an index.
 pub(crate) const INDEX_SUFFIX: &str = ".hdf.series";
 
 /// File name of the index of `stem`.

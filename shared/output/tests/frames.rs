@@ -59,7 +59,7 @@ fn a_lock_that_somebody_holds_stops_neither_writing_nor_reading() {
 }
 
 #[test]
-fn what_is_no_frame_is_an_error_that_names_the_file() {
+fn a_file_without_a_frame_is_an_error_that_names_the_file() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("fluid_000000.hdf");
     std::fs::write(&path, "not HDF5").unwrap();

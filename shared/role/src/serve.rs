@@ -14,8 +14,8 @@ use std::sync::atomic::AtomicBool;
 pub const SCENE_VARIABLE: &str = "HALFSTEP_SCENE";
 /// Environment variable with the run's folder; without it neither frames nor reports are written.
 pub const FOLDER_VARIABLE: &str = "HALFSTEP_OUT";
-/// Environment variable with the folder of the checkpoint that a process's participants go on from; without it they begin
-/// as the scene does.
+/// Environment variable with the folder of the checkpoint that a process's participants go on from; without it they
+/// begin as the scene does.
 pub const CHECKPOINT_VARIABLE: &str = "HALFSTEP_CHECKPOINT";
 /// Environment variable with the number of worker threads.
 pub const THREADS_VARIABLE: &str = "HALFSTEP_THREADS";
@@ -40,7 +40,8 @@ pub fn serve<S: Transport>(
 }
 
 /// Serves the participants of this process: what the `main` of such a process calls. `build` makes them from the scene,
-/// given their places among the scene's participants, the run's folder, and that of the checkpoint that they go on from.
+/// given their places among the scene's participants, the run's folder, and that of the checkpoint that they go on
+/// from.
 ///
 /// # Errors
 /// The environment is not that of a run, or the run failed.

@@ -32,9 +32,9 @@ pub struct Bounds {
 pub struct Excess {
     /// Which.
     pub quantity: Quantity,
-    /// Its value.
+    /// Value of the quantity.
     pub value: f64,
-    /// Deviation over the allowed one; infinite where the value is no number.
+    /// Deviation over the allowed one; infinite where the value is NaN.
     pub ratio: f64,
 }
 
@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_out_of_bounds() {
+    fn nan_is_out_of_bounds() {
         let excess = BOUNDS.excess(f64::NAN, 1.0).unwrap();
         assert_eq!((excess.quantity, excess.ratio), (Quantity::Density, f64::INFINITY));
         assert_eq!(BOUNDS.excess(1000.0, f64::NAN).unwrap().quantity, Quantity::Speed);

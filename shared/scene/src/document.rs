@@ -7,7 +7,7 @@ use toml::de::{DeTable, DeValue};
 
 /// A text that values come from.
 #[derive(Clone, Debug)]
-pub(super) struct Source {
+pub(super) struct SourceText {
     /// The file's path; for an override its own text, `--set key=value`.
     pub(super) name: String,
     pub(super) text: Arc<str>,
@@ -46,7 +46,7 @@ pub(super) enum Value {
 }
 
 impl Value {
-    /// What it is, for a message.
+    /// Kind of the value, for a message.
     pub(super) fn kind(&self) -> &'static str {
         match self {
             Self::Table(_) => "a table",

@@ -61,7 +61,7 @@ macro_rules! names {
             /// All of them.
             pub const ALL: &[Self] = &[$(Self::$effect,)*];
 
-            /// Its name in scenes and reports.
+            /// Name of the effect in scenes and reports.
             pub const fn name(self) -> &'static str {
                 match self {
                     $(Self::$effect => $name,)*
@@ -90,7 +90,7 @@ pub enum Switch {
 pub struct Decision {
     /// The effect's name.
     pub name: &'static str,
-    /// It takes part.
+    /// The effect takes part.
     pub on: bool,
     /// The scene's key or the fact that decided.
     pub why: String,

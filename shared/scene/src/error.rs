@@ -1,6 +1,6 @@
 //! What is wrong with a scene: all of it at once, each with its place, key, value and reason.
 
-use super::document::{Node, Origin, Source};
+use super::document::{Node, Origin, SourceText};
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
 use std::cell::RefCell;
 use std::fmt;
@@ -119,13 +119,13 @@ impl SceneErrors {
 
 /// Collects errors while a scene is read.
 pub(super) struct Report {
-    sources: Vec<(Source, Arc<NamedSource<Arc<str>>>)>,
+    sources: Vec<(SourceText, Arc<NamedSource<Arc<str>>>)>,
     problems: RefCell<Vec<SceneError>>,
 }
 
 impl Report {
-    pub(super) fn new(sources: Vec<Source>) -> Self {
-        let named = |s: Source| {
+    pub(super) fn new(sources: Vec<SourceText>) -> Self {
+        let named = |s: SourceText| {
             let title = if s.is_override { "--set" } else { &s.name };
             let named = NamedSource::new(title, s.text.clone());
             (s, Arc::new(named))

@@ -81,11 +81,11 @@ pub struct Scene {
     pub solids: Vec<Solid>,
     /// How fluid and solid act on each other.
     pub interface: Interface,
-    /// What is written, and when.
+    /// Files that a run writes, and when.
     pub output: Output,
     /// Where the particles are at first.
     pub shapes: Vec<Shape>,
-    /// What is measured.
+    /// Probes.
     pub probes: Vec<Probe>,
     /// Curves of the literature drawn beside the probes.
     pub references: Vec<Reference>,
@@ -191,9 +191,9 @@ pub struct Output {
 /// Particles on a lattice inside a geometry.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Shape {
-    /// Its name; `--set shape.NAME.KEY=VALUE` finds it by this.
+    /// Name of the shape; `--set shape.NAME.KEY=VALUE` finds the shape by this name.
     pub name: String,
-    /// Its phase.
+    /// Phase of the shape.
     #[serde(with = "names::PhaseName")]
     pub phase: Phase,
     /// Solid only: index of what it is made of in [`Scene::solids`].
@@ -256,14 +256,14 @@ pub enum Geometry {
         /// The cavity.
         cavity: Block,
         /// Sides left out.
-        open: Vec<Side>,
+        open: Vec<TankSide>,
     },
 }
 
 /// A side of a box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Side {
+pub enum TankSide {
     /// Lowest x.
     Left,
     /// Highest x.

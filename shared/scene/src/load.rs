@@ -1,7 +1,7 @@
 //! From a file and its overrides to a scene.
 
 use super::check::Check;
-use super::document::{self, Source};
+use super::document::{self, SourceText};
 use super::error::{Report, SceneErrors};
 use super::{Scene, overrides, read, resources};
 use std::path::Path;
@@ -22,7 +22,7 @@ pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, SceneErrors> {
 /// # Errors
 /// Everything that is wrong with the scene at once, each with its place.
 pub fn parse(text: &str, path: &Path, overrides: &[String]) -> Result<Scene, SceneErrors> {
-    let file = Source { name: path.display().to_string(), text: text.into(), is_override: false };
+    let file = SourceText { name: path.display().to_string(), text: text.into(), is_override: false };
     let sources = std::iter::once(file).chain(overrides.iter().map(|o| overrides::source(o)));
     let report = Report::new(sources.collect());
     let mut root = match document::parse(text, 0) {

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// A number taken from a probe's curve.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Metric {
-    /// Its name.
+    /// Name of the metric.
     pub name: String,
     /// Probe component that it is taken from, e.g. `tip.x`.
     pub probe: String,
@@ -15,7 +15,7 @@ pub struct Metric {
     pub from: f64,
     /// And ends here, s; `None`: at the end of the run.
     pub to: Option<f64>,
-    /// What it should be.
+    /// Reference: the value that the metric should have.
     pub reference: Option<MetricReference>,
     /// What errors are taken relative to; `None`: the size of the reference.
     pub scale: Option<f64>,
@@ -50,13 +50,13 @@ pub enum MetricKind {
     },
 }
 
-/// What a metric should be.
+/// Reference of a metric.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum MetricReference {
     /// A number.
     Number {
-        /// It.
+        /// Value in the probe's unit.
         value: f64,
         /// Where it comes from.
         source: String,

@@ -16,7 +16,8 @@ pub enum Motion {
         /// When it ends, s.
         end: f64,
     },
-    /// x = e(t) amplitude sin(2 pi (t - start) / period), e = sin²(pi (t - start) / (2 ramp)) until `ramp` is over, then 1.
+    /// x = e(t) amplitude sin(2 pi (t - start) / period), e = sin²(pi (t - start) / (2 ramp)) until `ramp` is over,
+    /// then 1.
     Oscillating {
         /// Amplitude, m.
         amplitude: [f64; 3],

@@ -1,13 +1,13 @@
 //! `--set dotted.key=value`: changes to a document before it is read.
 
-use super::document::{Entry, Node, Origin, Source, Value, item_index, parse_value};
+use super::document::{Entry, Node, Origin, SourceText, Value, item_index, parse_value};
 use super::error::{Report, listed, nearest};
 use std::collections::BTreeMap;
 
 /// The source of an override.
-pub(super) fn source(text: &str) -> Source {
+pub(super) fn source(text: &str) -> SourceText {
     let name = format!("--set {text}");
-    Source { text: name.as_str().into(), name, is_override: true }
+    SourceText { text: name.as_str().into(), name, is_override: true }
 }
 
 /// Applies the override `text`, the source of that number. Items of an array of tables are addressed by their name or
@@ -28,7 +28,7 @@ pub(super) fn apply(root: &mut Node, text: &str, source: usize, report: &Report)
         report.place("", key_origin, "is no override: a part of its key is empty");
         return;
     }
-    // What is no TOML value is a string: `--set preset=kayaki` needs no quotes.
+    // A text that is no TOML value is a string: `--set preset=kayaki` needs no quotes.
     let node = parse_value(value, source, value_start)
         .unwrap_or_else(|_| Node { value: Value::String(value.to_owned()), origin: value_origin });
     let node = Node { origin: value_origin, ..node };

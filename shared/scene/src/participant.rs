@@ -5,7 +5,7 @@ use super::{Phase, Scene};
 /// The fluid or one solid of a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Participant {
-    /// Its index in [`Scene::participants`].
+    /// Index of the solid in [`Scene::participants`].
     pub id: usize,
     /// Fluid or solid.
     pub phase: Phase,

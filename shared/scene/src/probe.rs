@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 /// Something measured while the run goes on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Probe {
-    /// Its name: the column's prefix in `probes.csv`.
+    /// Name of the probe: the column's prefix in `probes.csv`.
     pub name: String,
-    /// What it measures.
+    /// Quantity that the probe measures.
     pub kind: ProbeKind,
     /// Index of the solid that it measures in [`crate::Scene::solids`]; `None` for the fluid.
     pub solid: Option<usize>,
@@ -63,7 +63,7 @@ impl ProbeKind {
             Self::KineticEnergy { phase } | Self::Centroid { phase } => phase,
         }
     }
-    /// Its components and their unit, in the order of its values.
+    /// Components of the probe and their unit, in the order of the values.
     pub fn components(&self, dimension: usize) -> (&'static [&'static str], &'static str) {
         let axes = &["x", "y", "z"][..dimension];
         match self {
@@ -78,7 +78,7 @@ impl ProbeKind {
 }
 
 impl Probe {
-    /// Its columns in `probes.csv`: `NAME.COMPONENT [UNIT]`.
+    /// Columns of the probe in `probes.csv`: `NAME.COMPONENT [UNIT]`.
     pub fn columns(&self, dimension: usize) -> Vec<String> {
         let (components, unit) = self.kind.components(dimension);
         components.iter().map(|c| format!("{}.{c} [{unit}]", self.name)).collect()

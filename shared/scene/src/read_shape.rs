@@ -8,13 +8,13 @@ use super::*;
 pub(super) const PHASES: [(&str, Phase); 3] =
     [("fluid", Phase::Fluid), ("solid", Phase::Solid), ("wall", Phase::Wall)];
 
-const SIDES: [(&str, Side); 6] = [
-    ("left", Side::Left),
-    ("right", Side::Right),
-    ("bottom", Side::Bottom),
-    ("top", Side::Top),
-    ("back", Side::Back),
-    ("front", Side::Front),
+const SIDES: [(&str, TankSide); 6] = [
+    ("left", TankSide::Left),
+    ("right", TankSide::Right),
+    ("bottom", TankSide::Bottom),
+    ("top", TankSide::Top),
+    ("back", TankSide::Back),
+    ("front", TankSide::Front),
 ];
 
 const GEOMETRIES: [&str; 4] = ["box", "disc", "ring", "tank"];
@@ -173,14 +173,14 @@ fn geometry(section: &Section<'_>, dimension: usize, phase: Option<Phase>) -> Ge
     geometry
 }
 
-fn open(tank: &Section<'_>, dimension: usize) -> Vec<Side> {
+fn open(tank: &Section<'_>, dimension: usize) -> Vec<TankSide> {
     let Some(node) = tank.node("open") else { return Vec::new() };
     let Value::Array(items) = &node.value else {
         tank.wrong("open", node, "must be an array of sides, such as [\"top\"]");
         return Vec::new();
     };
     let sides = &SIDES[..2 * dimension];
-    let open: Vec<Side> = items.iter().filter_map(|item| tank.as_choice("open", item, sides)).collect();
+    let open: Vec<TankSide> = items.iter().filter_map(|item| tank.as_choice("open", item, sides)).collect();
     if sides.iter().all(|(_, side)| open.contains(side)) {
         tank.wrong("open", node, "leaves no side closed: there is no wall left");
     }

@@ -8,7 +8,7 @@ use super::*;
 
 /// Longest name of a solid or a process: it is part of the names of shared memory and of files.
 const LONGEST_NAME: usize = 24;
-/// What else takes part in a run, and the word for a process of one's own.
+/// Names that a solid must not have: those of other participants, and the word for a process of one's own.
 const RESERVED: [&str; 4] = ["fluid", "coupler", "wall", OWN];
 const OWN: &str = "own";
 

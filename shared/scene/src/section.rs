@@ -123,7 +123,7 @@ impl<'a> Section<'a> {
 
     /// Notes that a key is missing.
     pub(super) fn missing(&self, key: &str) {
-        // What is no table has been said to be none.
+        // The error of a value that is no table has been reported.
         if self.present || !self.report.has(&self.path) {
             self.report.place(&self.path_of(key), self.node.origin, "is missing and has no default");
         }

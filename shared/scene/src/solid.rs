@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 /// An elastic solid.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Solid {
-    /// Its name: `solid` for `[solid]`, else the section's.
+    /// Name of the solid: `solid` for `[solid]`, else the section's.
     pub name: String,
     /// Name of the process that serves it.
     pub process: String,

@@ -12,8 +12,8 @@ use std::f64::consts::PI;
 #[serde(rename_all = "kebab-case")]
 pub enum VelocityField {
     /// Taylor and Green's vortices (Taylor and Green 1937; in two dimensions an exact solution of the Navier-Stokes
-    /// equations): u = U sin(k x) cos(k y), v = -U cos(k x) sin(k y). Cells of side `half_wave` hold one each. Comes with its pressure
-    /// rho U² / 4 (cos 2kx + cos 2ky).
+    /// equations): u = U sin(k x) cos(k y), v = -U cos(k x) sin(k y). Cells of side `half_wave` hold one each. Comes
+    /// with its pressure rho U² / 4 (cos 2kx + cos 2ky).
     TaylorGreen {
         /// Largest speed U, m/s.
         speed: f64,

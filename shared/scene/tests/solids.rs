@@ -89,7 +89,7 @@ fn one_key_of_one_solid_is_an_override_away() {
 }
 
 #[test]
-fn the_resolved_scene_has_an_object_for_one_and_a_list_for_named_ones() {
+fn run_json_has_an_object_for_one_solid_and_a_list_for_named_ones() {
     let json = |scene: &Scene| {
         let text = scene.to_json().unwrap();
         assert_eq!(&Scene::from_json(&text).unwrap(), scene);
@@ -116,7 +116,7 @@ proptest! {
     }
 
     #[test]
-    fn a_list_of_one_is_the_one(x in -0.2..0.4_f64, radius in 0.02..0.1_f64) {
+    fn a_list_of_one_solid_is_the_scene_of_a_single_section(x in -0.2..0.4_f64, radius in 0.02..0.1_f64) {
         let plain = one("[solid]", [x, radius]);
         let mut listed = one("[[solid]]\nname = \"gate\"", [x, radius]);
         prop_assert_eq!(layout::<2>(&plain), layout::<2>(&listed));

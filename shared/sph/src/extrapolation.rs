@@ -15,9 +15,9 @@ pub struct Extrapolation<'a, K, const D: usize> {
     pub targets: &'a [Vec<f64>; D],
     /// Positions of the particles around, m.
     pub sources: &'a [Vec<f64>; D],
-    /// Their densities, kg/m³.
+    /// Densities of the sources, kg/m³.
     pub density: &'a [f64],
-    /// Their pressures, Pa.
+    /// Pressures of the sources, Pa.
     pub pressure: &'a [f64],
 }
 

@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn slopes_are_the_derivatives() {
+    fn the_gradient_factor_is_the_kernels_derivative() {
         slope_matches_difference(CubicSpline::<2>::new(0.3));
         slope_matches_difference(CubicSpline::<3>::new(0.3));
         slope_matches_difference(WendlandC2::<2>::new(0.3));

@@ -137,7 +137,7 @@ impl Isa {
         Self::Baseline
     }
 
-    /// Its name in `run.json`. The two levels with FMA give the same bits, so they share one name there.
+    /// Name of the level in `run.json`. The two levels with FMA give the same bits, so they share one name there.
     pub fn bits_name(self) -> &'static str {
         match self {
             Self::Baseline => "baseline",

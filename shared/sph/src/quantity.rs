@@ -26,7 +26,7 @@ impl Quantity {
             .find(|q| *q as u32 == number)
     }
 
-    /// Its unit.
+    /// Unit of the quantity.
     pub fn unit(self) -> &'static str {
         match self {
             Self::Density => "kg/m³",

@@ -71,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn the_inverse_inverts() {
+    fn density_of_pressure_inverts_pressure_of_density() {
         let e = StateEquation::new(1000.0, 16.0, 100.0);
         for rho in [900.0, 990.0, 1000.0, 1001.0, 1100.0] {
             assert!((e.density_at(e.pressure(rho)) - rho).abs() < 1e-9);

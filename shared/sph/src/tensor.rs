@@ -51,7 +51,7 @@ mod tests {
     use nalgebra::{Matrix2, Matrix3};
 
     #[test]
-    fn inverses_invert() {
+    fn a_tensor_times_its_inverse_is_the_identity() {
         let a = Matrix2::new(4.0, 1.0, 2.0, 3.0);
         assert_eq!(determinant(&a), 10.0);
         assert!((inverse(&a, 10.0).unwrap() * a - Matrix2::identity()).norm() < 1e-15);

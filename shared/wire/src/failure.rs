@@ -10,11 +10,11 @@ pub use halfstep_sph::quantity::Quantity;
 pub struct Diverged {
     /// Whose particle.
     pub participant: Name,
-    /// Its number; 0 where the quantity is no particle's.
+    /// Number of the particle; 0 where the quantity is that of a whole phase.
     pub particle: u32,
     /// Which quantity.
     pub quantity: Quantity,
-    /// Its value; of an energy what nothing explains.
+    /// Value of the quantity; of an energy the part that nothing explains.
     pub value: f64,
     /// Step n.
     pub step: u64,
@@ -46,8 +46,8 @@ impl std::fmt::Display for Diverged {
 impl std::error::Error for Diverged {}
 
 impl Diverged {
-    /// Makes `header` the message that tells of this in the place of its sender's next state. `participants` are those of
-    /// the run, in its order.
+    /// Makes `header` the message that tells of this in the place of its sender's next state. `participants` are those
+    /// of the run, in its order.
     pub fn tell(&self, participants: &[Name], header: &mut StateHeader) {
         let place = participants.iter().position(|name| *name == self.participant);
         header.status = status::DIVERGED;
@@ -83,7 +83,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_energy_is_the_phases_and_no_particles() {
+    fn a_failure_by_energy_names_the_phase_and_no_particle() {
         let diverged = Diverged {
             participant: Name::FLUID,
             particle: 0,
@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_told_arrives_whoever_owns_the_particle() {
+    fn a_failure_passes_through_the_header_whoever_owns_the_particle() {
         let plate: Name = "plate".parse().unwrap();
         let participants = [Name::FLUID, plate, Name::SOLID];
         for (participant, sender) in [(plate, plate), (plate, Name::FLUID), (Name::FLUID, Name::FLUID)] {

@@ -63,9 +63,9 @@ pub struct FramePoint {
     pub pressure: f64,
     /// Cauchy stress xx, yy, zz, xy, yz, xz, Pa; zero for fluid and walls.
     pub stress: [f64; 6],
-    /// What the particle belongs to.
+    /// Phase of the particle.
     pub phase: Phase,
-    /// Its number.
+    /// Number of the particle.
     pub id: u32,
 }
 

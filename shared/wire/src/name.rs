@@ -10,7 +10,7 @@ pub struct Name {
     length: u8,
 }
 
-/// What a name may not be.
+/// Why a text is no name of a participant.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{0}` is no name: a letter, then letters, digits and hyphens, all small, at most {max}", max = Name::LONGEST)]
 pub struct BadName(pub String);

@@ -15,8 +15,8 @@ pub const PROTOCOL: u32 = 2;
 pub struct StateRecord {
     /// The owner's particle number: unique within the participant, ascending in a message.
     pub id: u32,
-    /// Bit 0: the velocity is prescribed (a clamped particle). Bits 8 to 31: number of the body, 0 where the sender does
-    /// not say. The others are zero.
+    /// Bit 0: the velocity is prescribed (a clamped particle). Bits 8 to 31: number of the body, 0 where the sender
+    /// does not say. The others are zero.
     pub flags: u32,
     /// Position, m.
     pub position: [f64; 3],
@@ -82,11 +82,11 @@ pub mod order {
 
 /// Bits of [`StateHeader::abilities`]: what a participant does besides exchanging states.
 pub mod ability {
-    /// It writes checkpoints of its own.
+    /// The participant writes checkpoints of its own.
     pub const CHECKPOINTS: u32 = 1;
-    /// It evaluates its walls and the contacts between its own bodies.
+    /// The participant evaluates its walls and the contacts between its own bodies.
     pub const WALLS_AND_CONTACTS: u32 = 2;
-    /// It sends the values of its probes where a row is due.
+    /// The participant sends the values of its probes where a row is due.
     pub const PROBES: u32 = 4;
 }
 
@@ -221,7 +221,7 @@ pub struct ProbeHeader {
     pub count: u32,
     /// Step n of the state that was measured.
     pub step: u64,
-    /// Its time, s.
+    /// Time of the row, s.
     pub time: f64,
 }
 

@@ -114,7 +114,7 @@ pub(super) struct SolidLaw<'a, K, T, M, const D: usize> {
     /// Whether the moment matrix is summed.
     pub gradient: PhantomData<M>,
     pub state: &'a State<D>,
-    /// The same as neighbours read it.
+    /// Columns as neighbours read them.
     pub sources: &'a [Source<D>],
     pub mass: f64,
     /// A c_s.

@@ -1,4 +1,5 @@
-//! The hypoelastic solid: exact deformations, symmetries. What every model must do is in `tests/src/conformance/solid.rs`.
+//! The hypoelastic solid: exact deformations, symmetries. What every model must do is in
+//! `tests/src/conformance/solid.rs`.
 
 use crate::hypoelastic::Hypoelastic;
 use crate::model::{Load, SolidModel};

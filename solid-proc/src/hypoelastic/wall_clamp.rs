@@ -1,8 +1,9 @@
-//! A clamp that acts as a wall does (Kayaki section 4.1): its rows have velocity zero, the pressure extrapolated from the
-//! free particles around (eq. 28), the density of that pressure (eq. 5) and no deviatoric stress. Unlike walls it may pull.
+//! A clamp that acts as a wall does (Kayaki section 4.1): its rows have velocity zero, the pressure extrapolated from
+//! the free particles around (eq. 28), the density of that pressure (eq. 5) and no deviatoric stress. Unlike walls it
+//! may pull.
 //!
-//! Kayaki's text leaves open whether the plate's clamp is made of the solid's particles or of the wall's: this is the second
-//! reading. Off unless `effects.wall-clamp` is on.
+//! Kayaki's text leaves open whether the plate's clamp is made of the solid's particles or of the wall's: this is the
+//! second reading. Off unless `effects.wall-clamp` is on.
 
 use super::model::Hypoelastic;
 use crate::columns::{Vectors, vectors};

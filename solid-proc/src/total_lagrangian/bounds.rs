@@ -26,8 +26,8 @@ impl VolumeBounds {
         Bounds::of_solid(scene, solid).map(|b| Self { density: b.density, speed: b.speed })
     }
 
-    /// What is out of bounds, if anything, for J = det F and a speed: of two quantities the one that is farther out.
-    /// A J that is no number is left to the speed, which then is none either and stands nearer to the cause.
+    /// The quantity out of bounds, if any, for J = det F and a speed: of two quantities the one that is farther out.
+    /// A J that is NaN is left to the speed, which then is NaN, too, and stands nearer to the cause.
     pub(super) fn excess(&self, volume_ratio: f64, speed: f64) -> Option<Excess> {
         let of_volume = match volume_ratio {
             j if j.is_nan() => 0.0,

@@ -4,8 +4,8 @@
 //! one of length L + dx/2. So toward a free particle, clamped particles show a displacement that goes linearly through
 //! zero at the face (as the velocity of a no-slip wall in Morris, Fox and Zhu 1997):
 //!   u_ij = gain_i u_i,   gain_i = mean over clamped neighbours j of 1 / (part of the way from i to j before the face),
-//! at most 2: the face is taken to be no nearer to i than half way. Beyond the face the body is rigid: clamped particles
-//! carry no stress and no energy.
+//! at most 2: the face is taken to be no nearer to i than half way. Beyond the face the body is rigid: clamped
+//! particles carry no stress and no energy.
 
 use halfstep_scene::geometry::SolidPoint;
 use halfstep_scene::{Block, Scene};

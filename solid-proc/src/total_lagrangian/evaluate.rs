@@ -143,8 +143,8 @@ impl<const D: usize> TotalLagrangian<D> {
         contact
     }
 
-    /// Parts of an evaluation's time, each effect's measured by leaving it out. The hourglass force and the clamps' gain are
-    /// factors of the passes: there is nothing to leave out.
+    /// Parts of an evaluation's time, each effect's measured by leaving it out. The hourglass force and the clamps'
+    /// gain are factors of the passes: there is nothing to leave out.
     pub(super) fn costs_of_effects(&mut self) -> Costs {
         let (before, state) = (self.pair_evaluations, self.now.clone());
         let evaluation = |model: &mut Self| fastest(|| model.evaluate());

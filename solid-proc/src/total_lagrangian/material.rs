@@ -5,7 +5,7 @@
 //!   St. Venant-Kirchhoff:  E = (F^T F - I) / 2,  S = lambda tr(E) I + 2 mu E,  P = F S,
 //!                          psi = lambda/2 tr(E)² + mu E : E                              (Holzapfel 2000, eq. 6.151)
 //!   neo-Hooke:             P = mu (F - F^-T) + lambda ln J F^-T,
-//!                          psi = mu/2 (tr(F^T F) - 3 - 2 ln J) + lambda/2 (ln J)²        (Bonet and Wood 2008, eq. 6.27)
+//!                          psi = mu/2 (tr(F^T F) - 3 - 2 ln J) + lambda/2 (ln J)²   (Bonet and Wood 2008, eq. 6.27)
 
 use halfstep_scene::{Material, Solid};
 use halfstep_sph::tensor;

@@ -5,8 +5,8 @@
 //!   F_i = I + H_i,   H_i = sum_j w beta u_ij (x) X_ij L_i
 //!   rho0 D v_i / Dt = -sum_j w beta [ (B_i + B_j) X_ij + (a_i + a_j) beta u_ij ],   B = P L - a H
 //!
-//! P L in B is the stress, the rest the hourglass force (see `hourglass`): the derivatives of sum_i V0 psi(F_i) and of the
-//! hourglass energy. Momentum and angular momentum are therefore conserved.
+//! P L in B is the stress, the rest the hourglass force (see `hourglass`): the derivatives of sum_i V0 psi(F_i) and of
+//! the hourglass energy. Momentum and angular momentum are therefore conserved.
 
 use crate::columns::Vectors;
 use halfstep_sph::artificial_viscosity::damping;

@@ -32,7 +32,7 @@ fn scene(shape: &str, overrides: &[&str]) -> Scene {
 }
 
 const BLOCK: &str = "box = { min = [0.0, 0.0], max = [0.2, 0.15] }";
-/// Its surface is no lattice plane.
+/// The surface of the body is no lattice plane.
 const RING: &str = "ring = { center = [0.0, 0.0], inner = 0.05, outer = 0.1 }";
 const MATERIALS: [&str; 2] = ["solid.material=\"st-venant-kirchhoff\"", "solid.material=\"neo-hookean\""];
 

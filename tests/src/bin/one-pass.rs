@@ -1,5 +1,5 @@
-//! Runs the fluid's rate pass once, for an instruction counter: `one-pass COMPOSITION chosen|alone`. `chosen` goes the way
-//! of a run, from the list of effects to a compiled composition; `alone` is a pass that was never told of any other
+//! Runs the fluid's rate pass once, for an instruction counter: `one-pass COMPOSITION chosen|alone`. `chosen` goes the
+//! way of a run, from the list of effects to a compiled composition; `alone` is a pass that was never told of any other
 //! effect.
 
 use halfstep_fluid::composition::{Pass, Shares};
@@ -31,21 +31,23 @@ fn main() -> ExitCode {
     let gradient = vec![[0.01, 0.02]; patch.id.len()];
     let mut sums = vec![RateSum::default(); patch.list.clusters()];
     let pass = RatePass(&patch, &mut sums);
-    let damping = ArtificialViscosity::new(Coefficients { linear: 0.1, quadratic: 0.0 }, 10.0, H);
+    let viscosity = ArtificialViscosity::new(Coefficients { linear: 0.1, quadratic: 0.0 }, 10.0, H);
     let simple = Simple(Strength(0.1));
     let full = DeltaSph { strength: Strength(0.1), gradient: &gradient };
-    let chosen = |diffusion| (Some(damping), (diffusion, (None::<ViscousStress<'_, 2>>, ())));
+    let chosen = |diffusion| (Some(viscosity), (diffusion, (None::<ViscousStress<'_, 2>>, ())));
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match arguments[..] {
-        ["damping", "chosen"] => chosen(None).run(pass),
-        ["damping", "alone"] => pass.run(damping),
+        ["artificial-viscosity", "chosen"] => chosen(None).run(pass),
+        ["artificial-viscosity", "alone"] => pass.run(viscosity),
         ["simple", "chosen"] => chosen(Some(Diffusion::Simple(simple))).run(pass),
-        ["simple", "alone"] => pass.run((damping, simple)),
+        ["simple", "alone"] => pass.run((viscosity, simple)),
         ["delta-sph", "chosen"] => chosen(Some(Diffusion::DeltaSph(full))).run(pass),
-        ["delta-sph", "alone"] => pass.run((damping, full)),
-        ["complete"] => pass.run((Some(damping), (Some(Diffusion::Simple(simple)), ()))),
+        ["delta-sph", "alone"] => pass.run((viscosity, full)),
+        ["complete"] => pass.run((Some(viscosity), (Some(Diffusion::Simple(simple)), ()))),
         _ => {
-            eprintln!("usage: one-pass damping|simple|delta-sph chosen|alone, or one-pass complete");
+            eprintln!(
+                "usage: one-pass artificial-viscosity|simple|delta-sph chosen|alone, or one-pass complete"
+            );
             return ExitCode::FAILURE;
         }
     }

@@ -324,13 +324,13 @@ pub fn wall_contact(make: Make) {
     };
     // The wall's first row is at -0.025.
     let (depth, away) = lowest(&[]);
-    // It came with 30 kg m/s.
+    // The body came with 30 kg m/s.
     assert!(depth > -0.02 && away > -0.03, "{depth} {away}");
     let (depth, away) = lowest(&["effects.wall-contact=\"off\""]);
     assert!(depth < -0.05 && away < 0.0, "{depth} {away}");
 }
 
-/// A time step far beyond the limit, and a load that is no number, end as errors that name a particle and a quantity.
+/// A time step far beyond the limit, and a load that is NaN, end as errors that name a particle and a quantity.
 pub fn bounds(make: Make) {
     let swing = ["shape.block.cantilever_mode={fraction=0.01,root=0.0,length=0.2}"];
     let mut unstable = model(make, &[BLOCK], &swing);
@@ -346,7 +346,7 @@ pub fn bounds(make: Make) {
     let mut load = Load::none(poisoned.particles().len());
     load.force[17] = [f64::NAN, 0.0];
     let [stage_0, _] = both(poisoned.sub_step_limit());
-    let failure = poisoned.advance(&stage_0, 1, &load).expect_err("no number");
+    let failure = poisoned.advance(&stage_0, 1, &load).expect_err("NaN");
     assert_eq!(failure.quantity, Quantity::Speed);
     let (named, cause) = (reference(&poisoned, failure.particle), reference(&poisoned, 17));
     // In one evaluation it spreads to whatever is listed together with a neighbour.

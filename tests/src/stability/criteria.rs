@@ -83,12 +83,12 @@ pub enum What {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Of {
-    /// Its last value.
+    /// Last value.
     #[default]
     Last,
-    /// Its largest value.
+    /// Largest value.
     Max,
-    /// Its mean over time.
+    /// Mean over time.
     Mean,
     /// Largest minus smallest value.
     Range,
@@ -101,7 +101,7 @@ pub enum Of {
 pub struct Measured {
     /// The criterion.
     pub label: String,
-    /// Its value; no number where the run did not get that far.
+    /// Value of the criterion; NaN where the run did not get that far.
     pub value: f64,
     /// Whether it holds.
     pub holds: bool,
@@ -225,8 +225,8 @@ pub(super) fn short(value: f64) -> String {
     }
 }
 
-/// All criteria of a run, with those that hold for every case before them: it finished, and nothing is NaN. `others` has
-/// the run to compare with for each criterion that asks for one.
+/// All criteria of a run, with those that hold for every case before them: it finished, and nothing is NaN. `others`
+/// has the run to compare with for each criterion that asks for one.
 pub fn evaluate(criteria: &[Criterion], run: &Outcome, dx: f64, others: &[Option<Outcome>]) -> Vec<Measured> {
     let report = run.report();
     let finished = report.status == Some(RunStatus::Finished) && run.code() == Some(0);

@@ -40,7 +40,7 @@ impl Canvas {
     /// Draws with plotters.
     ///
     /// # Errors
-    /// What plotters says.
+    /// Error of plotters as text.
     pub fn draw(&mut self, draw: impl FnOnce(&Area<'_>) -> Drawn) -> Drawn {
         register();
         let area = BitMapBackend::with_buffer(&mut self.rgb, (self.width, self.height)).into_drawing_area();

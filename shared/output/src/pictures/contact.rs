@@ -44,7 +44,7 @@ pub fn draw_contact(scene: &Scene, dir: &Path) -> Result<Option<PathBuf>, Output
     let instants = instants(scene, dir)?;
     let Some(view) = View::of(scene, &instants) else { return Ok(None) };
     let path = dir.join("contact.png");
-    let limits = Limits::of(&instants);
+    let scales = ColourScales::of(&instants);
     let place = layout(instants.len(), view.size(), HEAD, FOOT, scene.resolution);
     let mut sheet = Sheet::new(place.width, place.height);
     // Large discs touch; small ones overlap so that no background shines through.
@@ -56,12 +56,12 @@ pub fn draw_contact(scene: &Scene, dir: &Path) -> Result<Option<PathBuf>, Output
             [(frame::WALL, None), (frame::FLUID, Some(Scale::Fluid)), (frame::SOLID, Some(Scale::Solid))]
         {
             for (frame, k) in instant.phase(phase).filter(|(frame, k)| view.shows(frame.points[*k])) {
-                let color = scale.map_or(WALL, |scale| limits.color(scale, frame, k));
+                let color = scale.map_or(WALL, |scale| scales.color(scale, frame, k));
                 sheet.disc(panel, view.pixel(frame.points[k], panel, place.scale), radius, color);
             }
         }
     }
-    let bars = limits.bars(place.width, place.height);
+    let bars = scales.bars(place.width, place.height);
     for bar in &bars {
         sheet.bar(bar.at, bar.scale);
     }
@@ -119,12 +119,12 @@ fn von_mises(stress: [f32; 6]) -> f64 {
 }
 
 /// Ends of the colour scales, Pa; `None` where the phase is absent.
-struct Limits {
+struct ColourScales {
     pressure: Option<(f64, f64)>,
     stress: Option<(f64, f64)>,
 }
 
-impl Limits {
+impl ColourScales {
     fn of(instants: &[Instant]) -> Self {
         let values = |phase, value: fn(&Frame, usize) -> f64| -> Vec<f64> {
             let all = instants.iter().flat_map(|instant| instant.phase(phase));
@@ -150,11 +150,11 @@ impl Limits {
     }
 
     fn color(&self, scale: Scale, frame: &Frame, k: usize) -> u8 {
-        let (value, limits) = match scale {
+        let (value, range) = match scale {
             Scale::Fluid => (f64::from(frame.pressure[k]), self.pressure),
             Scale::Solid => (von_mises(frame.stress[k]), self.stress),
         };
-        let (low, high) = limits.unwrap_or((0.0, 1.0));
+        let (low, high) = range.unwrap_or((0.0, 1.0));
         scale.index((value - low) / (high - low))
     }
 
@@ -165,16 +165,16 @@ impl Limits {
             (Scale::Solid, "solid: von Mises stress", self.stress),
         ]
         .into_iter()
-        .filter_map(|(scale, quantity, limits)| Some((scale, quantity, limits?)))
+        .filter_map(|(scale, quantity, range)| Some((scale, quantity, range?)))
         .collect();
         let (edge, gap) = (24, 56);
         let count = present.len().max(1) as i32;
         let length = ((width - 2 * edge - (count - 1) * gap) / count).clamp(60, 420);
-        let bar = |(k, (scale, quantity, limits))| Bar {
+        let bar = |(k, (scale, quantity, range))| Bar {
             at: Rect { x: edge + k * (length + gap), y: height - FOOT + 32, width: length, height: 16 },
             scale,
             quantity,
-            limits,
+            range,
         };
         (0..).zip(present).map(bar).collect()
     }
@@ -185,12 +185,12 @@ struct Bar {
     at: Rect,
     scale: Scale,
     quantity: &'static str,
-    limits: (f64, f64),
+    range: (f64, f64),
 }
 
 impl Bar {
     fn draw(&self, area: &Area<'_>) -> Drawn {
-        let (low, high) = self.limits;
+        let (low, high) = self.range;
         let (factor, unit) = units::shown("Pa", high.max(-low));
         label(area, &format!("{} [{unit}]", self.quantity), (self.at.x, self.at.y - 22), 14, HPos::Left)?;
         frame_of(area, self.at)?;

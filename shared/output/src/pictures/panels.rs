@@ -45,7 +45,7 @@ impl Panel {
     pub(crate) fn range(&self, last: f64) -> Range<f64> {
         let (low, high) = extent(self.curves.iter().chain(&self.references), last).unwrap_or((0.0, 0.0));
         let largest = low.abs().max(high.abs());
-        // What varies by rounding errors only is constant: an axis of a few last digits has no sensible ticks.
+        // A curve that varies by rounding errors only is constant: an axis of a few last digits has no sensible ticks.
         let room = if high - low > 1e-9 * largest { 0.06 * (high - low) } else { 0.1 * largest };
         if room > f64::MIN_POSITIVE { low - room..high + room } else { -1.0..1.0 }
     }

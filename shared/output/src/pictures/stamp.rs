@@ -29,7 +29,7 @@ pub(crate) enum Scale {
 }
 
 impl Scale {
-    /// Palette index of a place on the scale, 0 to 1; what lies outside, or is no number, gets the nearest end.
+    /// Palette index of a place on the scale, 0 to 1; a value outside, or NaN, gets the nearest end.
     pub(crate) fn index(self, place: f64) -> u8 {
         let step = (place.clamp(0.0, 1.0) * f64::from(STEPS - 1)).round() as u8;
         GREYS + 1 + step + if self == Self::Solid { STEPS } else { 0 }

@@ -137,7 +137,7 @@ fn the_contact_sheet_shows_all_phases_in_their_colours() {
 }
 
 #[test]
-fn one_frame_of_one_side_is_enough_for_a_sheet() {
+fn one_frame_of_one_phase_is_enough_for_a_sheet() {
     let dir = folder("contact-solid");
     fixture::frames(&dir, 1);
     std::fs::remove_file(series::frames_folder(&dir).join(series::index_name("fluid"))).unwrap();

@@ -15,7 +15,7 @@ mod tests {
     use super::nearest;
 
     #[test]
-    fn all_that_are_equally_near() {
+    fn every_point_at_the_least_distance_is_found() {
         let row = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 0.0]];
         assert_eq!(nearest(row.into_iter(), [1.5, 2.0]), [1, 2]);
         assert_eq!(nearest(row.into_iter(), [9.0, 0.0]), [3]);

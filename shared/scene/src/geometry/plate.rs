@@ -86,8 +86,8 @@ fn length<const D: usize>(x: &[f64; D]) -> f64 {
 /// Relative tolerance of lengths.
 const TOLERANCE: f64 = 1e-9;
 
-/// Fewest rows of particles that a plate needs as the fluid's moving wall; with fewer it does not hold water. `None` where
-/// that is not asked for.
+/// Fewest rows of particles that a plate needs as the fluid's moving wall; with fewer it does not hold water. `None`
+/// where that is not asked for.
 pub(crate) fn fewest_rows(scene: &Scene) -> Option<f64> {
     let asked = scene.fluid.is_some()
         && !scene.solids.is_empty()

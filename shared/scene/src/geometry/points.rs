@@ -1,7 +1,7 @@
 //! The lattice of one shape, and the normals of walls.
 
 use super::TOLERANCE;
-use crate::{Block, Geometry, Side};
+use crate::{Block, Geometry, TankSide};
 
 /// How a shape is filled.
 #[derive(Clone, Copy, Debug)]
@@ -61,8 +61,9 @@ pub(super) struct Point<const D: usize> {
 }
 
 /// The sides at the low and high end of an axis.
-pub(super) fn sides(axis: usize) -> [Side; 2] {
-    [[Side::Left, Side::Right], [Side::Bottom, Side::Top], [Side::Back, Side::Front]][axis]
+pub(super) fn sides(axis: usize) -> [TankSide; 2] {
+    [[TankSide::Left, TankSide::Right], [TankSide::Bottom, TankSide::Top], [TankSide::Back, TankSide::Front]]
+        [axis]
 }
 
 /// All points of a shape, x innermost.
@@ -156,7 +157,7 @@ fn in_ring<const D: usize>(center: &[f64; 3], inner: f64, outer: f64, spacing: S
     points
 }
 
-fn around<const D: usize>(cavity: &Block, open: &[Side], spacing: Spacing) -> Vec<Point<D>> {
+fn around<const D: usize>(cavity: &Block, open: &[TankSide], spacing: Spacing) -> Vec<Point<D>> {
     let cells: [i64; D] = std::array::from_fn(|a| spacing.cells(cavity.max[a] - cavity.min[a]));
     let layers = spacing.layers();
     let mut points = Vec::new();

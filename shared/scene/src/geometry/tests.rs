@@ -84,7 +84,7 @@ fn a_box(phase: Phase, min: [f64; 2], max: [f64; 2]) -> Shape {
     shape(phase, Geometry::Box(block(min, max)))
 }
 
-fn tank(open: &[Side]) -> Shape {
+fn tank(open: &[TankSide]) -> Shape {
     let cavity = block([0.0, 0.0], [1.0, 0.5]);
     shape(Phase::Wall, Geometry::Tank { cavity, open: open.to_vec() })
 }
@@ -182,21 +182,21 @@ fn a_tank_has_three_layers_with_corners_where_two_closed_sides_meet() {
 
 #[test]
 fn an_open_tank_ends_at_the_cavitys_edge() {
-    let s = scene(vec![tank(&[Side::Top])]);
+    let s = scene(vec![tank(&[TankSide::Top])]);
     let l = layout::<2>(&s);
     // Floor with both corners: 16 x 3; two sides: 3 x 5 each.
     assert_eq!(l.wall.len(), 48 + 30);
     assert_eq!(estimate(&s).wall, 78);
     assert!(l.wall.iter().all(|p| p.position[1] < 0.5));
 
-    let l = layout::<2>(&scene(vec![tank(&[Side::Left, Side::Right, Side::Top])]));
+    let l = layout::<2>(&scene(vec![tank(&[TankSide::Left, TankSide::Right, TankSide::Top])]));
     assert_eq!(l.wall.len(), 10 * 3);
     assert!(l.wall.iter().all(|p| !p.corner && p.normal == [0.0, 1.0]));
 }
 
 #[test]
 fn a_nodal_tank_carries_its_surface() {
-    let mut s = scene(vec![tank(&[Side::Top])]);
+    let mut s = scene(vec![tank(&[TankSide::Top])]);
     s.numerics.lattice = Lattice::Nodal;
     let l = layout::<2>(&s);
     // x: -3..=13, y: -3..=5; the cavity 1..=9 x 1..=5 is left free.
@@ -223,7 +223,7 @@ fn a_wall_box_turns_to_its_nearest_face() {
 fn a_solid_cuts_walls_and_fluid_but_leaves_neighbours_at_dx() {
     // The plate's foot goes 0.3 into the floor; water stands over everything.
     let s = scene(vec![
-        tank(&[Side::Top]),
+        tank(&[TankSide::Top]),
         a_box(Phase::Fluid, [0.0, 0.0], [1.0, 0.3]),
         a_box(Phase::Solid, [0.4, -0.3], [0.6, 0.4]),
     ]);
@@ -237,7 +237,7 @@ fn a_solid_cuts_walls_and_fluid_but_leaves_neighbours_at_dx() {
 #[test]
 fn a_solid_off_the_lattice_leaves_no_wall_particle_in_it() {
     // Half a spacing off in both axes: wall particles sit between four solid ones, 0.71 dx away.
-    let s = scene(vec![tank(&[Side::Top]), a_box(Phase::Solid, [0.35, -0.25], [0.65, 0.25])]);
+    let s = scene(vec![tank(&[TankSide::Top]), a_box(Phase::Solid, [0.35, -0.25], [0.65, 0.25])]);
     let l = layout::<2>(&s);
     assert!(!l.wall.iter().any(|p| (0.36..0.64).contains(&p.position[0]) && p.position[1] > -0.24));
     assert!(
@@ -263,7 +263,7 @@ fn no_fluid_in_a_wall_and_no_particle_twice() {
     let s = scene(vec![
         a_box(Phase::Fluid, [-0.3, -0.3], [1.0, 0.3]),
         a_box(Phase::Fluid, [0.0, 0.0], [1.0, 0.4]),
-        tank(&[Side::Top]),
+        tank(&[TankSide::Top]),
         a_box(Phase::Wall, [0.0, -0.3], [1.0, 0.0]),
     ]);
     let l = layout::<2>(&s);
@@ -345,7 +345,7 @@ fn the_domain_is_three_times_the_box_of_all_shapes() {
     let got = domain(&s);
     assert_relative_eq!(got.min[..], [-1.5, -1.0, 0.0][..], max_relative = 1e-12);
     assert_relative_eq!(got.max[..], [3.0, 2.0, 0.0][..], max_relative = 1e-12);
-    s.shapes.push(tank(&[Side::Top]));
+    s.shapes.push(tank(&[TankSide::Top]));
     assert_relative_eq!(domain(&s).min[0], -0.3 - 1.8, max_relative = 1e-12);
     s.numerics.domain = Some(block([7.0, 7.0], [8.0, 8.0]));
     assert_eq!(domain(&s), block([7.0, 7.0], [8.0, 8.0]));

@@ -55,7 +55,7 @@ macro_rules! registry {
             /// All of them, by their name in scenes.
             pub const ALL: &[(&str, Self)] = &[$(($name, Self::$model),)*];
 
-            /// Its name in scenes.
+            /// Name of the model in scenes.
             pub fn name(self) -> &'static str {
                 match self {
                     $(Self::$model => $name,)*

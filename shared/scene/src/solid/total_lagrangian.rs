@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// Keys of the total-Lagrangian model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TotalLagrangianKeys {
-    /// Its law.
+    /// Law of the material.
     pub material: Material,
     /// Coefficient alpha of the hourglass resistance; `None`: the one that gives particles the bending stiffness of
     /// their cells.

@@ -26,8 +26,8 @@ impl Chunk {
         self.index.clear();
     }
 
-    /// Makes room for the next lists to be somewhat longer without allocating. Lists that outgrew their memory, which was
-    /// `before`, were given up to twice as much: where they allocate in any case, they are made to measure.
+    /// Makes room for the next lists to be somewhat longer without allocating. Lists that outgrew their memory, which
+    /// was `before`, were given up to twice as much: where they allocate in any case, they are made to measure.
     fn keep_room(&mut self, before: usize) {
         let used = self.index.len();
         if self.index.capacity() != before || before < used + used / 32 {
@@ -44,7 +44,7 @@ impl Chunk {
         self.range(k).0
     }
 
-    /// The same, and how many the clusters before it have.
+    /// Neighbours of a cluster, and how many the clusters before it have.
     #[inline(always)]
     pub(crate) fn range(&self, k: usize) -> (&[u32], usize) {
         let (first, end) = (self.start[k] as usize, self.start[k + 1] as usize);

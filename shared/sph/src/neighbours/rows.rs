@@ -207,8 +207,8 @@ impl<const D: usize> Rows<D> {
         std::mem::swap(id, &mut self.id_scratch);
     }
 
-    /// Calls `visit(first, end)` for each run of real slots that can lie within `reach` of the box `[low, high]`; `x0` is
-    /// the sorted x column, unchanged since the sort.
+    /// Calls `visit(first, end)` for each run of real slots that can lie within `reach` of the box `[low, high]`; `x0`
+    /// is the sorted x column, unchanged since the sort.
     #[inline]
     pub fn candidates(
         &self,

@@ -156,8 +156,8 @@ pub fn peer_leaves<S: Transport>() {
     );
 }
 
-/// What a peer sent before it ended is read, whatever it holds, before its end is reported.
-pub fn last_words<S: Transport>() {
+/// The last message of a peer is read, also one that says that the peer diverged, before the peer's end is reported.
+pub fn last_message<S: Transport>() {
     let run = Run::new(100, 100);
     let read = |header: &StateHeader| {
         assert_eq!((header.status, header.failure.particle), (status::DIVERGED, 17));
@@ -282,8 +282,8 @@ pub fn capacity<S: Transport>() {
     });
 }
 
-/// A stranger with other records or another schema is refused at the start.
-pub fn strangers<S: Transport>() {
+/// A process whose records or schema differ is refused at the start.
+pub fn incompatible_processes<S: Transport>() {
     let run = Run::new(10, 10);
     let _claim = Claim::new(&run).unwrap();
     let is_refused = |channel: &str, what: &str| {
@@ -297,11 +297,11 @@ pub fn strangers<S: Transport>() {
         }
     };
     {
-        let _stranger = RawRole::<S>::enter_with_schema(&run, "fluid", 1);
+        let _other_schema = RawRole::<S>::enter_with_schema(&run, "fluid", 1);
         is_refused("halfstep/fluid/wake", "IncompatibleAttributes");
     }
-    let stranger = RawRole::<S>::enter(&run, "fluid");
-    let _service = stranger.channel::<f64, StateHeader>("fluid/state", 2);
+    let other_records = RawRole::<S>::enter(&run, "fluid");
+    let _service = other_records.channel::<f64, StateHeader>("fluid/state", 2);
     is_refused("halfstep/fluid/state", "IncompatibleTypes");
 }
 
