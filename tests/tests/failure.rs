@@ -4,9 +4,9 @@ use halfstep_output::probes::TIME_COLUMN;
 use halfstep_output::run_json::RunStatus;
 use halfstep_tests::conformance::link::eventually;
 use halfstep_tests::process::{is_alive, kill, leftovers, role_of};
-use halfstep_tests::run::whole_machine;
+use halfstep_tests::run::{program, repository, whole_machine};
 use halfstep_tests::{Outcome, Running, scene};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// How long the survivors may take to notice that one of them is gone, and to end, s.
 const PROMISE: f64 = 2.0;
@@ -108,6 +108,86 @@ fn an_interrupted_run_is_stopped_and_complete() {
         assert_eq!(outcome.frames(stem).last().unwrap().time, report.time, "{stem}");
     }
     assert!(outcome.dir.join("plot.png").exists());
+}
+
+/// As `timeout`, systemd or Slurm do: every process hears it.
+#[test]
+fn a_signal_to_all_processes_stops_the_run_in_order() {
+    for signal in [libc::SIGTERM, libc::SIGHUP] {
+        let _machine = whole_machine();
+        let running = under_way();
+        let launcher = running.pid();
+        let roles = ["fluid", "solid"].map(|role| role_of(launcher, role).expect("a child"));
+        for pid in roles.into_iter().chain([launcher]) {
+            kill(pid, signal);
+        }
+        let outcome = running.wait();
+        assert_eq!(outcome.code(), Some(130), "{}", outcome.stderr);
+        let report = outcome.report();
+        assert_eq!((report.status, report.error), (Some(RunStatus::Stopped), None));
+        usable(&outcome, launcher);
+    }
+}
+
+/// A role that lives and is silent cannot keep a run from being ended: after two seconds, at once at the second signal.
+#[test]
+fn a_run_with_a_silent_role_can_be_interrupted() {
+    for signals in [1, 2] {
+        let _machine = whole_machine();
+        let running = under_way();
+        let launcher = running.pid();
+        let solid = role_of(launcher, "solid").expect("a child");
+        kill(solid, libc::SIGSTOP);
+        std::thread::sleep(Duration::from_millis(200));
+        let moment = Instant::now();
+        kill(launcher, libc::SIGINT);
+        if signals == 2 {
+            std::thread::sleep(Duration::from_millis(50));
+            kill(launcher, libc::SIGINT);
+        }
+        let outcome = running.wait();
+        let seconds = moment.elapsed().as_secs_f64();
+        assert_eq!(outcome.code(), Some(130), "{}", outcome.stderr);
+        assert!(outcome.stderr.contains("which has been silent for"), "{}", outcome.stderr);
+        assert_eq!(outcome.report().status, Some(RunStatus::Stopped));
+        assert!(!is_alive(solid), "it went with the run");
+        assert!(seconds < PROMISE + 20.0, "{seconds} s instead of 600");
+        usable(&outcome, launcher);
+    }
+}
+
+#[test]
+fn nobody_has_to_read_what_a_run_says() {
+    // The shell closes both ends before the program starts.
+    let folder = tempfile::tempdir().unwrap();
+    let line = format!(
+        "exec {} run {} --until 0.002 --set resolution=0.0025 --set time_step=1 --out {} >&- 2>&-",
+        program().display(),
+        repository().join("scenes/elastic-gate.toml").display(),
+        folder.path().join("run").display()
+    );
+    let status = std::process::Command::new("sh").arg("-c").arg(&line.replace(" --set time_step=1", "")).status();
+    assert_eq!(status.unwrap().code(), Some(0));
+    let refused = std::process::Command::new("sh").arg("-c").arg(line).status();
+    assert_eq!(refused.unwrap().code(), Some(1), "a wrong scene, and no panic");
+}
+
+#[test]
+fn a_folder_in_use_is_refused() {
+    let _machine = whole_machine();
+    let running = under_way();
+    let (launcher, dir) = (running.pid(), running.dir().to_owned());
+    for arguments in [&["--force"][..], &[]] {
+        let again = arguments.iter().fold(scene("elastic-gate").out(&dir), |run, a| run.argument(*a));
+        let outcome = again.start().wait();
+        assert_eq!(outcome.code(), Some(1));
+        assert!(outcome.stderr.contains(&format!("process {launcher}")), "{}", outcome.stderr);
+    }
+    let resumed = scene("elastic-gate").resume(&dir).start().wait();
+    assert_eq!(resumed.code(), Some(1), "{}", resumed.stderr);
+    kill(launcher, libc::SIGINT);
+    let outcome = running.wait();
+    assert_eq!(outcome.code(), Some(130), "it was not disturbed: {}", outcome.stderr);
 }
 
 #[test]

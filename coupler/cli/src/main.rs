@@ -1,10 +1,11 @@
 //! The `halfstep` command.
 
+use halfstep_coupling::say;
 use clap::{Parser, Subcommand};
 use halfstep::Launcher;
 use halfstep::options::{RunOptions, SolidSource, known_solid};
 use halfstep::{isa, run};
-use halfstep_coupling::supervise::stop_flag;
+use halfstep_coupling::supervise::StopFlags;
 use halfstep_output::checkpoint::{FOLDERS, MANIFEST};
 use halfstep_output::run_json::RunStatus;
 use halfstep_scene::{self as scene, Scene};
@@ -103,6 +104,9 @@ struct HowArguments {
     /// Awaits a solid that you start by hand
     #[arg(long, value_name = "NAME", num_args = 0..=1, require_equals = true, default_missing_value = "")]
     await_solid: Vec<String>,
+    /// How long a participant that is alive may be silent, s
+    #[arg(long, value_name = "SECONDS", default_value_t = 600.0, value_parser = seconds, allow_negative_numbers = true)]
+    patience: f64,
     /// How long to wait for a solid started by hand, s
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = seconds, allow_negative_numbers = true)]
     solid_wait: f64,
@@ -129,7 +133,7 @@ fn main() -> ExitCode {
     let isa = match isa::of_environment() {
         Ok(isa) => isa,
         Err(error) => {
-            eprintln!("error: {error}");
+            say::warn(format_args!("error: {error}"));
             return ExitCode::from(1);
         }
     };
@@ -137,7 +141,7 @@ fn main() -> ExitCode {
         Command::Run(arguments) => run_scene(arguments, isa),
         Command::Check(arguments) => match load(&arguments) {
             Ok(scene) => {
-                print!("{}", halfstep::check::describe(&scene, isa));
+                say::tell(format_args!("{}", halfstep::check::describe(&scene, isa).trim_end()));
                 ExitCode::SUCCESS
             }
             Err(code) => code,
@@ -153,7 +157,7 @@ fn load(arguments: &SceneArguments) -> Result<scene::Scene, ExitCode> {
     let mut overrides = arguments.set.clone();
     overrides.extend(arguments.until.iter().map(|t| format!("end_time={t}")));
     scene::load(&arguments.scene, &overrides).map_err(|errors| {
-        eprintln!("{:?}", miette::Report::new(errors));
+        say::warn(format_args!("{:?}", miette::Report::new(errors)));
         ExitCode::from(1)
     })
 }
@@ -166,20 +170,20 @@ fn explain_scene(arguments: &SceneArguments, json: bool, isa: Isa) -> ExitCode {
     match halfstep::explain::explain(&scene, isa) {
         Ok(explanation) if json => match serde_json::to_string_pretty(&explanation) {
             Ok(text) => {
-                println!("{text}");
+                say::tell(format_args!("{text}"));
                 ExitCode::SUCCESS
             }
             Err(error) => {
-                eprintln!("error: {error}");
+                say::warn(format_args!("error: {error}"));
                 ExitCode::from(2)
             }
         },
         Ok(explanation) => {
-            print!("{explanation}");
+            say::tell(format_args!("{}", explanation.to_string().trim_end()));
             ExitCode::SUCCESS
         }
         Err(error) => {
-            eprintln!("error: {error}");
+            say::warn(format_args!("error: {error}"));
             ExitCode::from(2)
         }
     }
@@ -223,7 +227,7 @@ fn resume(arguments: &ResumeArguments, isa: Isa) -> ExitCode {
 
 /// Nothing was started.
 fn usage(error: &dyn std::fmt::Display) -> ExitCode {
-    eprintln!("error: {error}");
+    say::warn(format_args!("error: {error}"));
     ExitCode::from(1)
 }
 
@@ -239,12 +243,13 @@ fn options(
     Ok(RunOptions {
         threads: how.threads.map(|n| n as usize),
         launcher,
-        stop: stop_flag().map_err(|e| format!("cannot watch for signals: {e}"))?,
+        stop: StopFlags::of_signals().map_err(|e| format!("cannot watch for signals: {e}"))?,
         log: true,
         quiet: how.quiet,
         force,
         foreign,
         solid_wait: how.solid_wait,
+        patience: how.patience,
         isa,
         ..RunOptions::new(out)
     })
@@ -253,19 +258,19 @@ fn options(
 /// Says how a run ended and where to look.
 fn tell(scene: &Scene, out: &Path, (report, error): run::Ended) -> ExitCode {
     if let Some(error) = error {
-        eprintln!("error: {error}");
+        say::warn(format_args!("error: {error}"));
     }
-    println!(
+    say::tell(format_args!(
         "{}: {} steps to t = {} s in {:.1} s; see {}",
         scene.name,
         report.steps,
         report.time,
         report.wall_seconds,
         out.join("plot.png").display()
-    );
+    ));
     let finished = report.status == Some(RunStatus::Finished);
     if !finished && FOLDERS.iter().any(|folder| out.join(folder).join(MANIFEST).exists()) {
-        println!("halfstep resume {} goes on from the last checkpoint", out.display());
+        say::tell(format_args!("halfstep resume {} goes on from the last checkpoint", out.display()));
     }
     match report.status {
         Some(RunStatus::Finished) => ExitCode::SUCCESS,

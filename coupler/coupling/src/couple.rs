@@ -20,7 +20,7 @@ use halfstep_wire::protocol::{ForceHeader, ForceRecord, StateHeader, StateRecord
 use halfstep_wire::state::{Fields, Group, State, StateError};
 use halfstep_wire::wide;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 use xxhash_rust::xxh3::Xxh3;
 
@@ -54,6 +54,27 @@ pub struct Course {
     pub checkpoints: Option<Checkpoints>,
     /// Set, it ends the run at the next state n.
     pub stop: Arc<AtomicBool>,
+    /// For who watches the run.
+    pub progress: Arc<Progress>,
+}
+
+/// How far a run is, seen from another thread.
+#[derive(Debug, Default)]
+pub struct Progress {
+    messages: AtomicU64,
+    awaited: AtomicUsize,
+}
+
+impl Progress {
+    /// Messages received so far.
+    pub fn messages(&self) -> u64 {
+        self.messages.load(Ordering::Relaxed)
+    }
+
+    /// Place of the participant whose message was awaited last.
+    pub fn awaited(&self) -> usize {
+        self.awaited.load(Ordering::Relaxed)
+    }
 }
 
 /// What the coupler holds of a solid.
@@ -170,7 +191,7 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
     /// # Errors
     /// As for [`Self::run`].
     pub fn first(&mut self, course: &mut Course) -> Result<bool, RunError> {
-        self.receive(&Expect::of(&self.half_step))?;
+        self.receive(&course.progress, &Expect::of(&self.half_step))?;
         if self.abilities.is_empty() {
             self.abilities = self.states.iter().map(|state| state.header().abilities).collect();
             self.begin_foreign();
@@ -223,7 +244,7 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
     pub fn second(&mut self, course: &mut Course) -> Result<(), RunError> {
         let Some(tick) = self.tick else { return Ok(()) };
         self.half_step = self.half_step.next();
-        self.receive(&Expect::of(&self.half_step))?;
+        self.receive(&course.progress, &Expect::of(&self.half_step))?;
         self.complete_checkpoint(course)?;
         self.answer(&tick, None)?;
         self.states.clear();
@@ -237,7 +258,7 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
     /// # Errors
     /// As for [`Self::run`].
     pub fn end(&mut self, course: &mut Course) -> Result<Outcome, RunError> {
-        self.receive(&Expect::last(self.half_step.step))?;
+        self.receive(&course.progress, &Expect::last(self.half_step.step))?;
         for side in &mut self.solids {
             side.foreign.take().map_or(Ok(()), ForeignSolid::finish)?;
         }
@@ -334,11 +355,13 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
 
     /// All states of a half-step. The solids' first: where all are there the order does not matter, and the fluid waits
     /// for the solids' first messages before it sends its own.
-    fn receive(&mut self, expect: &Expect) -> Result<(), RunError> {
+    fn receive(&mut self, progress: &Progress, expect: &Expect) -> Result<(), RunError> {
         let (first_solid, participants) = (self.first_solid(), self.phases.len());
         self.states.clear();
         for place in (first_solid..participants).chain(0..first_solid) {
+            progress.awaited.store(place, Ordering::Relaxed);
             let state = self.port.receive_state(place, expect)?;
+            progress.messages.fetch_add(1, Ordering::Relaxed);
             self.reject_failure(place, state.header())?;
             self.states.push(state);
         }

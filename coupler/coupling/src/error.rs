@@ -47,6 +47,14 @@ pub enum RunError {
     /// Somebody stopped the run before its roles had met.
     #[error("stopped before the start")]
     StoppedEarly,
+    /// Somebody stopped the run while a role was silent.
+    #[error("stopped without waiting for the {role}, which has been silent for {seconds:.1} s")]
+    StoppedAtOnce {
+        /// Which.
+        role: Name,
+        /// For how long, s.
+        seconds: f64,
+    },
     /// The solid changed the size of its interface set.
     #[error(
         "the {solid} published {now} interface particles at step {step} and {first} before; the number is fixed"

@@ -10,4 +10,5 @@ pub mod local;
 pub mod recorder;
 pub mod reports;
 pub mod roles;
+pub mod say;
 pub mod supervise;

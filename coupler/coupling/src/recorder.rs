@@ -1,5 +1,6 @@
 //! What a run writes down as it goes: probe log, statistics, progress.
 
+use crate::say;
 use crate::clock::Tick;
 use crate::energy::{self, Account, EnergyBalance};
 use crate::error::RunError;
@@ -173,7 +174,7 @@ impl Recorder {
                 dt / limit.dt
             );
             tracing::warn!("{warning}");
-            self.bar.suspend(|| eprintln!("warning: {warning}"));
+            self.bar.suspend(|| say::warn(format_args!("warning: {warning}")));
         }
         if tick.row {
             let mut used = vec![0; measured.len()];

@@ -5,7 +5,7 @@
 
 use halfstep_link::{LinkConfig, Participant};
 use halfstep_wire::Name;
-use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1};
 use std::ffi::OsStr;
 use std::fs::{File, OpenOptions};
 use std::io;
@@ -13,8 +13,12 @@ use std::os::unix::process::{CommandExt, ExitStatusExt};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
+
+/// What tells a role to end. Roles hear nothing else: SIGTERM may reach all processes of a run at once (`timeout`, systemd,
+/// Slurm), and then the coupler ends the run in order.
+const END: i32 = SIGUSR1;
 
 /// Pause between two looks at the children.
 const TICK: Duration = Duration::from_millis(5);
@@ -119,7 +123,7 @@ impl Children {
         let parent = std::process::id();
         // SAFETY: between fork and exec; only calls that are safe after a fork of a process with threads.
         unsafe {
-            command.pre_exec(move || bind_to_parent(parent));
+            command.pre_exec(move || bind_to_parent(parent, group));
         }
         let child = command.spawn().map_err(|source| SuperviseError::Start {
             role,
@@ -192,7 +196,10 @@ impl Children {
 
     /// Asks all to end, waits so long, then kills those that have not. Returns how each ended.
     pub fn stop(&mut self, grace: Duration) -> Vec<(Name, ExitStatus)> {
-        self.signal(libc::SIGTERM);
+        self.poll();
+        for child in &self.children {
+            child.signal(if child.group { SIGTERM } else { END });
+        }
         if !self.wait(grace) {
             self.signal(libc::SIGKILL);
             for child in self.children.iter_mut().filter(|c| c.status.is_none()) {
@@ -220,37 +227,65 @@ impl Drop for Children {
     }
 }
 
-/// Lets the calling process end when its parent does and not hear Ctrl-C: the coupler decides what that means.
-fn bind_to_parent(parent: u32) -> io::Result<()> {
-    // SAFETY: no memory is passed; all three calls are safe after a fork.
+/// Lets the calling process end when its parent does and not hear Ctrl-C: the coupler decides what that means. A role
+/// does not hear SIGTERM and SIGHUP either; `foreign` programs do.
+fn bind_to_parent(parent: u32, foreign: bool) -> io::Result<()> {
+    // SAFETY: no memory is passed; all calls are safe after a fork.
     unsafe {
-        if libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGTERM) != 0 {
+        if libc::prctl(libc::PR_SET_PDEATHSIG, if foreign { SIGTERM } else { END }) != 0 {
             return Err(io::Error::last_os_error());
         }
         // The parent may have ended before that call.
         if libc::getppid() as u32 != parent {
             libc::_exit(1);
         }
-        libc::signal(libc::SIGINT, libc::SIG_IGN);
+        libc::signal(SIGINT, libc::SIG_IGN);
+        if !foreign {
+            libc::signal(SIGTERM, libc::SIG_IGN);
+            libc::signal(SIGHUP, libc::SIG_IGN);
+        }
     }
     Ok(())
 }
 
-/// A flag that Ctrl-C and SIGTERM set, for the process that people see.
-pub fn stop_flag() -> io::Result<Arc<AtomicBool>> {
-    flag_for(&[SIGINT, SIGTERM])
+/// What a process that people see is asked to do.
+#[derive(Clone, Debug, Default)]
+pub struct StopFlags {
+    /// End in order, at the next step.
+    pub stop: Arc<AtomicBool>,
+    /// End at once.
+    pub at_once: Arc<AtomicBool>,
 }
 
-/// A flag that SIGTERM sets, for a child: passed to the link as its abort flag, it ends every wait, so that the role
-/// can clean up.
-pub fn abort_flag() -> io::Result<Arc<AtomicBool>> {
-    flag_for(&[SIGTERM])
-}
-
-fn flag_for(signals: &[i32]) -> io::Result<Arc<AtomicBool>> {
-    let flag = Arc::new(AtomicBool::new(false));
-    for signal in signals {
-        signal_hook::flag::register(*signal, Arc::clone(&flag))?;
+impl StopFlags {
+    /// Flags that SIGINT (Ctrl-C), SIGTERM and SIGHUP set: the first of them asks for an end in order, the second for one at
+    /// once.
+    ///
+    /// # Errors
+    /// The system refuses.
+    pub fn of_signals() -> io::Result<Self> {
+        let flags = Self::default();
+        for signal in [SIGINT, SIGTERM, SIGHUP] {
+            let Self { stop, at_once } = flags.clone();
+            let note = move || {
+                if stop.swap(true, Ordering::Relaxed) {
+                    at_once.store(true, Ordering::Relaxed);
+                }
+            };
+            // SAFETY: the handler does nothing but atomic operations.
+            unsafe { signal_hook::low_level::register(signal, note) }?;
+        }
+        Ok(flags)
     }
+}
+
+/// A flag that the supervisor's signal sets, for a role: passed to the link as its abort flag, it ends every wait, so that
+/// the role can clean up.
+///
+/// # Errors
+/// The system refuses.
+pub fn abort_flag() -> io::Result<Arc<AtomicBool>> {
+    let flag = Arc::new(AtomicBool::new(false));
+    signal_hook::flag::register(END, Arc::clone(&flag))?;
     Ok(flag)
 }

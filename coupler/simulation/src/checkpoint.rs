@@ -1,5 +1,6 @@
 //! Finding the checkpoint that an interrupted run goes on from.
 
+use halfstep_coupling::say;
 use halfstep_coupling::checkpoints::scene_hash;
 use halfstep_coupling::error::RunError;
 use halfstep_output::checkpoint::{COUPLER, FOLDERS, Manifest, file};
@@ -45,10 +46,10 @@ impl Checkpoint {
         };
         for reason in torn {
             tracing::warn!("a checkpoint is passed over: {reason}");
-            eprintln!(
+            say::warn(format_args!(
                 "warning: a checkpoint is passed over: {reason}; the one of step {} is taken",
                 manifest.step
-            );
+            ));
         }
         Self::agrees(&manifest, scene, isa).map_err(|why| {
             RunError::Resume(format!("the checkpoint in {} is of another {why}", folder.display()))

@@ -30,6 +30,7 @@ mod participants;
 mod role_main;
 pub mod run;
 mod session;
+mod silence;
 mod simulation;
 mod step_cost;
 

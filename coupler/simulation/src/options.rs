@@ -1,11 +1,10 @@
 //! How a scene is run.
 
+use halfstep_coupling::supervise::StopFlags;
 use halfstep_scene::Scene;
 use halfstep_sph::lane::Isa;
 use halfstep_wire::Name;
 use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 /// Where a solid that is not built in comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -33,8 +32,8 @@ pub struct RunOptions {
     pub threads: Option<usize>,
     /// Starts the roles as processes; `None`: they are threads of this process.
     pub launcher: Option<Launcher>,
-    /// Set, it ends the run in order at its next step.
-    pub stop: Arc<AtomicBool>,
+    /// Set, they end the run.
+    pub stop: StopFlags,
     /// What this process has to say goes to the run's `log.txt`: it becomes the process's only log.
     pub log: bool,
     /// No progress.
@@ -45,6 +44,8 @@ pub struct RunOptions {
     pub foreign: Vec<(Name, SolidSource)>,
     /// How long to wait for a solid started by hand, s.
     pub solid_wait: f64,
+    /// How long a participant that is alive may be silent, s.
+    pub patience: f64,
     /// Instruction set of every role; one that the processor has.
     pub isa: Isa,
 }
@@ -56,12 +57,13 @@ impl RunOptions {
             out,
             threads: None,
             launcher: None,
-            stop: Arc::default(),
+            stop: StopFlags::default(),
             log: false,
             quiet: true,
             force: false,
             foreign: Vec::new(),
             solid_wait: 60.0,
+            patience: 600.0,
             isa: Isa::detect(),
         }
     }

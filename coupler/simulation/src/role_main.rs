@@ -1,5 +1,6 @@
 //! The process of a role: what a program becomes that a [`crate::Launcher`] starts.
 
+use halfstep_coupling::say;
 use crate::isa;
 use halfstep_coupling::supervise::abort_flag;
 use halfstep_coupling::{reports, roles};
@@ -21,7 +22,7 @@ pub fn role_main() {
     let code = match isa::of_environment() {
         Ok(isa) => serve_role(name, isa),
         Err(error) => {
-            eprintln!("error: {error}");
+            say::warn(format_args!("error: {error}"));
             1
         }
     };
@@ -34,7 +35,7 @@ pub fn serve_role(name: &str, isa: Isa) -> u8 {
     let process: Name = match name.parse() {
         Ok(process) => process,
         Err(error) => {
-            eprintln!("error: {error}");
+            say::warn(format_args!("error: {error}"));
             return 1;
         }
     };

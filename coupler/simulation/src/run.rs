@@ -160,8 +160,8 @@ fn execute_in<const D: usize>(
     report.write(&directory.file("run.json"))?;
     let checkpoints = Checkpoints::new(scene, directory.path(), names(scene)?, options.isa.bits_name(), at)
         .map_err(|e| RunError::System(format!("scene.json: {e}")))?;
-    let (clock, stop) = (Clock::new(scene), Arc::clone(&options.stop));
-    let mut course = Course { clock, recorder, checkpoints: Some(checkpoints), stop };
+    let (clock, stop) = (Clock::new(scene), Arc::clone(&options.stop.stop));
+    let mut course = Course { clock, recorder, checkpoints: Some(checkpoints), stop, progress: Arc::default() };
     let result = if scene.fluid.is_some() && !scene.solids.is_empty() {
         let layout = geometry::layout::<D>(scene);
         Session::<D>::new(scene, options, directory, checkpoint.as_ref(), &layout)
@@ -205,7 +205,10 @@ pub(crate) fn conclude(
             None
         }
         Err(mut error) => {
-            report.status = Some(RunStatus::Failed);
+            report.status = Some(match error {
+                RunError::StoppedAtOnce { .. } => RunStatus::Stopped,
+                _ => RunStatus::Failed,
+            });
             if let RunError::Diverged { diverged, hint } = &mut error {
                 *hint = advice(diverged, scene, clock, foreign);
                 report.status = Some(RunStatus::Diverged);

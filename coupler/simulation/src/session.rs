@@ -1,8 +1,10 @@
 //! A coupled run: starts its roles as processes or as threads, couples them, and finds out why one of them ended.
 
+use halfstep_coupling::say;
 use crate::checkpoint::Checkpoint;
 use crate::isa::{self, ISA_VARIABLE};
 use crate::options::{Launcher, RunOptions, SolidSource};
+use crate::silence::{Silence, TICK};
 use crate::participants::{participants, report_outcome, report_participants};
 use halfstep_coupling::couple::{Coupler, Course, Outcome};
 use halfstep_coupling::error::RunError;
@@ -46,6 +48,7 @@ impl<'a, const D: usize> Session<'a, D> {
         layout: &Layout<D>,
     ) -> Result<Self, RunError> {
         let mut config = LinkConfig::new(participants(scene, layout, &options.foreign_names())?);
+        config.patience_seconds = options.patience;
         if options.foreign.iter().any(|(_, source)| *source == SolidSource::ByHand) {
             config.handshake_seconds = options.solid_wait;
         }
@@ -138,30 +141,37 @@ impl<'a, const D: usize> Session<'a, D> {
                 .env(ISA_VARIABLE, isa::name(self.options.isa));
             children.spawn(process, command)?;
         }
-        let (abort, stop) = (Arc::new(AtomicBool::new(false)), Arc::clone(&course.stop));
+        let (abort, progress) = (Arc::new(AtomicBool::new(false)), Arc::clone(&course.progress));
         let (done, connected) = (AtomicBool::new(false), AtomicBool::new(false));
+        let stop = &self.options.stop;
+        let names = config.names();
         let started = Instant::now();
         let by_hand = self.awaited().next().is_some();
         let watched = std::thread::scope(|scope| {
-            // Before the handshake nobody else notices a child that could not even start.
-            let watcher = scope.spawn(|| watch(&mut children, &abort, &done, &stop));
+            let watcher = scope.spawn(|| {
+                // Before the handshake nobody else notices a child that could not even start.
+                let early = watch(&mut children, &abort, &connected, &done, &stop.stop);
+                (early, Silence::new(&progress, &names).watch(&abort, &done, stop))
+            });
             let result = CouplerLink::<Processes>::open(config, Some(Arc::clone(&abort)))
                 .map_err(RunError::from)
                 .inspect(|_| {
-                    done.store(true, Ordering::Relaxed);
                     connected.store(true, Ordering::Relaxed);
                     if by_hand {
-                        eprintln!("the solid is connected");
+                        say::warn(format_args!("the solid is connected"));
                     }
                 })
                 .and_then(|link| self.lockstep(link, course));
             done.store(true, Ordering::Relaxed);
-            let early = watcher.join().unwrap_or(None);
-            match (result, early) {
-                (Err(RunError::Link(link)), Some((role, status))) => {
+            let (early, silent) = watcher.join().unwrap_or((None, None));
+            match (result, early, silent) {
+                (Err(RunError::Link(link)), Some((role, status)), _) => {
                     Err(RunError::RoleEnded { role, status, link: Box::new(link) })
                 }
-                (result, _) => result,
+                (Err(RunError::Link(_)), _, Some((role, silence))) => {
+                    Err(RunError::StoppedAtOnce { role, seconds: silence.as_secs_f64() })
+                }
+                (result, ..) => result,
             }
         });
         match watched {
@@ -170,6 +180,10 @@ impl<'a, const D: usize> Session<'a, D> {
                 Ok(outcome)
             }
             Err(error) => {
+                if matches!(error, RunError::StoppedAtOnce { .. }) {
+                    children.stop(Duration::from_millis(300));
+                    return Err(error);
+                }
                 children.wait(Duration::from_millis(300));
                 let missed = match error {
                     RunError::Link(LinkError::PeerDied { peer }) => Some(peer),
@@ -180,7 +194,7 @@ impl<'a, const D: usize> Session<'a, D> {
                 let waiting = !connected.load(Ordering::Relaxed);
                 let seconds = self.options.solid_wait;
                 Err(match (error, cause) {
-                    _ if waiting && stop.load(Ordering::Relaxed) => RunError::StoppedEarly,
+                    _ if waiting && stop.stop.load(Ordering::Relaxed) => RunError::StoppedEarly,
                     // The fluid waits for the solid, too, and may be the first to give up.
                     _ if waiting && by_hand && started.elapsed().as_secs_f64() >= seconds => {
                         RunError::NoSolid { seconds }
@@ -209,12 +223,12 @@ impl<'a, const D: usize> Session<'a, D> {
             }
             output::atomic::replace_bytes(&file, text.as_bytes())?;
             let file = file.canonicalize().unwrap_or(file);
-            eprintln!(
+            say::warn(format_args!(
                 "waiting up to {} s for the {}; start yours in another terminal:\n  . {} && COMMAND",
                 self.options.solid_wait,
                 participant.name,
                 quoted(&file.display())
-            );
+            ));
         }
         Ok(())
     }
@@ -297,16 +311,17 @@ impl<'a, const D: usize> Session<'a, D> {
 fn watch(
     children: &mut Children,
     abort: &AtomicBool,
+    connected: &AtomicBool,
     done: &AtomicBool,
     stop: &AtomicBool,
 ) -> Option<(Name, ExitStatus)> {
-    while !done.load(Ordering::Relaxed) {
+    while !connected.load(Ordering::Relaxed) && !done.load(Ordering::Relaxed) {
         let exit = children.first_exit();
         if exit.is_some() || stop.load(Ordering::Relaxed) {
             abort.store(true, Ordering::Relaxed);
             return exit;
         }
-        std::thread::sleep(Duration::from_millis(20));
+        std::thread::sleep(TICK);
     }
     None
 }

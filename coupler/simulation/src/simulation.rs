@@ -12,6 +12,7 @@ use halfstep_coupling::error::RunError;
 use halfstep_coupling::local::LocalRun;
 use halfstep_coupling::recorder::Recorder;
 use halfstep_coupling::roles;
+use halfstep_coupling::supervise::StopFlags;
 use halfstep_fluid::Fluid;
 use halfstep_fluid::effects::FluidEffect;
 use halfstep_output::{Frame, ProbeLog, RunDirectory, RunReport};
@@ -83,7 +84,7 @@ impl Simulation {
             launcher: Some(launcher),
             threads: self.threads,
             force: self.replace,
-            stop: self.stop,
+            stop: StopFlags { stop: self.stop, ..StopFlags::default() },
             ..RunOptions::new(folder)
         };
         match run::run(&self.scene, &options)? {
@@ -241,7 +242,7 @@ fn course(
             Some(checkpoints.map_err(|e| Error::Setup(format!("scene.json: {e}")))?)
         }
     };
-    Ok(Course { clock: Clock::new(scene), recorder, checkpoints, stop })
+    Ok(Course { clock: Clock::new(scene), recorder, checkpoints, stop, progress: Arc::default() })
 }
 
 /// Owners of the particles, in the scene's order.

@@ -1,5 +1,6 @@
 //! The command line of `halfstep study`.
 
+use halfstep_coupling::say;
 use super::choose::Goal;
 use super::error::StudyError;
 use super::ladder::Vary;
@@ -7,7 +8,7 @@ use super::pictures;
 use super::result::Against;
 use super::target::Reached;
 use super::{Options, Session};
-use halfstep_coupling::supervise::stop_flag;
+use halfstep_coupling::supervise::StopFlags;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -87,11 +88,11 @@ pub fn study(arguments: StudyArguments) -> ExitCode {
     match run(arguments) {
         Ok(code) => code,
         Err(StudyError::Scene(errors)) => {
-            eprintln!("{:?}", miette::Report::new(errors));
+            say::warn(format_args!("{:?}", miette::Report::new(errors)));
             ExitCode::from(1)
         }
         Err(error) => {
-            eprintln!("error: {error}");
+            say::warn(format_args!("error: {error}"));
             ExitCode::from(1)
         }
     }
@@ -117,7 +118,7 @@ fn run(arguments: StudyArguments) -> Result<ExitCode, StudyError> {
         against: arguments.against,
         quiet: arguments.quiet,
     };
-    let stop = stop_flag().map_err(StudyError::system("cannot watch for signals"))?;
+    let stop = StopFlags::of_signals().map_err(StudyError::system("cannot watch for signals"))?.stop;
     let mut session = Session::new(&options, &stop)?;
     let metric = metric(&session, arguments.metric.as_deref())?;
     if !session.ladder()? {
@@ -129,15 +130,15 @@ fn run(arguments: StudyArguments) -> Result<ExitCode, StudyError> {
         if reached == Some(Reached::Stopped) {
             return Ok(interrupted());
         }
-        println!();
+        say::tell(format_args!(""));
     }
     let study = session.study();
     study.write(session.folder())?;
     pictures::draw(&study, session.folder())?;
-    print!("{}", study.text());
-    println!("\nstudy.csv, study.json and pictures are in {}", session.folder().display());
+    say::tell(format_args!("{}", study.text().trim_end()));
+    say::tell(format_args!("\nstudy.csv, study.json and pictures are in {}", session.folder().display()));
     if study.rows.iter().all(|row| row.error.is_some()) {
-        eprintln!("error: no run finished");
+        say::warn(format_args!("error: no run finished"));
         return Ok(ExitCode::from(2));
     }
     Ok(match reached {
@@ -145,11 +146,11 @@ fn run(arguments: StudyArguments) -> Result<ExitCode, StudyError> {
             let set: Vec<String> =
                 in_force(&options.base, &changes).map(|change| format!("--set {change}")).collect();
             let set = if set.is_empty() { "the scene's own".into() } else { set.join(" ") };
-            println!("\nsettings that reach it: {set}");
+            say::tell(format_args!("\nsettings that reach it: {set}"));
             ExitCode::SUCCESS
         }
         Some(Reached::No(reason)) => {
-            eprintln!("not reached: {reason}");
+            say::warn(format_args!("not reached: {reason}"));
             ExitCode::from(NOT_REACHED)
         }
         _ => ExitCode::SUCCESS,
@@ -177,7 +178,7 @@ fn metric(session: &Session<'_>, name: Option<&str>) -> Result<usize, StudyError
 }
 
 fn interrupted() -> ExitCode {
-    eprintln!("interrupted; finished runs are kept, and the same command goes on from there");
+    say::warn(format_args!("interrupted; finished runs are kept, and the same command goes on from there"));
     ExitCode::from(130)
 }
 

@@ -16,6 +16,7 @@ pub mod result;
 pub mod runs;
 pub mod target;
 
+use halfstep_coupling::say;
 use choose::Surprise;
 use error::StudyError;
 use halfstep_output::RunReport;
@@ -119,7 +120,7 @@ impl<'s> Session<'s> {
         let to_run: Vec<Job> = jobs.iter().filter(open).map(|(_, job)| job.clone()).collect();
         let Options { jobs: at_a_time, quiet, .. } = *self.options;
         if to_run.len() < jobs.len() && !quiet {
-            eprintln!("{} of {} runs are there already", jobs.len() - to_run.len(), jobs.len());
+            say::warn(format_args!("{} of {} runs are there already", jobs.len() - to_run.len(), jobs.len()));
         }
         if !runs::execute(&to_run, at_a_time, quiet, &self.program, self.stop)? {
             return Ok(false);

@@ -1,5 +1,6 @@
 //! `--error` and `--budget`: predict, run, compare.
 
+use halfstep_coupling::say;
 use super::choose::{Candidate, Goal, candidates, pick};
 use super::error::StudyError;
 use super::fit::Prediction;
@@ -46,15 +47,15 @@ impl Session<'_> {
                     None => open.retain(|c| *c != found),
                 }
             };
-            println!("{}", describe(&study, metric, &candidate));
+            say::tell(format_args!("{}", describe(&study, metric, &candidate)));
             if let Goal::Error(most) = goal
                 && candidate.row.is_none()
                 && candidate.error.high() > most
             {
-                println!(
+                say::tell(format_args!(
                     "not sure: nothing is expected to lie below {} with its whole interval",
                     percent(Some(most))
-                );
+                ));
             }
             if let Some(row) = candidate.row {
                 return Ok(Reached::Yes(study.rows[row].changes.clone()));
@@ -66,7 +67,7 @@ impl Session<'_> {
             let last = study.rows.len() - 1;
             let (row, errors) = (&study.rows[last], &study.metrics[metric].errors[last]);
             let (error, seconds) = (study.metrics[metric].shown(errors), row.seconds());
-            println!("reached: error {}, {} s", percent(error), short(seconds));
+            say::tell(format_args!("reached: error {}, {} s", percent(error), short(seconds)));
             match (goal, error) {
                 (Goal::Error(most), Some(error)) if error <= most => {
                     return Ok(Reached::Yes(setting.changes));

@@ -82,6 +82,21 @@ pub enum OutputError {
         /// A file of the earlier run.
         found: String,
     },
+    /// A run goes on in the folder.
+    #[error(
+        "a run goes on in {}: process {}, for {} s so far; give another folder, or end that run first",
+        dir.display(),
+        process.map_or_else(|| "unknown".to_owned(), |process| process.to_string()),
+        seconds.map_or_else(|| "some".to_owned(), |seconds| seconds.to_string())
+    )]
+    InUse {
+        /// The folder.
+        dir: PathBuf,
+        /// Number of the process.
+        process: Option<u64>,
+        /// How long it has had the folder, s.
+        seconds: Option<u64>,
+    },
     /// A picture could not be drawn.
     #[error("cannot draw {}: {reason}", path.display())]
     Picture {

@@ -3,6 +3,10 @@
 use super::{OutputError, checkpoint, series};
 use halfstep_wire::Name;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+mod lock;
+use lock::Lock;
 
 /// Files that a run leaves in its folder, beside the frames.
 pub const FILES: [&str; 7] =
@@ -20,20 +24,23 @@ fn is_checkpoint_file(name: &str) -> bool {
     name == checkpoint::MANIFEST || name == checkpoint::COUPLER || participant
 }
 
-/// A folder that is ready for a run: nothing of an earlier one is in it.
+/// A folder that is ready for a run: nothing of an earlier one is in it, and no other run goes on in it.
 #[derive(Clone, Debug)]
 pub struct RunDirectory {
     path: PathBuf,
+    /// Held for as long as somebody has the folder.
+    _lock: Arc<Lock>,
 }
 
 impl RunDirectory {
-    /// Creates the folder, or takes one that exists. Refuses one with files of an earlier run unless `force` is set,
+    /// Creates the folder, or takes one that exists. Refuses one in which a run goes on, and, unless `force` is set, one
+    /// with files of an earlier run,
     /// which removes them. Files that no run leaves are never touched. What an interrupted write left under
     /// a temporary name is removed.
     pub fn create(dir: &Path, force: bool) -> Result<Self, OutputError> {
-        let this = Self { path: dir.into() };
-        let frames = this.frames();
+        let frames = series::frames_folder(dir);
         std::fs::create_dir_all(&frames).map_err(OutputError::io("create", &frames))?;
+        let this = Self { path: dir.into(), _lock: Arc::new(Lock::take(dir)?) };
         let stems = stems(&frames)?;
         let is_frame = |name: &str| is_frame_file(name, &stems);
         let mut found = files(dir, is_run_file)?;
@@ -66,7 +73,7 @@ impl RunDirectory {
     /// # Errors
     /// The folder cannot be read or changed.
     pub fn reopen(dir: &Path, frames: u64) -> Result<Self, OutputError> {
-        let this = Self { path: dir.into() };
+        let this = Self { path: dir.into(), _lock: Arc::new(Lock::take(dir)?) };
         let folder = this.frames();
         std::fs::create_dir_all(&folder).map_err(OutputError::io("create", &folder))?;
         let stems = stems(&folder)?;
@@ -201,6 +208,21 @@ mod tests {
         kept.sort();
         assert_eq!(listing(dir.path()), kept);
         assert!(dir.path().join("frames/solid_000009.hdf").is_dir());
+    }
+
+    #[test]
+    fn a_folder_in_use_is_refused_also_with_force() {
+        let dir = tempfile::tempdir().unwrap();
+        let first = RunDirectory::create(dir.path(), false).unwrap();
+        touch(dir.path(), &["run.json"]);
+        for again in [RunDirectory::create(dir.path(), true), RunDirectory::reopen(dir.path(), 0)] {
+            let message = again.unwrap_err().to_string();
+            assert!(message.contains(&format!("process {}", std::process::id())), "{message}");
+        }
+        assert_eq!(listing(dir.path()), ["run.json", "run.lock"], "nothing was removed");
+        drop(first);
+        assert_eq!(listing(dir.path()), ["run.json"]);
+        RunDirectory::create(dir.path(), true).unwrap();
     }
 
     #[test]

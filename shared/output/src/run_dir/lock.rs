@@ -1,0 +1,74 @@
+//! Who has a run's folder: a file that its owner keeps locked, with the owner's process and start in it. The system unlocks it
+//! when the owner ends, however that is; what is left of a killed run locks nothing.
+
+use crate::OutputError;
+use std::fs::{File, TryLockError};
+use std::io::{Read, Write};
+use std::os::unix::fs::MetadataExt;
+use std::path::{Path, PathBuf};
+use std::time::{SystemTime, UNIX_EPOCH};
+
+/// The file's name.
+const NAME: &str = "run.lock";
+
+/// A folder that is this process's own while the value lives.
+#[derive(Debug)]
+pub(super) struct Lock {
+    path: PathBuf,
+    _file: File,
+}
+
+impl Lock {
+    /// Takes the folder.
+    ///
+    /// # Errors
+    /// Another run has it, or the file cannot be made.
+    pub(super) fn take(dir: &Path) -> Result<Self, OutputError> {
+        let path = dir.join(NAME);
+        loop {
+            let mut options = File::options();
+            let file = options.read(true).write(true).create(true).truncate(false).open(&path);
+            let mut file = file.map_err(OutputError::io("open", &path))?;
+            match file.try_lock() {
+                Ok(()) => {}
+                Err(TryLockError::WouldBlock) => return Err(owner(dir, &mut file)),
+                Err(TryLockError::Error(error)) => return Err(OutputError::io("lock", &path)(error)),
+            }
+            // The owner before may have removed the file after it was opened here.
+            if !is_at(&file, &path) {
+                continue;
+            }
+            let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
+            file.set_len(0)
+                .and_then(|()| writeln!(file, "{} {now}", std::process::id()))
+                .map_err(OutputError::io("write", &path))?;
+            return Ok(Self { path, _file: file });
+        }
+    }
+}
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        // The file stays locked until it is closed, after this.
+        let _ = std::fs::remove_file(&self.path);
+    }
+}
+
+fn is_at(file: &File, path: &Path) -> bool {
+    let identity = |metadata: std::fs::Metadata| (metadata.dev(), metadata.ino());
+    match (file.metadata(), std::fs::metadata(path)) {
+        (Ok(own), Ok(there)) => identity(own) == identity(there),
+        _ => false,
+    }
+}
+
+/// Who has the folder, and since when.
+fn owner(dir: &Path, file: &mut File) -> OutputError {
+    let mut text = String::new();
+    let _ = file.take(64).read_to_string(&mut text);
+    let mut words = text.split_whitespace().map(str::parse::<u64>);
+    let (process, started) = (words.next().and_then(Result::ok), words.next().and_then(Result::ok));
+    let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
+    let seconds = started.map(|started| now.saturating_sub(started));
+    OutputError::InUse { dir: dir.into(), process, seconds }
+}
