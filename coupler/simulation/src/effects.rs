@@ -71,14 +71,18 @@ pub(crate) fn ledger(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
         "one phase only: no coupler, nothing exchanged".into()
     };
     list.push(row(INTERFACE, coupled, why));
-    let c = scene.interface.cross_viscosity;
-    let why = if coupled { format!("interface.cross_viscosity is {c}") } else { "one phase only".into() };
+    let (c, far) = (scene.interface.cross_viscosity, scene.interface.cross_viscosity_far);
+    let why = match (coupled, c == far) {
+        (false, _) => "one phase only".into(),
+        (true, true) => format!("interface.cross_viscosity is {c}"),
+        (true, false) => format!("interface.cross_viscosity is {c}, and {far} far off"),
+    };
     list.push(row(CROSS_VISCOSITY, coupled && c > 0.0, why));
     list
 }
 
-/// Puts the shares of the computing time of all roles into the ledger, as the participants reported them. `coupler`: the
-/// coupler's own computing time, s.
+/// Puts the shares of the computing time of all roles into the ledger, as the participants reported them. `coupler`:
+/// the coupler's own computing time, s.
 pub(crate) fn share(report: &mut RunReport, reports: &[(Phase, Report)], coupler: f64) {
     let total = coupler + reports.iter().map(|(_, own)| own.compute).sum::<f64>();
     let sum = |part: &dyn Fn(&Report) -> f64| reports.iter().map(|(_, own)| part(own)).sum::<f64>() / total;
@@ -106,8 +110,8 @@ pub(crate) fn share(report: &mut RunReport, reports: &[(Phase, Report)], coupler
     }
 }
 
-/// The ledger has a row that can show what the effect costs. (A solid's artificial viscosity has none without a fluid's:
-/// then it is part of the solid.)
+/// The ledger has a row that can show what the effect costs. (A solid's artificial viscosity has none without a
+/// fluid's: then it is part of the solid.)
 fn is_on(report: &RunReport, effect: EffectName) -> bool {
     report.effects.iter().any(|row| row.on && row.name == effect.name())
 }

@@ -1,8 +1,8 @@
 //! The interface between fluid and solid, seen from the records that both sides published.
 //!
 //! Fluid process and coupler hold the same two records and run the same code on them in the same order, so what both
-//! need (the pressure that solid particles show to the fluid, the cross-phase pair force) has the same bits on each side
-//! without a further message.
+//! need (the pressure that solid particles show to the fluid, the cross-phase pair force) has the same bits on each
+//! side without a further message.
 
 pub mod cross_viscosity;
 mod moving_wall;
@@ -49,8 +49,10 @@ pub struct Parameters<const D: usize> {
     pub resolution: f64,
     /// The plates whose faces are kept apart.
     pub thin_plates: Vec<Plate<D>>,
-    /// Kayaki's C.
+    /// Kayaki's C between particles near each other.
     pub cross_viscosity: f64,
+    /// C beyond that.
+    pub cross_viscosity_far: f64,
     /// Instruction set of the pair loop.
     pub isa: Isa,
 }
@@ -84,6 +86,7 @@ impl<const D: usize> Parameters<D> {
             resolution: scene.resolution,
             thin_plates: thin_plate::screened(scene, index),
             cross_viscosity: scene.interface.cross_viscosity,
+            cross_viscosity_far: scene.interface.cross_viscosity_far,
             isa,
         })
     }
