@@ -226,10 +226,11 @@ fn the_guard_does_not_brake_a_run_up() {
     within("pressure over that without guard at 20 mm", guarded.1 / free.1, 0.93..=0.98);
 }
 
+/// Without guard the water at the wall comes apart on its way up: the jet that holds together is lower.
 #[test]
 #[ignore = "long: make validate"]
 fn the_guard_does_not_brake_a_run_up_finer() {
-    for (dx, jets, pressures) in [(0.01, 0.5..=1.5, 0.875..=0.92), (0.005, 0.5..=1.5, 0.96..=1.0)] {
+    for (dx, jets, pressures) in [(0.01, 1.13..=1.23, 0.875..=0.915), (0.005, 1.31..=1.43, 0.965..=1.0)] {
         let (guarded, free) = (run_up(dx, "auto"), run_up(dx, "off"));
         within(&format!("jet over that without guard at {dx} m"), guarded.0 / free.0, jets);
         within(&format!("pressure over that without guard at {dx} m"), guarded.1 / free.1, pressures);
