@@ -33,9 +33,9 @@ pub struct FluidPair<const D: usize> {
 impl<const D: usize> FluidPair<D> {
     /// Pi_ij of the artificial viscosity; `linear` is A c0, `quadratic` B.
     #[inline(always)]
-    pub fn damping<A: Arch>(&self, h: f64, linear: f64, quadratic: f64) -> Lane {
+    pub fn damping<A: Arch>(&self, h: f64, linear: Lane, quadratic: f64) -> Lane {
         let density_sum = self.density_i + self.density_j;
-        damping::<A>(h, Lane::splat(linear), Lane::splat(quadratic), self.approach, self.r2, density_sum)
+        damping::<A>(h, linear, Lane::splat(quadratic), self.approach, self.r2, density_sum)
     }
 }
 

@@ -13,6 +13,11 @@ pub(crate) fn tensors<const D: usize>(n: usize) -> Tensors<D> {
     std::array::from_fn(|a| std::array::from_fn(|b| if a <= b { vec![0.0; n] } else { Vec::new() }))
 }
 
+/// The vector of a slot.
+pub(crate) fn vector<const D: usize>(columns: &Vectors<D>, slot: u32) -> [f64; D] {
+    std::array::from_fn(|d| columns[d][slot as usize])
+}
+
 /// What [`Particles`] views.
 pub(crate) struct Shown<const D: usize> {
     reference: Vec<[f64; D]>,

@@ -5,6 +5,7 @@ pub mod effects;
 pub mod hypoelastic;
 pub mod model;
 mod models;
+mod shown_velocity;
 mod sleep;
 pub mod solid;
 mod sub_steps;

@@ -41,7 +41,7 @@ pub struct Particles<'a, const D: usize> {
     pub reference: &'a [[f64; D]],
     /// Position, m.
     pub position: &'a [[f64; D]],
-    /// Velocity, m/s. (A record may show the mean over sub-steps instead.)
+    /// Velocity, m/s. (Half-way a record may show a mean over sub-steps instead.)
     pub velocity: &'a [[f64; D]],
     /// Density, kg/m³.
     pub density: &'a [f64],

@@ -3,8 +3,9 @@
 use halfstep_scene::geometry::SolidPoint;
 use halfstep_sph::neighbours::{PADDING, Rows};
 
-/// Numbers of the particles within `reach` of a surface particle, ascending. A surface particle lacks one of its
-/// nearest lattice neighbours (the 3^D - 1 within sqrt(D) dx). Every particle for plates thinner than twice the reach.
+/// Numbers of the particles closer than `reach` to a surface particle, ascending. A surface particle lacks one of its
+/// nearest lattice neighbours (the 3^D - 1 within sqrt(D) dx). Every particle for plates thinner than twice the
+/// reach.
 pub(crate) fn surface_set<const D: usize>(points: &[SolidPoint<D>], reach: f64, resolution: f64) -> Vec<u32> {
     let mut x: [Vec<f64>; D] = std::array::from_fn(|d| points.iter().map(|p| p.position[d]).collect());
     let mut id: Vec<u32> = (0..points.len() as u32).collect();
@@ -34,6 +35,8 @@ pub(crate) fn surface_set<const D: usize>(points: &[SolidPoint<D>], reach: f64, 
         within(i, ring, &mut |_| count += 1);
         surface[i] = count < full;
     }
+    // At a reach of whole spacings rounding would decide about particles where the kernel ends, at 0.
+    let reach = reach * (1.0 - 1e-9);
     let mut set = Vec::new();
     for i in (0..id.len()).filter(|&i| id[i] != PADDING) {
         let mut near = false;

@@ -6,6 +6,7 @@ pub mod cluster;
 pub mod conformance;
 pub mod curve;
 pub mod finite_elements;
+pub mod linear_waves;
 pub mod patch;
 pub mod process;
 pub mod run;

@@ -1,10 +1,10 @@
 //! The `halfstep` command.
 
-use halfstep_coupling::say;
 use clap::{Parser, Subcommand};
 use halfstep::Launcher;
 use halfstep::options::{RunOptions, SolidSource, known_solid};
 use halfstep::{isa, run};
+use halfstep_coupling::say;
 use halfstep_coupling::supervise::StopFlags;
 use halfstep_output::checkpoint::{FOLDERS, MANIFEST};
 use halfstep_output::run_json::RunStatus;

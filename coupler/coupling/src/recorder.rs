@@ -1,10 +1,10 @@
 //! What a run writes down as it goes: probe log, statistics, progress.
 
-use crate::say;
 use crate::clock::Tick;
 use crate::energy::{self, Account, EnergyBalance};
 use crate::error::RunError;
 use crate::roles::measured_by;
+use crate::say;
 use halfstep_output::{OutputError, ProbeLog, RunReport, run_json};
 use halfstep_scene::{Phase, Scene};
 use halfstep_wire::failure::Diverged;

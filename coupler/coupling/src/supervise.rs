@@ -16,8 +16,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// What tells a role to end. Roles hear nothing else: SIGTERM may reach all processes of a run at once (`timeout`, systemd,
-/// Slurm), and then the coupler ends the run in order.
+/// What tells a role to end. Roles hear nothing else: SIGTERM may reach all processes of a run at once (`timeout`,
+/// systemd, Slurm), and then the coupler ends the run in order.
 const END: i32 = SIGUSR1;
 
 /// Pause between two looks at the children.
@@ -258,8 +258,8 @@ pub struct StopFlags {
 }
 
 impl StopFlags {
-    /// Flags that SIGINT (Ctrl-C), SIGTERM and SIGHUP set: the first of them asks for an end in order, the second for one at
-    /// once.
+    /// Flags that SIGINT (Ctrl-C), SIGTERM and SIGHUP set: the first of them asks for an end in order, the second for
+    /// one at once.
     ///
     /// # Errors
     /// The system refuses.
@@ -279,8 +279,8 @@ impl StopFlags {
     }
 }
 
-/// A flag that the supervisor's signal sets, for a role: passed to the link as its abort flag, it ends every wait, so that
-/// the role can clean up.
+/// A flag that the supervisor's signal sets, for a role: passed to the link as its abort flag, it ends every wait, so
+/// that the role can clean up.
 ///
 /// # Errors
 /// The system refuses.

@@ -1,8 +1,8 @@
 //! Finding the checkpoint that an interrupted run goes on from.
 
-use halfstep_coupling::say;
 use halfstep_coupling::checkpoints::scene_hash;
 use halfstep_coupling::error::RunError;
+use halfstep_coupling::say;
 use halfstep_output::checkpoint::{COUPLER, FOLDERS, Manifest, file};
 use halfstep_output::run_json::Resumption;
 use halfstep_scene::Scene;

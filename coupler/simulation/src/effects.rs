@@ -72,8 +72,12 @@ pub(crate) fn ledger(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
         "one phase only: no coupler, nothing exchanged".into()
     };
     list.push(row(INTERFACE, coupled, why));
-    let c = scene.interface.cross_viscosity;
-    let why = if coupled { format!("interface.cross_viscosity is {c}") } else { "one phase only".into() };
+    let (c, far) = (scene.interface.cross_viscosity, scene.interface.cross_viscosity_far);
+    let why = match (coupled, c == far) {
+        (false, _) => "one phase only".into(),
+        (true, true) => format!("interface.cross_viscosity is {c}"),
+        (true, false) => format!("interface.cross_viscosity is {c}, and {far} far off"),
+    };
     list.push(row(CROSS_VISCOSITY, coupled && c > 0.0, why));
     list
 }

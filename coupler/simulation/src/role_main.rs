@@ -1,7 +1,7 @@
 //! The process of a role: what a program becomes that a [`crate::Launcher`] starts.
 
-use halfstep_coupling::say;
 use crate::isa;
+use halfstep_coupling::say;
 use halfstep_coupling::supervise::abort_flag;
 use halfstep_coupling::{reports, roles};
 use halfstep_role::lockstep::RoleError;

@@ -161,7 +161,8 @@ fn execute_in<const D: usize>(
     let checkpoints = Checkpoints::new(scene, directory.path(), names(scene)?, options.isa.bits_name(), at)
         .map_err(|e| RunError::System(format!("scene.json: {e}")))?;
     let (clock, stop) = (Clock::new(scene), Arc::clone(&options.stop.stop));
-    let mut course = Course { clock, recorder, checkpoints: Some(checkpoints), stop, progress: Arc::default() };
+    let mut course =
+        Course { clock, recorder, checkpoints: Some(checkpoints), stop, progress: Arc::default() };
     let result = if scene.fluid.is_some() && !scene.solids.is_empty() {
         let layout = geometry::layout::<D>(scene);
         Session::<D>::new(scene, options, directory, checkpoint.as_ref(), &layout)

@@ -1,14 +1,14 @@
 //! A coupled run: starts its roles as processes or as threads, couples them, and finds out why one of them ended.
 
-use halfstep_coupling::say;
 use crate::checkpoint::Checkpoint;
 use crate::isa::{self, ISA_VARIABLE};
 use crate::options::{Launcher, RunOptions, SolidSource};
-use crate::silence::{Silence, TICK};
 use crate::participants::{participants, report_outcome, report_participants};
+use crate::silence::{Silence, TICK};
 use halfstep_coupling::couple::{Coupler, Course, Outcome};
 use halfstep_coupling::error::RunError;
 use halfstep_coupling::foreign::ForeignSolid;
+use halfstep_coupling::say;
 use halfstep_coupling::supervise::Children;
 use halfstep_coupling::{reports, roles};
 use halfstep_link::{

@@ -33,9 +33,9 @@ impl<'a> Silence<'a> {
         Self { progress, names, messages: progress.messages(), since, longest, told: false }
     }
 
-    /// Watches until the run is over. Where it was told to stop, the wait for a silent participant is ended: at once at the
-    /// second signal, else after the larger of two seconds and three times the longest pause so far. Returns who was silent
-    /// then, and for how long.
+    /// Watches until the run is over. Where it was told to stop, the wait for a silent participant is ended: at once at
+    /// the second signal, else after the larger of two seconds and three times the longest pause so far. Returns who
+    /// was silent then, and for how long.
     pub(crate) fn watch(
         &mut self,
         abort: &AtomicBool,

@@ -1,6 +1,5 @@
 //! The command line of `halfstep study`.
 
-use halfstep_coupling::say;
 use super::choose::Goal;
 use super::error::StudyError;
 use super::ladder::Vary;
@@ -8,6 +7,7 @@ use super::pictures;
 use super::result::Against;
 use super::target::Reached;
 use super::{Options, Session};
+use halfstep_coupling::say;
 use halfstep_coupling::supervise::StopFlags;
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -16,9 +16,9 @@ pub mod result;
 pub mod runs;
 pub mod target;
 
-use halfstep_coupling::say;
 use choose::Surprise;
 use error::StudyError;
+use halfstep_coupling::say;
 use halfstep_output::RunReport;
 use halfstep_output::run_json::RunStatus;
 use halfstep_scene::{Metric, Scene};

@@ -1,6 +1,5 @@
 //! `--error` and `--budget`: predict, run, compare.
 
-use halfstep_coupling::say;
 use super::choose::{Candidate, Goal, candidates, pick};
 use super::error::StudyError;
 use super::fit::Prediction;
@@ -8,6 +7,7 @@ use super::ladder::{self, Setting};
 use super::report::{percent, readable, short};
 use super::result::Against;
 use super::{Session, Study};
+use halfstep_coupling::say;
 
 /// Runs that may be made to reach an error: each adds to what the next prediction knows.
 const ATTEMPTS: u32 = 3;

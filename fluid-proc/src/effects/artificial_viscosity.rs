@@ -6,7 +6,7 @@ use super::{FluidEffect, Listed};
 use crate::composition::Composition;
 use crate::rates::{FluidPair, PairEffect, PairRates};
 use halfstep_scene::{ArtificialViscosity as Coefficients, Decision, Derived, EffectName, Fluid, Scene};
-use halfstep_sph::lane::Arch;
+use halfstep_sph::lane::{Arch, Lane};
 
 /// The effect, and its share of a pair.
 #[derive(Clone, Copy, Debug)]
@@ -49,10 +49,14 @@ impl<const D: usize> FluidEffect<D> for ArtificialViscosity<D> {
         let derived = match &scene.fluid {
             None => Derived::Impossible("the scene has no fluid".into()),
             Some(Fluid { artificial_viscosity: a, .. }) if a.linear == 0.0 && a.quadratic == 0.0 => {
-                Derived::Impossible("fluid.artificial_viscosity is zero".into())
+                Derived::Impossible("fluid.artificial_viscosity is zero, or no more than fluid.viscosity does".into())
             }
-            Some(Fluid { artificial_viscosity: a, .. }) => {
-                Derived::On(format!("fluid.artificial_viscosity: A = {}, B = {}", a.linear, a.quadratic))
+            Some(Fluid { artificial_viscosity: a, sound_speed, .. }) => {
+                let worth = a.kinematic(scene.smoothing_ratio * scene.resolution, *sound_speed);
+                let (linear, quadratic) = ((1e4 * a.linear).round() / 1e4, a.quadratic);
+                Derived::On(format!(
+                    "fluid.artificial_viscosity: A = {linear}, B = {quadratic}, worth {worth:.1e} m²/s"
+                ))
             }
         };
         Decision::new(scene, EffectName::ArtificialViscosity, derived)
@@ -72,7 +76,8 @@ impl<const D: usize> PairEffect<D> for ArtificialViscosity<D> {
 
     #[inline(always)]
     fn add<A: Arch>(&self, _: &(), _: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
-        rates.bracket = rates.bracket - pair.damping::<A>(self.smoothing_length, self.linear, self.quadratic);
+        let linear = Lane::splat(self.linear);
+        rates.bracket = rates.bracket - pair.damping::<A>(self.smoothing_length, linear, self.quadratic);
     }
     fn enter<C: Composition<D>>(self, composition: C) {
         composition.with(self);

@@ -115,11 +115,12 @@ fn add_stress<const D: usize, A: Arch>(
     }
 }
 
-/// Physical over artificial kinematic viscosity below which the physical one is left out.
-pub const SMALLEST_SHARE: f64 = 0.01;
+/// Physical over artificial kinematic viscosity below which the physical one is left out: it costs a pass, and what the
+/// artificial one does is not known better than that.
+pub const SMALLEST_SHARE: f64 = 0.05;
 
-/// Physical over artificial kinematic viscosity A h c0 / 8 (Monaghan 2005, two dimensions); infinite without artificial
-/// one, `None` without fluid or without physical one.
+/// Physical over artificial kinematic viscosity; infinite without artificial one, `None` without fluid or without
+/// physical one.
 pub fn share_of_artificial(scene: &Scene) -> Option<f64> {
     let fluid = scene.fluid.as_ref().filter(|f| f.viscosity > 0.0)?;
     let artificial = dispatch!(scene.dimension, D => ArtificialViscosity::<D>::decide(scene).on);
@@ -127,7 +128,7 @@ pub fn share_of_artificial(scene: &Scene) -> Option<f64> {
         return Some(f64::INFINITY);
     }
     let h = scene.smoothing_ratio * scene.resolution;
-    let artificial = fluid.artificial_viscosity.linear * h * fluid.sound_speed / 8.0;
+    let artificial = fluid.artificial_viscosity.kinematic(h, fluid.sound_speed);
     Some(fluid.viscosity / fluid.density / artificial)
 }
 

@@ -1,10 +1,13 @@
 //! Artificial viscosity between fluid and walls, and the wall guard.
 //!
 //! Between fluid and wall the same Pi_ij acts as between fluid particles (Kayaki's eq. 23), with the velocity that the
-//! wall shows. The guard raises its A to 1 along free-slip walls: what the cross-phase f_i is between fluid and solid.
-//! Without it single particles of a thin film sink into the wall by up to 1.7 dx before their pressure stops them
-//! (elastic gate, 2.5 mm); with it 0.25 dx. There the wall shows the particle's own tangential velocity, so nothing
-//! drags along it. No-slip walls and corners reverse the whole velocity and keep the scene's A: a guard would be
+//! wall shows. The guard raises its A to 1 between a free-slip wall and what is close to it: fully below dx, fading
+//! to the scene's A at 1.5 dx. What the cross-phase f_i is between fluid and solid, it is here: without it single
+//! particles of a thin film sink into the wall by up to 1.7 dx before their pressure stops them.
+//!
+//! Its reach is its price. A wall shows the mean tangential velocity of the water within 2h, so a stream that stretches
+//! or thins along the wall approaches some of the wall's particles, and a guard over all of 2h brakes it: like a
+//! boundary layer. No-slip walls and corners reverse the whole velocity and keep the scene's A: a guard would be
 //! friction.
 
 use super::artificial_viscosity::ArtificialViscosity;
@@ -14,22 +17,28 @@ use crate::composition::{Composition, NoShare};
 use crate::rates::{FluidPair, PairEffect, PairRates};
 use crate::walls::Walls;
 use halfstep_scene::{Decision, Derived, EffectName, Phase, Scene};
-use halfstep_sph::lane::Arch;
+use halfstep_sph::fade::Fade;
+use halfstep_sph::lane::{Arch, Lane};
 
 /// A of the guard.
 pub const GUARD: f64 = 1.0;
+/// Up to where the guard is whole, over the spacing.
+const FULL: f64 = 1.0;
+/// From where on there is none, over the spacing. A reach of 1.25 lets water into corners by 0.7 dx.
+const GONE: f64 = 1.5;
 
 /// The effect.
 #[derive(Clone, Debug)]
 pub struct WallGuard<const D: usize> {
     smoothing_length: f64,
-    /// A c0 where walls show the fluid's own tangential velocity, m/s.
-    free_slip: f64,
-    /// A c0 in corners and along no-slip walls, m/s.
+    fade: Fade,
+    /// A c0 far from walls, in corners and along no-slip walls, m/s.
     plain: f64,
+    /// What a close free-slip wall adds to it, m/s.
+    guard: f64,
     quadratic: f64,
-    /// A c0 of each wall slot, m/s.
-    linear: Vec<f64>,
+    /// What each wall slot adds, m/s.
+    added: Vec<f64>,
 }
 
 impl<const D: usize> Listed<D> for WallGuard<D> {
@@ -37,12 +46,14 @@ impl<const D: usize> Listed<D> for WallGuard<D> {
         let fluid = scene.fluid.as_ref()?;
         let acts = f64::from(u8::from(ArtificialViscosity::<D>::decide(scene).on));
         let plain = acts * fluid.artificial_viscosity.linear;
+        let (dx, c0) = (scene.resolution, fluid.sound_speed);
         Some(Self {
-            smoothing_length: scene.smoothing_ratio * scene.resolution,
-            free_slip: plain.max(GUARD) * fluid.sound_speed,
-            plain: plain * fluid.sound_speed,
+            smoothing_length: scene.smoothing_ratio * dx,
+            fade: Fade::new(FULL * dx, GONE * dx),
+            plain: plain * c0,
+            guard: (GUARD - plain).max(0.0) * c0,
             quadratic: acts * fluid.artificial_viscosity.quadratic,
-            linear: Vec::new(),
+            added: Vec::new(),
         })
     }
 }
@@ -66,17 +77,23 @@ impl<const D: usize> FluidEffect<D> for WallGuard<D> {
     }
     fn resize(&mut self, _: usize, walls: Option<&Walls<D>>) {
         let Some(walls) = walls else { return };
-        fit(&mut self.linear, walls.slots(), 0.0);
-        for (slot, linear) in self.linear.iter_mut().enumerate() {
-            *linear = if walls.reverses_all(slot) { self.plain } else { self.free_slip };
+        fit(&mut self.added, walls.slots(), 0.0);
+        for (slot, added) in self.added.iter_mut().enumerate() {
+            *added = if walls.reverses_all(slot) { 0.0 } else { self.guard };
         }
     }
     fn at_wall(&self) -> Option<GuardedViscosity<'_>> {
-        let Self { smoothing_length, quadratic, linear, .. } = self;
-        Some(GuardedViscosity { smoothing_length: *smoothing_length, linear, quadratic: *quadratic })
+        let Self { smoothing_length, fade, plain, quadratic, added, .. } = self;
+        Some(GuardedViscosity {
+            smoothing_length: *smoothing_length,
+            fade: *fade,
+            plain: *plain,
+            added,
+            quadratic: *quadratic,
+        })
     }
     fn bytes(&self) -> usize {
-        self.linear.capacity() * size_of::<f64>()
+        self.added.capacity() * size_of::<f64>()
     }
 }
 
@@ -84,8 +101,11 @@ impl<const D: usize> FluidEffect<D> for WallGuard<D> {
 #[derive(Clone, Copy, Debug)]
 pub struct GuardedViscosity<'a> {
     smoothing_length: f64,
-    /// A c0 of each wall slot, m/s.
-    linear: &'a [f64],
+    fade: Fade,
+    /// A c0 far from walls, m/s.
+    plain: f64,
+    /// What each wall slot adds where it is close, m/s.
+    added: &'a [f64],
     quadratic: f64,
 }
 
@@ -96,8 +116,9 @@ impl<const D: usize> PairEffect<D> for GuardedViscosity<'_> {
 
     #[inline(always)]
     fn add<A: Arch>(&self, _: &(), j: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
-        rates.bracket =
-            rates.bracket - pair.damping::<A>(self.smoothing_length, self.linear[j], self.quadratic);
+        let near = self.fade.at(pair.r2.sqrt());
+        let linear = A::mul_add(Lane::splat(self.added[j]), near, Lane::splat(self.plain));
+        rates.bracket = rates.bracket - pair.damping::<A>(self.smoothing_length, linear, self.quadratic);
     }
     fn enter<C: Composition<D>>(self, composition: C) {
         composition.with(self);

@@ -10,18 +10,27 @@
 use crate::{Interface, Side};
 use halfstep_scene::Treatment;
 use halfstep_sph::artificial_viscosity::damping;
+use halfstep_sph::fade::Fade;
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::{Arch, LANES, Lane};
 use halfstep_sph::neighbours::ClusterList;
 use halfstep_sph::pair::{self, PairLaw, distance, dot};
 use halfstep_sph::with_kernel;
 
+/// Up to where C is whole, over the spacing.
+const FULL: f64 = 1.0;
+/// From where on C is the far one, over the spacing.
+const GONE: f64 = 1.25;
+
 struct Law<'a, K, const D: usize> {
     kernel: K,
     targets: &'a Side<D>,
     sources: &'a Side<D>,
-    /// C c_ij.
-    strength: f64,
+    /// C c_ij between particles far from each other, m/s.
+    far: f64,
+    /// What being near adds, m/s.
+    added: f64,
+    near: Fade,
 }
 
 #[derive(Clone, Copy)]
@@ -62,10 +71,12 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for Law<'_, K, D> {
     #[inline(always)]
     fn add<A: Arch>(&self, i: &Target<D>, j: usize, dx: [Lane; D], r2: Lane, sum: &mut Sum<D>) {
         let h = self.kernel.smoothing_length();
-        let f = self.kernel.gradient_over_r::<A>(distance(r2, h));
+        let r = distance(r2, h);
+        let f = self.kernel.gradient_over_r::<A>(r);
         let dv = std::array::from_fn(|d| i.velocity[d] - Lane::splat(self.sources.velocity[d][j]));
         let density_sum = i.density + Lane::splat(self.sources.density[j]);
-        let strength = Lane::splat(self.strength);
+        // A function of r alone: the same for both sides of a pair.
+        let strength = A::mul_add(Lane::splat(self.added), self.near.at(r), Lane::splat(self.far));
         let pi = damping::<A>(h, strength, Lane::ZERO, dot::<D, A>(dv, dx), r2, density_sum);
         let coefficient = Lane::splat(-self.sources.mass[j]) * pi * f;
         for d in 0..D {
@@ -121,9 +132,12 @@ impl<const D: usize> CrossViscosity<D> {
             Treatment::MovingWall => p.fluid.sound_speed,
             Treatment::PhaseBlind => 0.5 * (p.fluid.sound_speed + p.solid_sound_speed),
         };
+        let far = p.cross_viscosity_far * sound_speed;
+        let added = (p.cross_viscosity - p.cross_viscosity_far) * sound_speed;
+        let near = Fade::new(FULL * p.resolution, GONE * p.resolution);
         self.sums.resize(list.clusters(), Sum::default());
         with_kernel!(p.kernel, p.smoothing_length, D, |kernel| {
-            let law = Law { kernel, targets, sources, strength: p.cross_viscosity * sound_speed };
+            let law = Law { kernel, targets, sources, far, added, near };
             pair::pass(p.isa, &law, list, &mut self.sums);
         });
         for (slot, record) in targets.slots() {

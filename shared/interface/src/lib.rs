@@ -50,8 +50,10 @@ pub struct Parameters<const D: usize> {
     pub resolution: f64,
     /// The plates whose faces are kept apart.
     pub thin_plates: Vec<Plate<D>>,
-    /// Kayaki's C.
+    /// Kayaki's C between particles near each other.
     pub cross_viscosity: f64,
+    /// C beyond that.
+    pub cross_viscosity_far: f64,
     /// Instruction set of the pair loop.
     pub isa: Isa,
 }
@@ -85,6 +87,7 @@ impl<const D: usize> Parameters<D> {
             resolution: scene.resolution,
             thin_plates: thin_plate::screened(scene, index),
             cross_viscosity: scene.interface.cross_viscosity,
+            cross_viscosity_far: scene.interface.cross_viscosity_far,
             isa,
         })
     }

@@ -13,7 +13,8 @@ const LENGTH: usize = 30;
 
 fn scene(effects: &str) -> Scene {
     let text = format!(
-        "resolution = {DX}\nend_time = 1.0\ngravity = [0.0, 0.0]\n{effects}\n[fluid]\ndensity = 1000.0\n\
+        "resolution = {DX}\nsmoothing_ratio = 1.33\nend_time = 1.0\ngravity = [0.0, 0.0]\n\
+         numerics.kernel = \"cubic-spline\"\n{effects}\n[fluid]\ndensity = 1000.0\n\
          sound_speed = 20.0\n[solid]\nmodel = \"hypoelastic\"\ndensity = 2000.0\nyoungs_modulus = 1e6\n\
          poissons_ratio = 0.3\n[[shape]]\nname = \"plate\"\nphase = \"solid\"\n\
          box = {{ min = [0.0, 0.0], max = [{}, 0.3] }}\n[[shape]]\nname = \"water\"\nphase = \"fluid\"\n\

@@ -33,10 +33,9 @@ pub struct RunDirectory {
 }
 
 impl RunDirectory {
-    /// Creates the folder, or takes one that exists. Refuses one in which a run goes on, and, unless `force` is set, one
-    /// with files of an earlier run,
-    /// which removes them. Files that no run leaves are never touched. What an interrupted write left under
-    /// a temporary name is removed.
+    /// Creates the folder, or takes one that exists. Refuses one in which a run goes on, and, unless `force` is set,
+    /// one with files of an earlier run, which removes them. Files that no run leaves are never touched. What an
+    /// interrupted write left under a temporary name is removed.
     pub fn create(dir: &Path, force: bool) -> Result<Self, OutputError> {
         let frames = series::frames_folder(dir);
         std::fs::create_dir_all(&frames).map_err(OutputError::io("create", &frames))?;

@@ -144,6 +144,15 @@ pub struct ArtificialViscosity {
     pub quadratic: f64,
 }
 
+impl ArtificialViscosity {
+    /// Kinematic viscosity that A is worth in two dimensions, A h c0 / 16, m²/s, for a smoothing length, m, and a sound
+    /// speed, m/s. Monaghan 2005 gives A h c0 / 8 for a Pi that acts on receding particles, too; here it acts on
+    /// approaching ones only.
+    pub fn kinematic(&self, smoothing_length: f64, sound_speed: f64) -> f64 {
+        self.linear * smoothing_length * sound_speed / 16.0
+    }
+}
+
 /// The variants of density diffusion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -163,8 +172,10 @@ pub enum DensityDiffusion {
 pub struct Interface {
     /// Which treatment.
     pub treatment: Treatment,
-    /// Kayaki's C: strength of the cross-phase artificial viscosity f_i.
+    /// Kayaki's C: strength of the cross-phase artificial viscosity f_i between particles that are near each other.
     pub cross_viscosity: f64,
+    /// C beyond that.
+    pub cross_viscosity_far: f64,
 }
 
 /// The treatments of the interface.

@@ -3,7 +3,7 @@
 use super::check::Check;
 use super::document::{self, SourceText};
 use super::error::{Report, SceneErrors};
-use super::{Scene, overrides, read, resources};
+use super::{EffectName, Scene, Switch, overrides, read, resources};
 use std::path::Path;
 
 /// Reads a scene's file, applies the overrides (`key=value`, as after `--set`) and checks everything.
@@ -48,6 +48,9 @@ pub fn parse(text: &str, path: &Path, overrides: &[String]) -> Result<Scene, Sce
             fluid.sound_speed = speed;
         }
     }
+    if draft.linear_auto {
+        take_off_own_viscosity(&mut draft.scene);
+    }
     if report.is_empty() {
         resources::check_memory(&draft.scene, &root, &report, resources::memory_available());
     }
@@ -61,6 +64,18 @@ pub fn parse(text: &str, path: &Path, overrides: &[String]) -> Result<Scene, Sce
         resources::check_solids(&draft.scene, &root, &report);
     }
     if report.is_empty() { Ok(draft.scene) } else { Err(report.into_errors(path)) }
+}
+
+/// What the fluid's own viscosity does need not be done by the artificial one: A h c0 / 16 less mu / rho0, at least 0.
+fn take_off_own_viscosity(scene: &mut Scene) {
+    let h = scene.smoothing_ratio * scene.resolution;
+    if scene.effects.get(&EffectName::Viscosity) == Some(&Switch::Off) {
+        return;
+    }
+    let Some(fluid) = scene.fluid.as_mut().filter(|fluid| fluid.viscosity > 0.0) else { return };
+    let artificial = fluid.artificial_viscosity.kinematic(h, fluid.sound_speed);
+    let left = (1.0 - fluid.viscosity / fluid.density / artificial).max(0.0);
+    fluid.artificial_viscosity.linear *= left;
 }
 
 impl Scene {

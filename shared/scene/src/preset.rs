@@ -8,6 +8,8 @@ pub(crate) struct Defaults {
     pub(crate) smoothing_ratio: f64,
     pub(crate) time_step: TimeStep,
     pub(crate) fluid_viscosity: ArtificialViscosity,
+    /// A is less by what the fluid's own viscosity is worth.
+    pub(crate) own_viscosity_counts: bool,
     pub(crate) density_diffusion: DensityDiffusion,
     pub(crate) density_diffusion_coefficient: f64,
     pub(crate) model: SolidModelName,
@@ -16,6 +18,8 @@ pub(crate) struct Defaults {
     pub(crate) artificial_stress: ArtificialStress,
     pub(crate) treatment: Treatment,
     pub(crate) cross_viscosity: f64,
+    /// C far off over C near by.
+    pub(crate) cross_viscosity_far: f64,
     pub(crate) kernel: KernelName,
     pub(crate) lattice: Lattice,
     pub(crate) effects: &'static [(EffectName, Switch)],
@@ -24,9 +28,10 @@ pub(crate) struct Defaults {
 impl Defaults {
     pub(super) fn of(preset: Option<Preset>) -> Self {
         let own = Self {
-            smoothing_ratio: 1.33,
+            smoothing_ratio: 1.5,
             time_step: TimeStep::Auto,
-            fluid_viscosity: ArtificialViscosity { linear: 0.1, quadratic: 0.0 },
+            fluid_viscosity: ArtificialViscosity { linear: 0.05, quadratic: 0.0 },
+            own_viscosity_counts: true,
             density_diffusion: DensityDiffusion::DeltaSph,
             density_diffusion_coefficient: 0.1,
             model: SolidModelName::TotalLagrangian,
@@ -35,7 +40,8 @@ impl Defaults {
             artificial_stress: ArtificialStress { strength: 0.3, exponent: 4.0 },
             treatment: Treatment::MovingWall,
             cross_viscosity: 1.0,
-            kernel: KernelName::CubicSpline,
+            cross_viscosity_far: 0.0,
+            kernel: KernelName::WendlandC2,
             lattice: Lattice::Centred,
             effects: &[],
         };
@@ -46,6 +52,7 @@ impl Defaults {
                 smoothing_ratio: 1.33,
                 time_step: TimeStep::Fixed(1e-5),
                 fluid_viscosity: ArtificialViscosity { linear: 1.0, quadratic: 1.0 },
+                own_viscosity_counts: false,
                 density_diffusion: DensityDiffusion::DeltaSph,
                 density_diffusion_coefficient: 0.1,
                 model: SolidModelName::Hypoelastic,
@@ -54,6 +61,7 @@ impl Defaults {
                 artificial_stress: ArtificialStress { strength: 0.3, exponent: 4.0 },
                 treatment: Treatment::PhaseBlind,
                 cross_viscosity: 1.0,
+                cross_viscosity_far: 1.0,
                 kernel: KernelName::CubicSpline,
                 lattice: Lattice::Nodal,
                 // Kayaki's scheme evaluates everything at both stages.

@@ -13,6 +13,8 @@ pub(super) struct Draft {
     pub(super) scene: Scene,
     /// The fluid's sound speed is to be found.
     pub(super) sound_speed_auto: bool,
+    /// The fluid's A is the default, of which its own viscosity is to be taken off.
+    pub(super) linear_auto: bool,
 }
 
 pub(crate) const SMOOTHING: Range = Range::at_least(1.0)
@@ -34,6 +36,10 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report) -> Draft {
     let end_time = top.number("end_time", None, Range::at_least(1e-12).up_to(1e12));
     let numerics = numerics(top.section("numerics"), dimension, &defaults);
     let interface = interface(top.section("interface"), &defaults);
+    let linear_auto = defaults.own_viscosity_counts && {
+        let table = top.section("fluid").section("artificial_viscosity");
+        table.node("linear").is_none()
+    };
     let (fluid, sound_speed_auto) = match top.section("fluid") {
         section if section.is_present() => {
             let (fluid, auto) = fluid(section, &defaults);
@@ -76,7 +82,7 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report) -> Draft {
         numerics,
     };
     top.finish();
-    Draft { scene, sound_speed_auto }
+    Draft { scene, sound_speed_auto, linear_auto }
 }
 
 fn fixed(step: TimeStep) -> Option<f64> {
@@ -145,15 +151,23 @@ pub(super) fn viscosity(section: &Section<'_>, default: ArtificialViscosity) -> 
 }
 
 fn interface(section: Section<'_>, defaults: &Defaults) -> Interface {
+    let treatment = section
+        .choice(
+            "treatment",
+            Some(defaults.treatment),
+            &[("moving-wall", Treatment::MovingWall), ("phase-blind", Treatment::PhaseBlind)],
+        )
+        .unwrap_or(defaults.treatment);
+    let near = section.number("cross_viscosity", Some(defaults.cross_viscosity), COEFFICIENT);
+    // Phase-blind, f_i is the paper's, whose C is the same everywhere.
+    let share = if treatment == Treatment::PhaseBlind { 1.0 } else { defaults.cross_viscosity_far };
+    let range = Range::at_least(0.0).up_to(if near.is_finite() { near } else { f64::MAX });
+    let range = range
+        .why("f_i keeps particles apart: it acts between near ones at least as much as between far ones");
     let interface = Interface {
-        treatment: section
-            .choice(
-                "treatment",
-                Some(defaults.treatment),
-                &[("moving-wall", Treatment::MovingWall), ("phase-blind", Treatment::PhaseBlind)],
-            )
-            .unwrap_or(defaults.treatment),
-        cross_viscosity: section.number("cross_viscosity", Some(defaults.cross_viscosity), COEFFICIENT),
+        treatment,
+        cross_viscosity: near,
+        cross_viscosity_far: section.number("cross_viscosity_far", Some(share * near), range),
     };
     section.finish();
     interface

@@ -4,6 +4,7 @@
 pub mod artificial_viscosity;
 pub mod columns;
 pub mod extrapolation;
+pub mod fade;
 pub mod kernel;
 pub mod lane;
 pub mod neighbours;

@@ -3,9 +3,10 @@
 use super::columns::{Rates, Source, State};
 use super::rates::SolidSum;
 use super::wall_clamp::WallClamp;
-use crate::columns::Shown;
+use crate::columns::{Shown, vector};
 use crate::effects::takes_part;
 use crate::model::{Load, OutOfBounds, OuterRates, Particles, SolidModel};
+use crate::shown_velocity::ShownVelocity;
 use crate::surface::surface_set;
 use crate::wall::Walls;
 use halfstep_role::role::Costs;
@@ -51,10 +52,7 @@ pub struct Hypoelastic<const D: usize> {
     /// State at n while sub-steps are under way.
     pub(super) step_start: State<D>,
     pub(super) rates: Rates<D>,
-    /// Velocity shown to the fluid: the mean over the sub-steps of a stage.
-    pub(super) shown_velocity: [Vec<f64>; D],
-    /// Positions at the start of a stage, by particle number.
-    stage_start: Vec<[f64; D]>,
+    pub(super) shown_velocity: ShownVelocity<D>,
     courant: f64,
     pub(super) pressure: Vec<f64>,
     pub(super) sources: Vec<Source<D>>,
@@ -105,14 +103,13 @@ impl<const D: usize> Hypoelastic<D> {
                 2.0 * scene.smoothing_ratio * scene.resolution,
                 scene.resolution,
             ),
+            shown_velocity: ShownVelocity::new(layout.solid.iter().map(|p| p.velocity)),
             points: layout.solid,
             id: (0..n as u32).collect(),
             slot_of: vec![0; n],
             at_n: now.clone(),
             step_start: now.clone(),
-            stage_start: vec![[0.0; D]; n],
             courant: scene.numerics.solid_cfl,
-            shown_velocity: now.velocity.clone(),
             reference: now.position.clone(),
             now,
             rates: Rates::new(),
@@ -157,9 +154,6 @@ impl<const D: usize> Hypoelastic<D> {
         self.now.permute(&mut self.rows);
         self.at_n.permute(&mut self.rows);
         self.step_start.permute(&mut self.rows);
-        for column in &mut self.shown_velocity {
-            self.rows.permute(column);
-        }
         self.rows.permute_ids(&mut self.id);
         for (slot, &id) in self.id.iter().enumerate() {
             if id != PADDING {
@@ -209,27 +203,12 @@ impl<const D: usize> Hypoelastic<D> {
         self.integrate(dt);
     }
 
-    /// `count` midpoint sub-steps over `dt` from the state at n, which is kept. Shows the mean velocity meanwhile.
+    /// `count` midpoint sub-steps over `dt` from the present state.
     fn sub_step(&mut self, count: u32, dt: f64, load: &Load<D>) {
         let each = dt / f64::from(count);
-        for (p, start) in self.stage_start.iter_mut().enumerate() {
-            *start = std::array::from_fn(|d| self.now.position[d][self.slot_of[p] as usize]);
-        }
         for _ in 0..count {
             self.at_n.copy_from(&self.now);
             self.midpoint(each, load);
-        }
-        for (p, start) in self.stage_start.iter().enumerate() {
-            let s = self.slot_of[p] as usize;
-            for d in 0..D {
-                self.shown_velocity[d][s] = (self.now.position[d][s] - start[d]) / dt;
-            }
-        }
-    }
-
-    fn show_own_velocity(&mut self) {
-        for d in 0..D {
-            self.shown_velocity[d].clone_from(&self.now.velocity[d]);
         }
     }
 
@@ -245,6 +224,7 @@ impl<const D: usize> Hypoelastic<D> {
 
     pub(super) fn record(&self, particle: u32) -> StateRecord {
         let s = self.slot_of[particle as usize] as usize;
+        let velocity = self.shown_velocity.of(particle);
         let mut r = StateRecord {
             id: particle,
             flags: u32::from(self.points[particle as usize].clamped),
@@ -255,7 +235,7 @@ impl<const D: usize> Hypoelastic<D> {
         };
         for a in 0..D {
             r.position[a] = self.now.position[a][s];
-            r.velocity[a] = self.shown_velocity[a][s];
+            r.velocity[a] = velocity[a];
             for b in a..D {
                 r.deviatoric_stress[wire_component(a, b)] = self.now.stress[a][b][s];
             }
@@ -292,13 +272,16 @@ impl<const D: usize> SolidModel<D> for Hypoelastic<D> {
 
     fn advance(&mut self, half_step: &HalfStep, sub_steps: u32, load: &Load<D>) -> Result<(), OutOfBounds> {
         let first = half_step.stage == Stage::First;
+        if first {
+            let (slot_of, now) = (&self.slot_of, &self.now.position);
+            self.shown_velocity.leave(|p| vector(now, slot_of[p]));
+        }
         if sub_steps == 1 {
             if first {
                 self.at_n.copy_from(&self.now);
             }
             self.compute_rates(load);
             self.integrate(half_step.span());
-            self.show_own_velocity();
         } else if first {
             self.step_start.copy_from(&self.now);
             self.sub_step(sub_steps / 2, half_step.span(), load);
@@ -307,6 +290,9 @@ impl<const D: usize> SolidModel<D> for Hypoelastic<D> {
             self.apply_state_equation();
             self.sub_step(sub_steps, half_step.span(), load);
         }
+        let (slot_of, now) = (&self.slot_of, &self.now);
+        let place = |p: usize| vector(&now.position, slot_of[p]);
+        self.shown_velocity.arrive(half_step, sub_steps, place, |p| vector(&now.velocity, slot_of[p]));
         self.show_particles();
         self.check()
     }

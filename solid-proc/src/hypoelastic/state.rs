@@ -12,12 +12,12 @@ impl<const D: usize> State for Hypoelastic<D> {
     fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
         fields.numbers("id", &mut self.id)?;
         fields.part("particles", &mut self.now)?;
-        fields.vectors("shown_velocity", &mut self.shown_velocity)?;
+        fields.part("shown_velocity", &mut self.shown_velocity)?;
         fields.vectors("position_at_sort", &mut self.reference)?;
         fields.count("pair_evaluations", &mut self.pair_evaluations)?;
         let slots = self.id.len();
         fields.length("particles/density", slots, self.now.density.len())?;
-        let columns = [&self.now.position, &self.now.velocity, &self.shown_velocity, &self.reference];
+        let columns = [&self.now.position, &self.now.velocity, &self.reference];
         columns.into_iter().flatten().try_for_each(|column| fields.length("id", column.len(), slots))?;
         for a in 0..D {
             for b in a..D {

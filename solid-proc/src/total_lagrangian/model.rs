@@ -9,9 +9,10 @@ use super::contact::Contact;
 use super::hourglass;
 use super::material::{Law, Matrix};
 use super::pass::{Acceleration, DeformationSum, Fixed, Matrices};
-use crate::columns::{Shown, Vectors, vectors};
+use crate::columns::{Shown, Vectors, vector, vectors};
 use crate::effects::takes_part;
 use crate::model::{Load, OutOfBounds, Particles, SolidModel};
+use crate::shown_velocity::ShownVelocity;
 use crate::surface::surface_set;
 use halfstep_role::role::Costs;
 use halfstep_scene::bounds::Excess;
@@ -81,10 +82,7 @@ pub struct TotalLagrangian<const D: usize> {
     pub(super) now: State<D>,
     /// State at n.
     at_n: State<D>,
-    /// Displacements at the start of a stage.
-    stage_start: Vectors<D>,
-    /// Velocity shown to the fluid: the mean over the sub-steps of a stage.
-    pub(super) shown_velocity: Vectors<D>,
+    pub(super) shown_velocity: ShownVelocity<D>,
     /// Loads and gravity, m/s².
     load: Vectors<D>,
     /// F.
@@ -167,8 +165,7 @@ impl<const D: usize> TotalLagrangian<D> {
             rigid_clamps,
             interface_set: surface_set(points, 2.0 * scene.smoothing_ratio * dx, dx),
             at_n: now.clone(),
-            stage_start: now.displacement.clone(),
-            shown_velocity: now.velocity.clone(),
+            shown_velocity: ShownVelocity::new(layout.solid.iter().map(|p| p.velocity)),
             load: vectors(slots),
             gradient: vec![Matrix::identity(); slots],
             volume_ratio: vec![1.0; slots],
@@ -227,30 +224,14 @@ impl<const D: usize> TotalLagrangian<D> {
         }
     }
 
-    /// `count` Verlet steps over `dt`; shows the mean velocity meanwhile, with one step the velocity itself.
+    /// `count` Verlet steps over `dt`.
     fn sub_step(&mut self, count: u32, dt: f64) {
         let each = dt / f64::from(count);
-        for d in 0..D {
-            self.stage_start[d].clone_from(&self.now.displacement[d]);
-        }
         for _ in 0..count {
             self.kick(0.5 * each);
             self.drift(each);
             self.evaluate();
             self.kick(0.5 * each);
-        }
-    }
-
-    fn show(&mut self, sub_steps: u32, dt: f64) {
-        for d in 0..D {
-            if sub_steps == 1 {
-                self.shown_velocity[d].clone_from(&self.now.velocity[d]);
-                continue;
-            }
-            let way = self.now.displacement[d].iter().zip(&self.stage_start[d]);
-            for (shown, (now, start)) in self.shown_velocity[d].iter_mut().zip(way) {
-                *shown = (now - start) / dt;
-            }
         }
     }
 
@@ -272,7 +253,7 @@ impl<const D: usize> TotalLagrangian<D> {
             id: particle,
             flags: u32::from(self.points[particle as usize].clamped),
             position: wide(self.position_at(slot)),
-            velocity: wide(std::array::from_fn::<_, D, _>(|d| self.shown_velocity[d][slot])),
+            velocity: wide(self.shown_velocity.of(particle)),
             density: self.material.density / j,
             pressure: cauchy.pressure,
             mass: self.mass,
@@ -340,6 +321,8 @@ impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {
         match half_step.stage {
             Stage::First => {
                 self.at_n.copy_from(&self.now);
+                let (slot_of, from) = (&self.slot_of, &self.at_n.displacement);
+                self.shown_velocity.leave(|p| vector(from, slot_of[p]));
                 self.sub_step((sub_steps / 2).max(1), span);
             }
             Stage::Second => {
@@ -347,7 +330,9 @@ impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {
                 self.sub_step(sub_steps, span);
             }
         }
-        self.show(sub_steps, span);
+        let (slot_of, now) = (&self.slot_of, &self.now);
+        let place = |p: usize| vector(&now.displacement, slot_of[p]);
+        self.shown_velocity.arrive(half_step, sub_steps, place, |p| vector(&now.velocity, slot_of[p]));
         self.show_particles();
         self.check()
     }

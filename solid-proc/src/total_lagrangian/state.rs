@@ -15,9 +15,9 @@ impl<const D: usize> State for TotalLagrangian<D> {
             return Err(StateError::contradiction("the solid's reference configuration is another one"));
         }
         fields.part("particles", &mut self.now)?;
-        fields.vectors("shown_velocity", &mut self.shown_velocity)?;
+        fields.part("shown_velocity", &mut self.shown_velocity)?;
         fields.count("pair_evaluations", &mut self.pair_evaluations)?;
-        let now = [&self.now.displacement, &self.now.velocity, &self.now.acceleration, &self.shown_velocity];
+        let now = [&self.now.displacement, &self.now.velocity, &self.now.acceleration];
         now.into_iter().flatten().try_for_each(|column| fields.length("particles", slots, column.len()))?;
         match &mut self.contact {
             Some(contact) => fields.part("contact", contact),

@@ -147,9 +147,9 @@ fn hourglass_resistance_acts_on_hourglass_modes_only() {
         // By hand: sum over the four axial neighbours, which move by 2 e against it, of 2 alpha G V0 F 2 e / rho; the
         // diagonal ones move with it. F_axial V0 = -w.
         let w = {
-            use halfstep_sph::kernel::{CubicSpline, Kernel};
+            use halfstep_sph::kernel::{Kernel, WendlandC2};
             use halfstep_sph::lane::{Lane, Unfused};
-            let kernel = CubicSpline::<2>::new(0.0075);
+            let kernel = WendlandC2::<2>::new(0.0075);
             -1e-4 * kernel.gradient_over_r::<Unfused>(Lane::splat(0.01)).0[0]
         };
         let g = 1e6 / 2.6;

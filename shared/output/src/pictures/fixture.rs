@@ -23,7 +23,11 @@ pub(crate) fn scene() -> Scene {
         gravity: [0.0, -9.81, 0.0],
         fluid: gate.fluid,
         solids: gate.solids,
-        interface: Interface { treatment: Treatment::MovingWall, cross_viscosity: 0.0 },
+        interface: Interface {
+            treatment: Treatment::MovingWall,
+            cross_viscosity: 0.0,
+            cross_viscosity_far: 0.0,
+        },
         output: Output { frame_interval: 0.02, probe_interval: 0.001, checkpoint_interval: 0.0 },
         shapes: Vec::new(),
         probes: vec![

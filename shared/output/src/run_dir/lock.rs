@@ -1,5 +1,5 @@
-//! Who has a run's folder: a file that its owner keeps locked, with the owner's process and start in it. The system unlocks it
-//! when the owner ends, however that is; what is left of a killed run locks nothing.
+//! Who has a run's folder: a file that its owner keeps locked, with the owner's process and start in it. The system
+//! unlocks it when the owner ends, however that is; what is left of a killed run locks nothing.
 
 use crate::OutputError;
 use std::fs::{File, TryLockError};

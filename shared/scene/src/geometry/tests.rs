@@ -39,7 +39,11 @@ fn scene(shapes: Vec<Shape>) -> Scene {
             }),
             sub_steps: SubSteps::Auto,
         }],
-        interface: Interface { treatment: Treatment::MovingWall, cross_viscosity: 1.0 },
+        interface: Interface {
+            treatment: Treatment::MovingWall,
+            cross_viscosity: 1.0,
+            cross_viscosity_far: 1.0,
+        },
         output: Output { frame_interval: 0.1, probe_interval: 0.1, checkpoint_interval: 0.0 },
         shapes,
         probes: Vec::new(),
