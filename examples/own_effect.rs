@@ -16,6 +16,7 @@ const TWO_PARTICLES: &str = r#"
     smoothing_ratio = 1.25
     end_time = 0.01
     time_step = 1e-4
+    numerics.kernel = "cubic-spline"
     gravity = [0.0, 0.0]
     [fluid]
     density = 100.0

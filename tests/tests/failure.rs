@@ -167,7 +167,7 @@ fn nobody_has_to_read_what_a_run_says() {
         folder.path().join("run").display()
     );
     let status =
-        std::process::Command::new("sh").arg("-c").arg(&line.replace(" --set time_step=1", "")).status();
+        std::process::Command::new("sh").arg("-c").arg(line.replace(" --set time_step=1", "")).status();
     assert_eq!(status.unwrap().code(), Some(0));
     let refused = std::process::Command::new("sh").arg("-c").arg(line).status();
     assert_eq!(refused.unwrap().code(), Some(1), "a wrong scene, and no panic");

@@ -1,6 +1,6 @@
 //! Roles as processes: what others notice when one is killed, and what is left when all are gone.
 
-use halfstep_coupling::supervise::{Children, stop_flag};
+use halfstep_coupling::supervise::{Children, StopFlags};
 use halfstep_link::{Claim, Expect, LinkConfig, LinkError, Processes, Threads, cleanup_stale};
 use halfstep_tests::conformance::link::end::End;
 use halfstep_tests::conformance::link::suite::with_links;
@@ -250,11 +250,13 @@ fn failure_comes_before_success() {
 }
 
 #[test]
-fn signals_set_the_stop_flag() {
-    for signal in [libc::SIGINT, libc::SIGTERM] {
-        let flag = stop_flag().unwrap();
-        assert!(!flag.load(Ordering::Relaxed));
+fn the_first_signal_asks_for_an_end_in_order_and_the_second_for_one_at_once() {
+    for signal in [libc::SIGINT, libc::SIGTERM, libc::SIGHUP] {
+        let flags = StopFlags::of_signals().unwrap();
         kill(std::process::id(), signal);
-        eventually(1.0, "the flag", || flag.load(Ordering::Relaxed));
+        eventually(1.0, "the stop", || flags.stop.load(Ordering::Relaxed));
+        assert!(!flags.at_once.load(Ordering::Relaxed));
+        kill(std::process::id(), signal);
+        eventually(1.0, "the end", || flags.at_once.load(Ordering::Relaxed));
     }
 }

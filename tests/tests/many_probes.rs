@@ -14,7 +14,7 @@ fn a_hundred_probes_have_a_hundred_columns() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("probes.toml");
     // Curves of the literature lie beside the shipped scene.
-    let text = text.replace("../tests/", &format!("{}/tests/", repository().display()));
+    let text = text.replace("../validation/", &format!("{}/validation/", repository().display()));
     std::fs::write(&path, text).unwrap();
     let run = scene_at(&path).set("resolution", 0.0025).until(2e-4).run();
     let first = |k: u32| run.curve(&format!("p{k}.pressure")).values[0];

@@ -4,7 +4,7 @@ use halfstep_output::checkpoint::{FOLDERS, MANIFEST, Manifest};
 use halfstep_output::run_json::RunStatus;
 use halfstep_sph::lane::Isa;
 use halfstep_tests::baseline::baselines;
-use halfstep_tests::run::{Outcome, whole_machine};
+use halfstep_tests::run::{Outcome, repository, whole_machine};
 use halfstep_tests::scene;
 use std::collections::BTreeMap;
 use std::hash::{BuildHasher, RandomState};
@@ -27,13 +27,12 @@ fn every_shipped_scene_goes_on_to_the_stored_bits() {
         let folder = tempfile::tempdir().unwrap();
         let dir = folder.path().join("run");
         // Intervals of the whole run, and a few checkpoints on the way.
-        let sets = |key: &str| baseline.set.iter().any(|set| set.starts_with(key));
-        let mut short = baseline.builder_until(level, share * baseline.until);
-        for (key, count) in [("output.frame_interval", 50.0), ("output.probe_interval", 2000.0)] {
-            if !sets(key) {
-                short = short.set(key, baseline.until / count);
-            }
-        }
+        let path = repository().join("scenes").join(&baseline.case).with_extension("toml");
+        let whole = [baseline.set.clone(), vec![format!("end_time={}", baseline.until)]].concat();
+        let output = halfstep_scene::load(&path, &whole).unwrap().output;
+        let short = baseline.builder_until(level, share * baseline.until);
+        let short = short.set("output.frame_interval", output.frame_interval);
+        let short = short.set("output.probe_interval", output.probe_interval);
         short.set("output.checkpoint_interval", 0.3 * share * baseline.until).out(&dir).run();
         let resumed = scene(&baseline.case).resume(&dir).until(baseline.until).in_process().run();
         let came_from = resumed.report.resumed.clone();

@@ -9,7 +9,7 @@ use halfstep_scene::SceneErrors;
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The scene is wrong; all of its errors, each with its place.
-    #[error(transparent)]
+    #[error("{0}{problems}", problems = problems(.0))]
     Scene(#[from] SceneErrors),
     /// The run failed or diverged.
     #[error(transparent)]
@@ -17,6 +17,11 @@ pub enum Error {
     /// The simulation was put together in a way that cannot run.
     #[error("{0}")]
     Setup(String),
+}
+
+/// All errors of a scene, a line each.
+fn problems(errors: &SceneErrors) -> String {
+    errors.problems.iter().map(|problem| format!("\n{problem}")).collect()
 }
 
 impl From<OutputError> for Error {

@@ -6,7 +6,7 @@
 //! let tank = "resolution = 0.05\nend_time = 0.01\n[fluid]\ndensity = 1000.0\n\
 //!             [[shape]]\nname = \"tank\"\nphase = \"wall\"\ntank = { min = [0.0, 0.0], max = [1.0, 0.5] }\n\
 //!             [[shape]]\nname = \"water\"\nphase = \"fluid\"\nbox = { min = [0.0, 0.0], max = [1.0, 0.5] }\n\
-//!             [[probe]]\nname = \"bottom\"\nkind = \"pressure\"\nat = [0.5, 0.0]\n";
+//!             pressure = \"hydrostatic\"\n[[probe]]\nname = \"bottom\"\nkind = \"pressure\"\nat = [0.5, 0.0]\n";
 //! let mut tank = Simulation::new(scene::parse(tank, "tank.toml".as_ref(), &[])?).begin()?;
 //! while tank.step()? {}
 //! let pressure = tank.probe("bottom.pressure").expect("the scene has this probe");

@@ -246,7 +246,7 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         touch(dir.path(), &[".run.json.tmp", "frames/.fluid_000001.hdf.tmp", "notes.txt"]);
         let run = RunDirectory::create(dir.path(), false).unwrap();
-        assert_eq!(listing(dir.path()), ["notes.txt"]);
+        assert_eq!(listing(dir.path()), ["notes.txt", "run.lock"]);
         assert_eq!(run.file("run.json"), dir.path().join("run.json"));
     }
 

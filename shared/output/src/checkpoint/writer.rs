@@ -83,7 +83,8 @@ impl StateSink for StateWriter {
     fn finish(mut self: Box<Self>) -> Result<u64, SinkError> {
         match self.join() {
             Some(Ok(())) => Ok(StateSink::safe(&*self)),
-            _ => Err(self.failure().into()),
+            Some(Err(error)) => Err(error.into()),
+            None => Err(self.failure().into()),
         }
     }
 }
