@@ -2,6 +2,19 @@
 //!
 //! Midpoint steps (Kayaki's eqs. 30 and 31) over particles sorted into rows; each physical or numerical effect is a
 //! type that adds its share to one pass over the neighbours.
+//!
+//! ```
+//! use halfstep_fluid::Fluid;
+//! use halfstep_role::role::Role;
+//! use halfstep_sph::lane::Isa;
+//!
+//! let text = "resolution = 0.1\nend_time = 1.0\n[fluid]\ndensity = 1000.0\n[[shape]]\nname = \"water\"\n\
+//!             phase = \"fluid\"\nbox = { min = [0.0, 0.0], max = [1.0, 0.5] }\n";
+//! let scene = halfstep_scene::parse(text, "water.toml".as_ref(), &[]).expect("a right scene");
+//! let fluid = Fluid::<2>::new(&scene, Isa::detect()).expect("a scene with fluid");
+//! assert_eq!(fluid.particles(), 50);
+//! assert!((fluid.audit().mass - 500.0).abs() < 1e-9, "kg for a metre of depth");
+//! ```
 
 pub mod columns;
 pub mod composition;

@@ -30,7 +30,7 @@ macro_rules! conformance {
     ($($name:ident: $model:ident, $keys:literal;)*) => {
         $(conformance!($name, $model, $keys, [
             identity, interface_set, rest, uniform_force, stage_0_is_forgotten, sub_steps, clamps, conservation,
-            bodies_collide, wall_contact, bounds, threads
+            bodies_collide, wall_contact, bounds, threads, interruption
         ]);)*
     };
 }

@@ -49,7 +49,9 @@ impl<const D: usize> FluidEffect<D> for ArtificialViscosity<D> {
         let derived = match &scene.fluid {
             None => Derived::Impossible("the scene has no fluid".into()),
             Some(Fluid { artificial_viscosity: a, .. }) if a.linear == 0.0 && a.quadratic == 0.0 => {
-                Derived::Impossible("fluid.artificial_viscosity is zero, or no more than fluid.viscosity does".into())
+                Derived::Impossible(
+                    "fluid.artificial_viscosity is zero, or no more than fluid.viscosity does".into(),
+                )
             }
             Some(Fluid { artificial_viscosity: a, sound_speed, .. }) => {
                 let worth = a.kinematic(scene.smoothing_ratio * scene.resolution, *sound_speed);

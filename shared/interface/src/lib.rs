@@ -3,6 +3,29 @@
 //! Fluid process and coupler hold the same two records and run the same code on them in the same order, so what both
 //! need (the pressure that solid particles show to the fluid, the cross-phase pair force) has the same bits on each
 //! side without a further message.
+//!
+//! ```
+//! use halfstep_interface::{Interface, Parameters};
+//! use halfstep_sph::lane::Isa;
+//! use halfstep_wire::protocol::StateRecord;
+//!
+//! # let text = "resolution = 0.01\nend_time = 1.0\ngravity = [0.0, 0.0]\n[fluid]\ndensity = 1000.0\n[solid]\n\
+//! #     density = 1000.0\nyoungs_modulus = 1e6\npoissons_ratio = 0.3\n[[shape]]\nname = \"water\"\n\
+//! #     phase = \"fluid\"\nbox = { min = [0.0, 0.0], max = [0.1, 0.1] }\n[[shape]]\nname = \"block\"\nphase =
+//! \"solid\"\n\
+//! #     box = { min = [0.1, 0.0], max = [0.2, 0.1] }\n";
+//! # let scene = halfstep_scene::parse(text, "block.toml".as_ref(), &[]).expect("a right scene");
+//! let parameters = Parameters::<2>::new(&scene, 0, Isa::detect()).expect("fluid and solid");
+//! let mut interface = Interface::new(parameters);
+//! // Water under pressure, 10 mm to the left of a solid particle, pushes it to the right, and is pushed to the left.
+//! let particle = StateRecord { density: 1000.0, mass: 0.1, ..StateRecord::default() };
+//! let water = StateRecord { pressure: 500.0, position: [-0.01, 0.0, 0.0], ..particle };
+//! interface.update(&[water], &[particle], 1);
+//! let (mut on_solid, mut on_water) = (0.0, 0.0);
+//! interface.act_on_solid(|_, force| on_solid = force[0]);
+//! interface.act_on_fluid(|_, acceleration, _| on_water = 0.1 * acceleration[0]);
+//! assert!(on_solid > 0.0 && (on_solid + on_water).abs() < 1e-12 * on_solid);
+//! ```
 
 pub mod cross_viscosity;
 mod moving_wall;

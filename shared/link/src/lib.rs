@@ -9,6 +9,15 @@
 //! Waiting sleeps; it wakes when a message arrives, when the peer is gone, when the caller's abort flag is set or when
 //! a live peer stays silent longer than [`LinkConfig::patience_seconds`]. `docs/protocol.md` describes the wire for
 //! processes that are not written against this module.
+//!
+//! ```
+//! use halfstep_link::LinkConfig;
+//!
+//! // Room for 100 fluid and 20 solid particles in a message; every process of the run gets the same variables.
+//! let config = LinkConfig::of_two(100, 20);
+//! let variables = config.to_env();
+//! assert!(variables.iter().any(|(key, value)| *key == "HALFSTEP_PARTICIPANTS" && value == "fluid:100,solid:20"));
+//! ```
 
 mod channel;
 mod check;

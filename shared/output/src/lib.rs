@@ -11,6 +11,19 @@
 //! A file that a reader can see is whole: except for `probes.csv`, which grows line by line, every file is written
 //! under a temporary name (`.NAME.tmp`), synchronised with the disk and renamed. Killing the program at any moment
 //! leaves nothing half-written under a final name.
+//!
+//! ```
+//! use halfstep_output::{ProbeLog, read_probes};
+//!
+//! let folder = tempfile::tempdir()?;
+//! let path = folder.path().join("probes.csv");
+//! let mut log = ProbeLog::create(&path, &["tip.x [m]".to_string()])?;
+//! log.row(0.1 + 0.2, &[1e-3])?;
+//! let table = read_probes(&path)?;
+//! assert_eq!(table.column("tip.x"), Some(vec![1e-3]));
+//! assert_eq!(table.times(), [0.1 + 0.2], "bit for bit");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod atomic;
 pub mod checkpoint;

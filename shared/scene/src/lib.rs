@@ -3,6 +3,16 @@
 //! Every length is in metres, every time in seconds, every other quantity in SI units. Two-dimensional masses and
 //! forces are per metre of depth. A [`Scene`] that exists is valid: [`load`] refuses anything else with all of the
 //! file's errors at once. Vectors have three components; a two-dimensional scene leaves the third at zero.
+//!
+//! ```
+//! let text = "resolution = 0.1\nend_time = 1.0\n[fluid]\ndensity = 1000.0\n[[shape]]\nname = \"water\"\n\
+//!             phase = \"fluid\"\nbox = { min = [0.0, 0.0], max = [1.0, 0.5] }\n";
+//! let scene = halfstep_scene::parse(text, "water.toml".as_ref(), &[]).expect("a right scene");
+//! let particles = halfstep_scene::geometry::layout::<2>(&scene).fluid;
+//! assert_eq!(particles.len(), 10 * 5);
+//! let wrong = halfstep_scene::parse(text, "water.toml".as_ref(), &["resolution=-1".into()]).unwrap_err();
+//! assert!(wrong.problems[0].to_string().contains("resolution=-1"));
+//! ```
 
 pub mod bounds;
 mod check;

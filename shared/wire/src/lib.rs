@@ -1,4 +1,13 @@
 //! The wire of a co-simulation: records and headers, what they mean, and the particles of an instant for output.
+//!
+//! ```
+//! use halfstep_wire::half_step::HalfStep;
+//!
+//! // A step has two stages: from n to n + 1/2, and from n to n + 1.
+//! let [first, second] = HalfStep::begin(7, 0.5).lasting(0.1).both();
+//! assert_eq!((first.span(), second.span()), (0.05, 0.1));
+//! assert_eq!((first.before(), second.before(), second.after()), (0.5, 0.55, 0.6));
+//! ```
 
 pub mod failure;
 pub mod frame;

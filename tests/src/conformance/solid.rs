@@ -383,3 +383,42 @@ pub fn threads(make: Make) {
     let one = run(1);
     assert!(run(2) == one && run(3) == one);
 }
+
+/// A model that can be saved goes on to the same bits: free bodies that collide and touch a wall, under a load, with
+/// one sub-step and with several.
+pub fn interruption(make: Make) {
+    let scene = parse(make, &[BLOCK, BALL, FLOOR], &["gravity=[0.0, -9.81]"]);
+    let build = || (make.build)(&scene, Isa::detect()).expect("a solid");
+    for sub_steps in [1, 4] {
+        let mut model = build();
+        let limit = model.sub_step_limit();
+        let mut load = Load::<2>::none(model.particles().len());
+        load.force.iter_mut().enumerate().for_each(|(p, force)| *force = [0.1 * p as f64, -3.0]);
+        let half_step = |k: u64| {
+            // Steps of different lengths.
+            let dt = 0.5 * limit * f64::from(sub_steps) * if k.is_multiple_of(3) { 1.0 } else { 0.8 };
+            HalfStep::begin(k, 0.0).lasting(dt).both()
+        };
+        let advance = |model: &mut Model, steps: std::ops::Range<u64>| {
+            for stage in steps.flat_map(half_step) {
+                model.advance(&stage, sub_steps, &load).expect("within bounds");
+            }
+        };
+        advance(&mut model, 0..40);
+        let Some(saved) = model.state().map(|state| state.save()) else { return };
+        advance(&mut model, 40..80);
+        let mut resumed = build();
+        resumed.state().expect("it was saved").load(&saved).expect("its own state");
+        advance(&mut resumed, 40..80);
+        let bits = |model: &Model| -> Vec<String> {
+            // Zeros keep their sign in this form.
+            all(model).map(|p| format!("{:?} {:?}", record(model, p), velocity(model, p))).collect()
+        };
+        assert_eq!(bits(&resumed), bits(&model), "{sub_steps} sub-steps");
+        assert_eq!(resumed.strain_energy().to_bits(), model.strain_energy().to_bits());
+        // A state of another solid is refused.
+        let other = parse(make, &[BLOCK], &[]);
+        let mut other = (make.build)(&other, Isa::detect()).expect("a solid");
+        assert!(other.state().expect("the same model").load(&saved).is_err());
+    }
+}
