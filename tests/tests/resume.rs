@@ -4,6 +4,7 @@ use halfstep_output::checkpoint::{FOLDERS, MANIFEST, Manifest};
 use halfstep_output::run_json::RunStatus;
 use halfstep_sph::lane::Isa;
 use halfstep_tests::baseline::baselines;
+use halfstep_tests::process::{kill, role_of};
 use halfstep_tests::run::{Outcome, repository, whole_machine};
 use halfstep_tests::scene;
 use std::collections::BTreeMap;
@@ -130,4 +131,71 @@ fn a_torn_generation_is_passed_over_and_a_changed_run_is_refused() {
     std::fs::remove_dir_all(dir.join(newer)).unwrap();
     std::fs::remove_file(dir.join(older).join(MANIFEST)).unwrap();
     refused("has no whole checkpoint");
+}
+
+/// Whatever is refused stays as it was, and can be resumed when it is mended.
+#[test]
+fn a_refused_resume_changes_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let dir = folder.path().join("run");
+    let tank = || scene("hydrostatic-tank").set("output.checkpoint_interval", 0.01);
+    let tank = |until: f64| {
+        tank().set("output.frame_interval", 0.005).set("output.probe_interval", 0.01).until(until)
+    };
+    tank(0.05).out(&dir).run();
+    let (aside, probes) = (folder.path().join("probes.csv"), dir.join("probes.csv"));
+    std::fs::rename(&probes, &aside).unwrap();
+    let before = (
+        std::fs::read(dir.join("scene.json")).unwrap(),
+        std::fs::read_dir(dir.join("frames")).unwrap().count(),
+    );
+    let refused = scene("hydrostatic-tank").resume(&dir).until(0.06).outcome();
+    assert_eq!(refused.code(), Some(1));
+    assert!(refused.stderr.contains("probes.csv"), "{}", refused.stderr);
+    assert!(
+        before
+            == (
+                std::fs::read(dir.join("scene.json")).unwrap(),
+                std::fs::read_dir(dir.join("frames")).unwrap().count()
+            ),
+        "nothing was touched"
+    );
+    std::fs::rename(&aside, &probes).unwrap();
+    let resumed = scene("hydrostatic-tank").resume(&dir).until(0.06).run();
+    assert_eq!(resumed.state_hash(), tank(0.06).run().state_hash());
+    // A name in an index does not lead out of the folder.
+    let victim = folder.path().join("victim.hdf");
+    std::fs::write(&victim, "mine").unwrap();
+    let index = dir.join("frames/fluid.hdf.series");
+    let text = std::fs::read_to_string(&index).unwrap();
+    std::fs::write(&index, text.replacen("fluid_000000.hdf", "../../victim.hdf", 1)).unwrap();
+    let refused = scene("hydrostatic-tank").resume(&dir).until(0.07).outcome();
+    assert_eq!(refused.code(), Some(1), "{}", refused.stderr);
+    assert!(refused.stderr.contains("is no frame of the fluid"), "{}", refused.stderr);
+    assert!(victim.exists());
+}
+
+/// A role that outlives its launcher still has the folder: what it writes later would spoil a resumed run.
+#[test]
+fn a_run_with_a_living_role_is_not_resumed() {
+    let folder = tempfile::tempdir().unwrap();
+    let dir = folder.path().join("run");
+    let gate = scene("elastic-gate").set("resolution", 0.0025).set("output.checkpoint_interval", 0.002);
+    let machine = whole_machine();
+    let mut running = gate.until(0.03).out(&dir).start();
+    let whole = || FOLDERS.iter().any(|name| dir.join(name).join(MANIFEST).exists());
+    while !whole() {
+        assert!(running.is_alive(), "{:?}", running.wait());
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    let solid = role_of(running.pid(), "solid").expect("a child");
+    kill(solid, libc::SIGSTOP);
+    kill(running.pid(), libc::SIGKILL);
+    running.wait();
+    let refused = scene("elastic-gate").resume(&dir).start().wait();
+    assert_eq!(refused.code(), Some(1), "{}", refused.stderr);
+    assert!(refused.stderr.contains("a run goes on in"), "{}", refused.stderr);
+    kill(solid, libc::SIGCONT);
+    drop(machine);
+    scene("elastic-gate").resume(&dir).run();
 }

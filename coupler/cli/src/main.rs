@@ -270,7 +270,7 @@ fn tell(scene: &Scene, out: &Path, (report, error): run::Ended) -> ExitCode {
     ));
     let finished = report.status == Some(RunStatus::Finished);
     if !finished && FOLDERS.iter().any(|folder| out.join(folder).join(MANIFEST).exists()) {
-        say::tell(format_args!("halfstep resume {} goes on from the last checkpoint", out.display()));
+        say::tell(format_args!("halfstep resume '{}' goes on from the last checkpoint", out.display()));
     }
     match report.status {
         Some(RunStatus::Finished) => ExitCode::SUCCESS,

@@ -9,6 +9,7 @@ use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1};
 use std::ffi::OsStr;
 use std::fs::{File, OpenOptions};
 use std::io;
+use std::os::fd::{AsRawFd, BorrowedFd, RawFd};
 use std::os::unix::process::{CommandExt, ExitStatusExt};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -51,6 +52,8 @@ pub enum SuperviseError {
 #[derive(Debug)]
 pub struct Children {
     log: PathBuf,
+    /// A file that roles keep open, as long as they live.
+    kept: Option<RawFd>,
     children: Vec<Supervised>,
 }
 
@@ -89,7 +92,13 @@ impl Supervised {
 impl Children {
     /// No children yet; theirs is the log at this path.
     pub fn new(log: &Path) -> Self {
-        Self { log: log.to_owned(), children: Vec::new() }
+        Self { log: log.to_owned(), kept: None, children: Vec::new() }
+    }
+
+    /// Roles started from now on keep this file open as long as they live: a lock on it ends with the last of them. The
+    /// file must stay open until they are started.
+    pub fn keep(&mut self, file: BorrowedFd<'_>) {
+        self.kept = Some(file.as_raw_fd());
     }
 
     /// Starts a role. It ends with this process, it does not hear Ctrl-C, and its output goes to the log.
@@ -121,9 +130,15 @@ impl Children {
             command.process_group(0);
         }
         let parent = std::process::id();
+        let kept = self.kept.filter(|_| !group);
         // SAFETY: between fork and exec; only calls that are safe after a fork of a process with threads.
         unsafe {
-            command.pre_exec(move || bind_to_parent(parent, group));
+            command.pre_exec(move || {
+                if let Some(file) = kept {
+                    libc::fcntl(file, libc::F_SETFD, 0);
+                }
+                bind_to_parent(parent, group)
+            });
         }
         let child = command.spawn().map_err(|source| SuperviseError::Start {
             role,

@@ -3,7 +3,7 @@
 use halfstep_coupling::checkpoints::scene_hash;
 use halfstep_coupling::error::RunError;
 use halfstep_coupling::say;
-use halfstep_output::checkpoint::{COUPLER, FOLDERS, Manifest, file};
+use halfstep_output::checkpoint::{COUPLER, FOLDERS, Manifest, file, file_name};
 use halfstep_output::run_json::Resumption;
 use halfstep_scene::Scene;
 use halfstep_sph::lane::Isa;
@@ -29,9 +29,14 @@ impl Checkpoint {
     /// There is none, or it is of another scene, program or instruction set.
     pub(crate) fn newest(run: &Path, scene: &Scene, isa: Isa) -> Result<Self, RunError> {
         let (mut found, mut torn) = (Vec::new(), Vec::new());
+        let participants = scene.participants().into_iter().map(|participant| file_name(&participant.name));
+        let expected: Vec<String> = participants.chain([COUPLER.to_owned()]).collect();
         for name in FOLDERS {
             let folder = run.join(name);
             match Manifest::read(&folder) {
+                Ok(Some(manifest)) if !manifest.files.iter().map(|file| &file.name).eq(&expected) => {
+                    torn.push(format!("{name} is not of the scene's participants"));
+                }
                 Ok(Some(manifest)) => found.push((manifest, folder)),
                 Ok(None) if folder.join(COUPLER).exists() => torn.push(format!("{name} is not complete")),
                 Ok(None) => {}

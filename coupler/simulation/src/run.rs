@@ -47,6 +47,8 @@ pub fn resume(options: &RunOptions, until: Option<f64>) -> Result<(Scene, Ended)
         .out
         .canonicalize()
         .map_err(|error| RunError::Resume(format!("{}: {error}", options.out.display())))?;
+    // Nobody else changes what is read from here on.
+    let directory = RunDirectory::reopen(dir)?;
     let mut scene = read_scene(dir)?;
     check_foreign(&scene, options)?;
     let checkpoint = Checkpoint::newest(dir, &scene, options.isa)?;
@@ -67,8 +69,6 @@ pub fn resume(options: &RunOptions, until: Option<f64>) -> Result<(Scene, Ended)
         Some(until) => scene.end_time = until,
         None => {}
     }
-    let directory = RunDirectory::reopen(dir, checkpoint.frames()?)?;
-    write_scene(&scene, &directory)?;
     let ended = execute(&scene, options, &directory, Some((checkpoint, earlier)))?;
     Ok((scene, ended))
 }
@@ -150,7 +150,11 @@ fn execute_in<const D: usize>(
             report.resumed = earlier.resumed;
             report.resumed.push(checkpoint.resumption());
             at = (checkpoint.manifest.number, checkpoint.manifest.time);
+            // What may be refused comes first: a refused run stays as it was.
+            let frames = checkpoint.frames()?;
             let recorder = recorder(None).resume(scene, Some(&probes), checkpoint.part("recorder")?)?;
+            directory.forget_frames(frames)?;
+            write_scene(scene, directory)?;
             (Some(checkpoint), recorder)
         }
     };

@@ -118,6 +118,8 @@ impl<'a, const D: usize> Session<'a, D> {
         let scene_file = scene_file.canonicalize().map_err(|e| system("scene.json", e))?;
         let folder = self.directory.path().canonicalize().map_err(|e| system("the run's folder", e))?;
         let mut children = Children::new(&self.directory.file("log.txt"));
+        // A role that outlives this process still has the folder.
+        children.keep(self.directory.lock());
         let checkpoint = self.checkpoint.map(|checkpoint| (CHECKPOINT_VARIABLE, checkpoint.folder.as_path()));
         let mut told = vec![(SCENE_VARIABLE, scene_file.as_path()), (FOLDER_VARIABLE, &folder)];
         told.extend(checkpoint);
@@ -194,7 +196,9 @@ impl<'a, const D: usize> Session<'a, D> {
                 let waiting = !connected.load(Ordering::Relaxed);
                 let seconds = self.options.solid_wait;
                 Err(match (error, cause) {
-                    _ if waiting && stop.stop.load(Ordering::Relaxed) => RunError::StoppedEarly,
+                    _ if stop.stop.load(Ordering::Relaxed) && (waiting || course.clock.step() == 0) => {
+                        RunError::StoppedEarly
+                    }
                     // The fluid waits for the solid, too, and may be the first to give up.
                     _ if waiting && by_hand && started.elapsed().as_secs_f64() >= seconds => {
                         RunError::NoSolid { seconds }

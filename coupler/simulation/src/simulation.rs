@@ -171,8 +171,8 @@ impl<X: FluidEffect<D>, const D: usize> Simulation<X, D> {
     pub fn resume(self) -> Result<Running<D>, Error> {
         let dir =
             self.folder.clone().ok_or_else(|| Error::Setup("there is no folder to resume from".into()))?;
+        let folder = RunDirectory::reopen(&dir)?;
         let checkpoint = Checkpoint::newest(&dir, &self.scene, Isa::detect())?;
-        let folder = RunDirectory::reopen(&dir, checkpoint.frames()?)?;
         self.begin_from(Some(folder), Some(checkpoint))
     }
 
@@ -209,6 +209,9 @@ impl<X: FluidEffect<D>, const D: usize> Simulation<X, D> {
         let at = from.as_ref().map(|from| from.folder.as_path());
         let members = own.into_iter().map(|role| roles::equip(role, path, at)).collect::<Result<_, _>>()?;
         let course = course(&scene, folder.as_ref(), from.as_ref(), Arc::clone(&stop), isa)?;
+        if let (Some(folder), Some(from)) = (&folder, &from) {
+            folder.forget_frames(from.frames()?)?;
+        }
         let coupler = from.as_ref().map(|from| &from.coupler);
         let run = pool.install(|| LocalRun::new(members, &scene, course, isa, coupler))?;
         Ok(Running { run, pool, scene, folder, own_solids: names, stop, isa, more: true })

@@ -9,11 +9,10 @@
 //! use halfstep_sph::lane::Isa;
 //! use halfstep_wire::protocol::StateRecord;
 //!
-//! # let text = "resolution = 0.01\nend_time = 1.0\ngravity = [0.0, 0.0]\n[fluid]\ndensity = 1000.0\n[solid]\n\
+//! # let text = "resolution = 0.01\nend_time = 1.0\n[fluid]\ndensity = 1000.0\n[solid]\n\
 //! #     density = 1000.0\nyoungs_modulus = 1e6\npoissons_ratio = 0.3\n[[shape]]\nname = \"water\"\n\
-//! #     phase = \"fluid\"\nbox = { min = [0.0, 0.0], max = [0.1, 0.1] }\n[[shape]]\nname = \"block\"\nphase =
-//! \"solid\"\n\
-//! #     box = { min = [0.1, 0.0], max = [0.2, 0.1] }\n";
+//! #     phase = \"fluid\"\nbox = { min = [0.0, 0.0], max = [0.1, 0.1] }\n[[shape]]\nname = \"block\"\n\
+//! #     phase = \"solid\"\nbox = { min = [0.1, 0.0], max = [0.2, 0.1] }\n";
 //! # let scene = halfstep_scene::parse(text, "block.toml".as_ref(), &[]).expect("a right scene");
 //! let parameters = Parameters::<2>::new(&scene, 0, Isa::detect()).expect("fluid and solid");
 //! let mut interface = Interface::new(parameters);

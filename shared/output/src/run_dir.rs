@@ -2,6 +2,7 @@
 
 use super::{OutputError, checkpoint, series};
 use halfstep_wire::Name;
+use std::os::fd::BorrowedFd;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -29,7 +30,7 @@ fn is_checkpoint_file(name: &str) -> bool {
 pub struct RunDirectory {
     path: PathBuf,
     /// Held for as long as somebody has the folder.
-    _lock: Arc<Lock>,
+    lock: Arc<Lock>,
 }
 
 impl RunDirectory {
@@ -39,7 +40,7 @@ impl RunDirectory {
     pub fn create(dir: &Path, force: bool) -> Result<Self, OutputError> {
         let frames = series::frames_folder(dir);
         std::fs::create_dir_all(&frames).map_err(OutputError::io("create", &frames))?;
-        let this = Self { path: dir.into(), _lock: Arc::new(Lock::take(dir)?) };
+        let this = Self { path: dir.into(), lock: Arc::new(Lock::take(dir)?) };
         let stems = stems(&frames)?;
         let is_frame = |name: &str| is_frame_file(name, &stems);
         let mut found = files(dir, is_run_file)?;
@@ -67,24 +68,38 @@ impl RunDirectory {
         Ok(this)
     }
 
-    /// The folder of an interrupted run, to go on from a state with this number of frames: later frames are forgotten.
+    /// The folder of an interrupted run. Nothing in it changes.
+    ///
+    /// # Errors
+    /// A run goes on in it, or there is no such folder.
+    pub fn reopen(dir: &Path) -> Result<Self, OutputError> {
+        Ok(Self { path: dir.into(), lock: Arc::new(Lock::take(dir)?) })
+    }
+
+    /// Forgets the frames from this number on, and what an interrupted write left.
     ///
     /// # Errors
     /// The folder cannot be read or changed.
-    pub fn reopen(dir: &Path, frames: u64) -> Result<Self, OutputError> {
-        let this = Self { path: dir.into(), _lock: Arc::new(Lock::take(dir)?) };
-        let folder = this.frames();
+    pub fn forget_frames(&self, from: u64) -> Result<(), OutputError> {
+        let (dir, folder) = (self.path(), self.frames());
         std::fs::create_dir_all(&folder).map_err(OutputError::io("create", &folder))?;
         let stems = stems(&folder)?;
         for stem in &stems {
-            series::forget_from(&folder, stem, frames as u32)?;
+            let own = |name: &str| is_frame_file(name, std::slice::from_ref(stem));
+            series::forget_from(&folder, stem, from as u32, own)?;
         }
         let mut left = files(dir, |name| is_temporary(name, is_run_file))?;
         left.extend(files(&folder, |name| is_temporary(name, |name| is_frame_file(name, &stems)))?);
         for file in left {
             std::fs::remove_file(&file).map_err(OutputError::io("remove", &file))?;
         }
-        Ok(this)
+        Ok(())
+    }
+
+    /// The locked file, for processes of the run that outlive this one: while one of them has it open, the folder is in
+    /// use.
+    pub fn lock(&self) -> BorrowedFd<'_> {
+        self.lock.file()
     }
 
     /// The folder.
@@ -214,7 +229,7 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let first = RunDirectory::create(dir.path(), false).unwrap();
         touch(dir.path(), &["run.json"]);
-        for again in [RunDirectory::create(dir.path(), true), RunDirectory::reopen(dir.path(), 0)] {
+        for again in [RunDirectory::create(dir.path(), true), RunDirectory::reopen(dir.path())] {
             let message = again.unwrap_err().to_string();
             assert!(message.contains(&format!("process {}", std::process::id())), "{message}");
         }

@@ -51,12 +51,20 @@ pub fn index_name(stem: &str) -> String {
 }
 
 /// Removes the frames of `stem` from this number on, from its index first.
-pub(crate) fn forget_from(folder: &Path, stem: &str, number: u32) -> Result<(), OutputError> {
+pub(crate) fn forget_from(
+    folder: &Path,
+    stem: &str,
+    number: u32,
+    own: impl Fn(&str) -> bool,
+) -> Result<(), OutputError> {
     let index = folder.join(index_name(stem));
     if !index.try_exists().map_err(OutputError::io("read", &index))? {
         return Ok(());
     }
     let mut series = Series::read(&index)?;
+    if let Some(entry) = series.files.iter().find(|entry| !own(&entry.name)) {
+        return Err(OutputError::malformed(&index, format!("`{}` is no frame of the {stem}", entry.name)));
+    }
     let later: Vec<String> = series
         .files
         .iter()

@@ -65,6 +65,9 @@ impl Manifest {
     /// The checkpoint is torn or changed, or of another layout.
     pub fn read(folder: &Path) -> Result<Option<Self>, OutputError> {
         let path = folder.join(MANIFEST);
+        if std::fs::metadata(&path).is_ok_and(|metadata| !metadata.is_file()) {
+            return Err(OutputError::malformed(&path, "it is no file"));
+        }
         let text = match std::fs::read(&path) {
             Ok(text) => text,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
@@ -72,6 +75,12 @@ impl Manifest {
         };
         let manifest: Self =
             serde_json::from_slice(&text).map_err(|e| OutputError::malformed(&path, e.to_string()))?;
+        let sound = (1..=u64::from(u32::MAX)).contains(&manifest.number)
+            && manifest.time.is_finite()
+            && manifest.time >= 0.0;
+        if !sound {
+            return Err(OutputError::malformed(&path, "number or time are those of no checkpoint"));
+        }
         if manifest.format != FORMAT {
             let reason = format!("checkpoints of layout {} cannot be read, {FORMAT} can", manifest.format);
             return Err(OutputError::malformed(&path, reason));
@@ -108,6 +117,10 @@ impl FileEntry {
     fn of(folder: &Path, name: &str) -> Result<Self, OutputError> {
         let path = folder.join(name);
         let io = |e| OutputError::io("read", &path)(e);
+        // A pipe would never end.
+        if !std::fs::metadata(&path).map_err(io)?.is_file() {
+            return Err(OutputError::malformed(&path, "it is no file"));
+        }
         let mut file = BufReader::with_capacity(1 << 16, File::open(&path).map_err(io)?);
         let (mut hash, mut bytes, mut buffer) = (Xxh3::new(), 0, vec![0; 1 << 16]);
         loop {

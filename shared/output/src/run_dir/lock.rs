@@ -4,9 +4,13 @@
 use crate::OutputError;
 use std::fs::{File, TryLockError};
 use std::io::{Read, Write};
+use std::os::fd::{AsFd, BorrowedFd};
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+
+/// How long processes of a run whose launcher was killed may take to end.
+const ORPHANS: Duration = Duration::from_secs(2);
 
 /// The file's name.
 const NAME: &str = "run.lock";
@@ -15,7 +19,7 @@ const NAME: &str = "run.lock";
 #[derive(Debug)]
 pub(super) struct Lock {
     path: PathBuf,
-    _file: File,
+    file: File,
 }
 
 impl Lock {
@@ -25,13 +29,24 @@ impl Lock {
     /// Another run has it, or the file cannot be made.
     pub(super) fn take(dir: &Path) -> Result<Self, OutputError> {
         let path = dir.join(NAME);
+        let deadline = Instant::now() + ORPHANS;
         loop {
             let mut options = File::options();
             let file = options.read(true).write(true).create(true).truncate(false).open(&path);
             let mut file = file.map_err(OutputError::io("open", &path))?;
             match file.try_lock() {
                 Ok(()) => {}
-                Err(TryLockError::WouldBlock) => return Err(owner(dir, &mut file)),
+                Err(TryLockError::WouldBlock) => {
+                    let (process, seconds) = owner(&mut file);
+                    // Processes of a killed run end soon after it.
+                    let alone =
+                        process.is_some_and(|process| !Path::new(&format!("/proc/{process}")).exists());
+                    if alone && Instant::now() < deadline {
+                        std::thread::sleep(Duration::from_millis(20));
+                        continue;
+                    }
+                    return Err(OutputError::InUse { dir: dir.into(), process, seconds });
+                }
                 Err(TryLockError::Error(error)) => return Err(OutputError::io("lock", &path)(error)),
             }
             // The owner before may have removed the file after it was opened here.
@@ -42,8 +57,13 @@ impl Lock {
             file.set_len(0)
                 .and_then(|()| writeln!(file, "{} {now}", std::process::id()))
                 .map_err(OutputError::io("write", &path))?;
-            return Ok(Self { path, _file: file });
+            return Ok(Self { path, file });
         }
+    }
+
+    /// The locked file.
+    pub(super) fn file(&self) -> BorrowedFd<'_> {
+        self.file.as_fd()
     }
 }
 
@@ -62,13 +82,12 @@ fn is_at(file: &File, path: &Path) -> bool {
     }
 }
 
-/// Who has the folder, and since when.
-fn owner(dir: &Path, file: &mut File) -> OutputError {
+/// Process that has the folder, and for how long, s.
+fn owner(file: &mut File) -> (Option<u64>, Option<u64>) {
     let mut text = String::new();
     let _ = file.take(64).read_to_string(&mut text);
     let mut words = text.split_whitespace().map(str::parse::<u64>);
     let (process, started) = (words.next().and_then(Result::ok), words.next().and_then(Result::ok));
     let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
-    let seconds = started.map(|started| now.saturating_sub(started));
-    OutputError::InUse { dir: dir.into(), process, seconds }
+    (process, started.map(|started| now.saturating_sub(started)))
 }
