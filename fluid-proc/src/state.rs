@@ -12,6 +12,7 @@ use halfstep_sph::lane::LANES;
 use halfstep_sph::neighbours::PADDING;
 use halfstep_sph::state_equation::StateEquation;
 use halfstep_wire::half_step::Stage;
+use halfstep_wire::order;
 use halfstep_wire::state::{Fields, State, StateError};
 
 impl<const D: usize, X: FluidEffect<D>> State for Fluid<D, X> {
@@ -32,12 +33,9 @@ impl<const D: usize, X: FluidEffect<D>> State for Fluid<D, X> {
 
     fn restored(&mut self) -> Result<(), StateError> {
         self.columns.restore(self.number_of_particles, &self.state)?;
-        let (low, high) = self.domain;
-        let at_sort = &self.columns.reference;
-        self.rows.sort(at_sort, &self.columns.id, 2.0 * self.resolution, low, high);
-        if self.rows.slots() != self.columns.slots() {
-            return Err(StateError::contradiction("the fluid's rows are not where they were"));
-        }
+        let Columns { reference, id, .. } = &self.columns;
+        let (height, domain) = (2.0 * self.resolution, self.domain);
+        order::sort_again(&mut self.rows, reference, id, height, domain, "the fluid's rows")?;
         if let Some(walls) = &mut self.walls {
             walls.restored()?;
         }
@@ -94,21 +92,11 @@ impl<const D: usize> Columns<D> {
     /// What follows from the fields, for a scene that began with so many particles.
     fn restore(&mut self, number_of_particles: usize, state: &StateEquation) -> Result<(), StateError> {
         let slots = self.id.len();
-        let mut seen = vec![false; number_of_particles];
-        for &id in self.id.iter().filter(|&&id| id != PADDING) {
-            match seen.get_mut(id as usize) {
-                Some(seen) if !*seen => *seen = true,
-                _ => {
-                    return Err(StateError::contradiction(
-                        "the fluid's particles are not those of the scene",
-                    ));
-                }
-            }
-        }
+        let wrong = "the fluid's particles are not those of the scene";
+        self.particles = order::count(&self.id, number_of_particles, wrong)?;
         if !slots.is_multiple_of(LANES) {
             return Err(StateError::contradiction("the fluid's slots are not in fours"));
         }
-        self.particles = seen.into_iter().filter(|&seen| seen).count();
         for slot in 0..slots {
             self.now.show(slot, state.pressure(self.now.sources[slot].density));
         }

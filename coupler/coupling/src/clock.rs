@@ -199,11 +199,6 @@ impl Clock {
         !self.clipped
     }
 
-    /// The end of the run, s.
-    pub fn end(&self) -> f64 {
-        self.end
-    }
-
     /// Limits that the scene's own time step exceeds, in the order of the participants.
     pub fn exceeded(&self) -> impl Iterator<Item = Limit> + '_ {
         let above = |l: &Limit| self.fixed.is_some_and(|dt| dt > l.dt * (1.0 + 1e-9));

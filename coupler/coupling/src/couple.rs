@@ -1,14 +1,13 @@
 //! The coupler's half-steps: checks the states, evaluates the cross-phase forces, decides dt and orders.
 
-use crate::checkpoints::Checkpoints;
 use crate::clock::{Clock, Limit, Tick};
+use crate::course::{Course, Progress};
 use crate::energy::Account;
 use crate::error::RunError;
 use crate::foreign::ForeignSolid;
-use crate::recorder::{Measured, Recorder};
-use halfstep_interface::cross_viscosity::CrossViscosity;
-use halfstep_interface::{Interface, Parameters};
-use halfstep_link::{CouplerPort, Expect, FLUID, StateMessage};
+use crate::recorder::Measured;
+use crate::solids::Solids;
+use halfstep_link::{CouplerPort, Expect, StateMessage};
 use halfstep_output::run_json::RoleSeconds;
 use halfstep_scene::Scene;
 use halfstep_sph::Phase;
@@ -16,13 +15,10 @@ use halfstep_sph::lane::Isa;
 use halfstep_wire::Name;
 use halfstep_wire::failure::Diverged;
 use halfstep_wire::half_step::HalfStep;
-use halfstep_wire::protocol::{ForceHeader, ForceRecord, StateHeader, StateRecord, ability, order, status};
+use halfstep_wire::protocol::{ForceHeader, StateHeader, ability, order, status};
 use halfstep_wire::state::{Fields, Group, State, StateError};
-use halfstep_wire::wide;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
-use xxhash_rust::xxh3::Xxh3;
 
 /// Half-steps between two checks that action equals reaction.
 const AUDIT_INTERVAL: u64 = 50;
@@ -44,61 +40,12 @@ pub struct Outcome {
     pub pair_evaluations: u64,
 }
 
-/// The one time line of a run, what is written down of it, and who may end it.
-pub struct Course {
-    /// Steps and times.
-    pub clock: Clock,
-    /// Probe log, statistics, progress.
-    pub recorder: Recorder,
-    /// `None`: nothing is saved.
-    pub checkpoints: Option<Checkpoints>,
-    /// Set, it ends the run at the next state n.
-    pub stop: Arc<AtomicBool>,
-    /// For who watches the run.
-    pub progress: Arc<Progress>,
-}
-
-/// How far a run is, seen from another thread.
-#[derive(Debug, Default)]
-pub struct Progress {
-    messages: AtomicU64,
-    awaited: AtomicUsize,
-}
-
-impl Progress {
-    /// Messages received so far.
-    pub fn messages(&self) -> u64 {
-        self.messages.load(Ordering::Relaxed)
-    }
-
-    /// Place of the participant whose message was awaited last.
-    pub fn awaited(&self) -> usize {
-        self.awaited.load(Ordering::Relaxed)
-    }
-}
-
-/// What the coupler holds of a solid.
-struct SolidSide<const D: usize> {
-    /// `None` where there is no fluid.
-    interface: Option<Interface<D>>,
-    forces: Vec<ForceRecord>,
-    /// Positions at n, m.
-    at_n: Vec<[f64; 3]>,
-    /// Number of its interface particles, once known.
-    count: Option<u64>,
-    /// Hash of the state that a checkpoint was made of, as the solid published it.
-    saved: u64,
-    foreign: Option<ForeignSolid>,
-}
-
 /// The coupler of a run, whatever carries its messages. A step is [`Self::first`], [`Self::note`], [`Self::second`].
 pub struct Coupler<P: CouplerPort, const D: usize> {
     /// The exchange.
     pub port: P,
     phases: Vec<Phase>,
-    solids: Vec<SolidSide<D>>,
-    cross: CrossViscosity<D>,
-    fluid_forces: Vec<ForceRecord>,
+    solids: Solids<D>,
     /// Probe values of each participant at the present row.
     probes: Vec<Vec<f64>>,
     /// What each participant said in its first message that it does; empty before.
@@ -111,7 +58,7 @@ pub struct Coupler<P: CouplerPort, const D: usize> {
     /// Energy from nowhere, and whose: the run ends with this state.
     grown: Option<Diverged>,
     stopped: bool,
-    /// The next states must be those of the checkpoint.
+    /// The run goes on from a checkpoint: the first states must be those that it was made of.
     resumed: bool,
     half_steps: u64,
     action_reaction: f64,
@@ -125,22 +72,12 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
     /// For a scene, on a port whose participants are connected, computing with an instruction set that the processor
     /// has. `foreign` has an entry for each solid: what stands in for what a foreign solid does not do itself.
     pub fn new(port: P, scene: &Scene, foreign: Vec<Option<ForeignSolid>>, isa: Isa) -> Self {
-        let side = |(solid, foreign)| SolidSide {
-            interface: Parameters::new(scene, solid, isa).map(Interface::new),
-            forces: Vec::new(),
-            at_n: Vec::new(),
-            count: None,
-            saved: 0,
-            foreign,
-        };
         let participants = port.participants();
         let phases = scene.participants().into_iter().map(|participant| participant.phase).collect();
         Self {
             port,
             phases,
-            solids: foreign.into_iter().enumerate().map(side).collect(),
-            cross: CrossViscosity::default(),
-            fluid_forces: Vec::new(),
+            solids: Solids::new(scene, foreign, isa),
             probes: vec![Vec::new(); participants],
             abilities: Vec::new(),
             states: Vec::with_capacity(participants),
@@ -194,9 +131,12 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
         self.receive(&course.progress, &Expect::of(&self.half_step))?;
         if self.abilities.is_empty() {
             self.abilities = self.states.iter().map(|state| state.header().abilities).collect();
-            self.begin_foreign();
+            match self.resumed {
+                true => self.check_resumed()?,
+                false => self.solids.begin(&self.states),
+            }
         }
-        self.check_resumed()?;
+        self.complete_checkpoint(course)?;
         self.stopped = course.stop.load(Ordering::Relaxed);
         let limit = |(k, state): (usize, &P::State)| Limit {
             participant: self.port.name(k),
@@ -205,7 +145,7 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
         let limits: Vec<Limit> = self.states.iter().enumerate().map(limit).collect();
         // Before anything of this step is noted: a run that goes on from here notes it.
         let saved = self.save_if_due(course, &limits)?;
-        let work = self.work_on_solids();
+        let work = self.solids.work(&self.states);
         let accounts: Vec<Account<'_>> = self.accounts(&work);
         let HalfStep { step, time, .. } = self.half_step;
         self.grown = course.recorder.judge(step, time, &accounts);
@@ -259,9 +199,7 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
     /// As for [`Self::run`].
     pub fn end(&mut self, course: &mut Course) -> Result<Outcome, RunError> {
         self.receive(&course.progress, &Expect::last(self.half_step.step))?;
-        for side in &mut self.solids {
-            side.foreign.take().map_or(Ok(()), ForeignSolid::finish)?;
-        }
+        self.solids.finish()?;
         self.complete_checkpoint(course)?;
         self.checks += self.states.len() as u64;
         if let Some(diverged) = self.grown.take() {
@@ -282,15 +220,11 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
         let able = self.abilities.iter().all(|abilities| abilities & ability::CHECKPOINTS != 0);
         let Course { clock, recorder, checkpoints, .. } = course;
         let Some(checkpoints) = checkpoints.as_mut().filter(|_| able) else { return Ok(None) };
-        checkpoints.complete(self.states.iter().map(|state| state.header().checkpoint_safe))?;
         if !checkpoints.is_due(clock, limits, self.stopped) {
             return Ok(None);
         }
         recorder.synchronise()?;
-        let first_solid = self.first_solid();
-        for (side, state) in self.solids.iter_mut().zip(&self.states[first_solid..]) {
-            side.saved = positions_hash(state.records());
-        }
+        self.solids.note_saved(&self.states);
         let mut group = Group::default();
         group.groups.insert("clock".into(), clock.save());
         group.groups.insert("recorder".into(), recorder.save());
@@ -299,56 +233,22 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
     }
 
     /// A solid that goes on from a checkpoint must show the state that it showed when the checkpoint was written.
-    fn check_resumed(&mut self) -> Result<(), RunError> {
-        if !std::mem::take(&mut self.resumed) {
-            return Ok(());
-        }
-        let first_solid = self.first_solid();
-        let changed =
-            |(side, state): (&SolidSide<D>, &P::State)| positions_hash(state.records()) != side.saved;
-        match self.solids.iter().zip(&self.states[first_solid..]).position(changed) {
+    fn check_resumed(&self) -> Result<(), RunError> {
+        match self.solids.changed_since_saved(&self.states) {
             None => Ok(()),
-            Some(solid) => {
-                let name = self.port.name(first_solid + solid);
-                let reason = format!("the {name} shows another state than that of the checkpoint");
-                Err(RunError::Resume(reason))
+            Some(place) => {
+                let name = self.port.name(place);
+                Err(RunError::Resume(format!("the {name} shows another state than that of the checkpoint")))
             }
         }
-    }
-
-    fn begin_foreign(&mut self) {
-        let first = self.first_solid();
-        if self.half_step.step > 0 {
-            // Their first records are in the checkpoint.
-            return;
-        }
-        for (side, state) in self.solids.iter_mut().zip(&self.states[first..]) {
-            if let Some(foreign) = &mut side.foreign {
-                foreign.begin(state.records());
-            }
-        }
-    }
-
-    /// Place of the first solid among the participants.
-    fn first_solid(&self) -> usize {
-        self.phases.iter().filter(|phase| **phase == Phase::Fluid).count()
-    }
-
-    fn has_fluid(&self) -> bool {
-        self.phases.first() == Some(&Phase::Fluid)
     }
 
     fn accounts<'a>(&'a self, work: &[f64]) -> Vec<Account<'a>> {
-        let first_solid = self.first_solid();
-        let account = |(place, state): (usize, &'a P::State)| {
-            let side = place.checked_sub(first_solid).map(|solid| &self.solids[solid]);
-            let foreign = side.is_some_and(|side| side.foreign.is_some());
-            Account {
-                name: self.port.name(place),
-                phase: self.phases[place],
-                audit: (!foreign).then_some(&state.header().audit),
-                work: work[place],
-            }
+        let account = |(place, state): (usize, &'a P::State)| Account {
+            name: self.port.name(place),
+            phase: self.phases[place],
+            audit: (!self.solids.is_foreign(place)).then_some(&state.header().audit),
+            work: work[place],
         };
         self.states.iter().enumerate().map(account).collect()
     }
@@ -356,27 +256,25 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
     /// All states of a half-step. The solids' first: where all are there the order does not matter, and the fluid waits
     /// for the solids' first messages before it sends its own.
     fn receive(&mut self, progress: &Progress, expect: &Expect) -> Result<(), RunError> {
-        let (first_solid, participants) = (self.first_solid(), self.phases.len());
+        let (first_solid, participants) = (self.solids.first, self.phases.len());
         self.states.clear();
         for place in (first_solid..participants).chain(0..first_solid) {
-            progress.awaited.store(place, Ordering::Relaxed);
+            progress.await_message(place);
             let state = self.port.receive_state(place, expect)?;
-            progress.messages.fetch_add(1, Ordering::Relaxed);
+            progress.note_message();
             self.reject_failure(place, state.header())?;
             self.states.push(state);
         }
         self.states.rotate_right(first_solid);
-        if !expect.is_last() {
-            for (place, side) in self.solids.iter_mut().enumerate() {
-                let now = self.states[place + first_solid].records().len() as u64;
-                let first = *side.count.get_or_insert(now);
-                if first != now {
-                    let solid = self.port.name(place + first_solid);
-                    return Err(RunError::SolidCount { solid, first, now, step: expect.step });
-                }
+        if expect.is_last() {
+            return Ok(());
+        }
+        match self.solids.recounted(&self.states) {
+            None => Ok(()),
+            Some((place, first, now)) => {
+                Err(RunError::SolidCount { solid: self.port.name(place), first, now, step: expect.step })
             }
         }
-        Ok(())
     }
 
     fn reject_failure(&self, place: usize, header: &StateHeader) -> Result<(), RunError> {
@@ -391,38 +289,17 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
         }
     }
 
-    /// Work of the fluid on each participant from the state at n before to this one, J: the force of n + 1/2 moved a
-    /// solid all the way.
-    fn work_on_solids(&mut self) -> Vec<f64> {
-        let first_solid = self.first_solid();
-        let mut work = vec![0.0; self.states.len()];
-        for (place, side) in self.solids.iter_mut().enumerate() {
-            let records = self.states[place + first_solid].records();
-            let ways = records.iter().zip(&side.at_n).zip(&side.forces);
-            let done = ways.map(|((record, from), force)| {
-                let force = force.force(record.mass);
-                (0..3).map(|d| force[d] * (record.position[d] - from[d])).sum::<f64>()
-            });
-            work[place + first_solid] = done.sum();
-            side.at_n.clear();
-            side.at_n.extend(records.iter().map(|r| r.position));
-        }
-        work
-    }
-
     /// Fetches the probe values of the state at n where a row is due, and writes the frames of foreign solids.
     fn measure(&mut self, tick: &Tick) -> Result<(), RunError> {
-        let first_solid = self.first_solid();
         for (place, state) in self.states.iter().enumerate() {
             let values = &mut self.probes[place];
             values.clear();
-            if let Some(SolidSide { foreign: Some(foreign), forces, .. }) =
-                place.checked_sub(first_solid).map(|solid| &mut self.solids[solid])
-            {
+            let measures = self.abilities[place] & ability::PROBES != 0;
+            if let Some((foreign, forces)) = self.solids.foreign(place) {
                 if tick.frame {
                     foreign.write(self.frame - 1, tick.time, state.records())?;
                 }
-                if self.abilities[place] & ability::PROBES == 0 {
+                if !measures {
                     if tick.row {
                         values.extend_from_slice(foreign.measure(state.records(), forces));
                     }
@@ -449,80 +326,22 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
             header.frame = self.frame;
             self.frame += 1;
         }
-        self.evaluate();
+        self.pair_evaluations += self.solids.evaluate(&self.states);
         self.compute += start.elapsed();
-        let first_solid = self.first_solid();
-        for (place, side) in self.solids.iter().enumerate() {
-            let epoch = self.states[place + first_solid].header().epoch;
-            self.port.send_forces(place + first_solid, &ForceHeader { epoch, ..header }, &side.forces)?;
-        }
-        if self.has_fluid() {
-            let epoch = self.states[FLUID].header().epoch;
-            self.port.send_forces(FLUID, &ForceHeader { epoch, ..header }, &self.fluid_forces)?;
+        for (place, forces) in self.solids.answers() {
+            let epoch = self.states[place].header().epoch;
+            self.port.send_forces(place, &ForceHeader { epoch, ..header }, forces)?;
         }
         let start = Instant::now();
-        if self.half_steps.is_multiple_of(AUDIT_INTERVAL) {
-            self.audit();
+        if self.half_steps.is_multiple_of(AUDIT_INTERVAL)
+            && let Some(mismatch) = self.solids.audit(&self.states)
+        {
+            self.action_reaction = self.action_reaction.max(mismatch);
+            self.checks += 1;
         }
         self.half_steps += 1;
         self.compute += start.elapsed();
         Ok(())
-    }
-
-    fn evaluate(&mut self) {
-        if self.solids.is_empty() || !self.has_fluid() {
-            return;
-        }
-        let blank = |id| ForceRecord { id, ..ForceRecord::default() };
-        let fluid = &self.states[FLUID];
-        self.fluid_forces.clear();
-        self.fluid_forces.extend(fluid.records().iter().map(|r| blank(r.id)));
-        for (place, side) in self.solids.iter_mut().enumerate() {
-            let solid = &self.states[place + 1];
-            side.forces.clear();
-            side.forces.extend(solid.records().iter().map(|r| blank(r.id)));
-            let Some(interface) = &mut side.interface else { continue };
-            interface.update(fluid.records(), solid.records(), fluid.header().epoch);
-            self.pair_evaluations += interface.pairs() as u64;
-            let forces = &mut side.forces;
-            interface.act_on_solid(|record, force| forces[record].stress_force = wide(force));
-            self.cross.on_solid(interface, |record, a| forces[record].cross_viscosity = wide(a));
-            let forces = &mut self.fluid_forces;
-            self.cross.on_fluid(interface, |record, a| {
-                let sum = &mut forces[record].cross_viscosity;
-                // The first solid's share is taken as it is: a sum would lose the sign of a zero.
-                *sum = if place == 0 { wide(a) } else { std::array::from_fn(|d| sum[d] + wide(a)[d]) };
-            });
-        }
-    }
-
-    /// Sum of all interface forces over the sum of their magnitudes.
-    fn audit(&mut self) {
-        let (mut sum, mut scale) = ([0.0; 3], 0.0);
-        let mut add = |force: [f64; 3]| {
-            for d in 0..3 {
-                sum[d] += force[d];
-                scale += force[d].abs();
-            }
-        };
-        let Some(records) = self.states.first().map(StateMessage::records) else { return };
-        for interface in self.solids.iter_mut().filter_map(|side| side.interface.as_mut()) {
-            interface.act_on_fluid(|record, a, _| add(wide(a).map(|a| a * records[record].mass)));
-        }
-        for (force, record) in self.fluid_forces.iter().zip(records) {
-            add(force.cross_viscosity.map(|a| a * record.mass));
-        }
-        for side in &self.solids {
-            let Some(interface) = &side.interface else { continue };
-            for (slot, record) in interface.solid.slots() {
-                add(side.forces[record].force(interface.solid.own_mass[slot]));
-            }
-        }
-        if scale > 0.0 {
-            let mismatch = sum.iter().fold(0.0_f64, |m, s| m.max(s.abs())) / scale;
-            self.action_reaction = self.action_reaction.max(mismatch);
-            self.checks += 1;
-        }
     }
 
     fn outcome(&self, last: Vec<StateHeader>) -> Outcome {
@@ -550,61 +369,13 @@ impl<P: CouplerPort, const D: usize> State for Coupler<P, D> {
         fields.count("checks", &mut self.checks)?;
         fields.count("pair_evaluations", &mut self.pair_evaluations)?;
         fields.real("action_reaction", &mut self.action_reaction)?;
-        for (solid, side) in self.solids.iter_mut().enumerate() {
-            fields.group(&format!("solid_{solid}"), |fields| side.fields(fields))?;
-        }
-        Ok(())
+        // Each solid has a group beside these fields.
+        self.solids.fields(fields)
     }
 
     fn restored(&mut self) -> Result<(), StateError> {
-        self.solids.iter_mut().try_for_each(State::restored)
+        self.solids.restored()
     }
-}
-
-impl<const D: usize> State for SolidSide<D> {
-    fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
-        fields.optional_count("count", &mut self.count)?;
-        fields.count("published", &mut self.saved)?;
-        fields.points("position", &mut self.at_n)?;
-        let mut force: [Vec<[f64; 3]>; 2] = [
-            self.forces.iter().map(|f| f.cross_viscosity).collect(),
-            self.forces.iter().map(|f| f.stress_force).collect(),
-        ];
-        fields.points("cross_viscosity", &mut force[0])?;
-        fields.points("stress_force", &mut force[1])?;
-        if fields.loading() {
-            let [cross_viscosity, stress_force] = force;
-            fields.length("stress_force", cross_viscosity.len(), stress_force.len())?;
-            let of = |(cross_viscosity, stress_force)| ForceRecord {
-                cross_viscosity,
-                stress_force,
-                ..ForceRecord::default()
-            };
-            self.forces = cross_viscosity.into_iter().zip(stress_force).map(of).collect();
-        }
-        if let Some(interface) = &mut self.interface {
-            fields.part("interface", interface)?;
-        }
-        if let Some(foreign) = &mut self.foreign {
-            fields.part("foreign", foreign)?;
-        }
-        Ok(())
-    }
-
-    fn restored(&mut self) -> Result<(), StateError> {
-        self.interface.as_mut().map_or(Ok(()), State::restored)?;
-        self.foreign.as_mut().map_or(Ok(()), State::restored)
-    }
-}
-
-/// Hash of particles and their positions.
-fn positions_hash(records: &[StateRecord]) -> u64 {
-    let mut hash = Xxh3::new();
-    for record in records {
-        hash.update(&record.id.to_le_bytes());
-        record.position.iter().for_each(|x| hash.update(&x.to_le_bytes()));
-    }
-    hash.digest()
 }
 
 /// Hash over all participants, in their order.

@@ -17,6 +17,7 @@
 pub mod checkpoints;
 pub mod clock;
 pub mod couple;
+pub mod course;
 pub mod energy;
 pub mod error;
 pub mod foreign;
@@ -25,4 +26,5 @@ pub mod recorder;
 pub mod reports;
 pub mod roles;
 pub mod say;
+mod solids;
 pub mod supervise;

@@ -1,9 +1,11 @@
 //! All participants in one thread: the same half-step loop and the same coupler, with nothing between them but memory.
 
-use crate::couple::{Coupler, Course, Outcome};
+use crate::couple::{Coupler, Outcome};
+use crate::course::Course;
 use crate::error::RunError;
 use halfstep_link::{CouplerPort, Expect, FLUID, LinkError, Port, StateMessage};
-use halfstep_role::lockstep::{Lockstep, Member, RoleError};
+use halfstep_role::Member;
+use halfstep_role::lockstep::{Lockstep, RoleError};
 use halfstep_role::report::Report;
 use halfstep_scene::Scene;
 use halfstep_sph::Phase;

@@ -72,7 +72,6 @@ pub struct Recorder {
 impl Recorder {
     /// For a scene; `quiet` hides the progress. The rows of probe values go to `log`, where there is one.
     pub fn new(scene: &Scene, log: Option<ProbeLog>, quiet: bool) -> Self {
-        let columns = Self::columns(scene);
         let bar = ProgressBar::new(1000);
         let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}  ETA {eta}");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
@@ -90,7 +89,7 @@ impl Recorder {
                 .zip(&scene.probes)
                 .map(|(place, probe)| (place, probe.kind.components(scene.dimension).0.len()))
                 .collect(),
-            values: vec![0.0; columns.len()],
+            values: Vec::new(),
             bar,
             started: now,
             shown: now,
@@ -121,9 +120,14 @@ impl Recorder {
         scene.probes.iter().flat_map(|p| p.columns(scene.dimension)).collect()
     }
 
-    /// Probe values of the last row, in the order of [`Self::columns`].
-    pub fn values(&self) -> &[f64] {
-        &self.values
+    /// Brings the probe values of each participant into the order of [`Self::columns`]; NaN where one is missing.
+    pub fn arrange(&self, by_participant: &[&[f64]], values: &mut Vec<f64>) {
+        let mut rest: Vec<_> = by_participant.iter().map(|own| own.iter()).collect();
+        values.clear();
+        for &(place, n) in &self.order {
+            let mut next = || rest.get_mut(place).and_then(Iterator::next).copied().unwrap_or(f64::NAN);
+            values.extend((0..n).map(|_| next()));
+        }
     }
 
     /// Goes on from a checkpoint, with the log of the interrupted run where it has one. Returns the recorder of a run
@@ -177,18 +181,10 @@ impl Recorder {
             self.bar.suspend(|| say::warn(format_args!("warning: {warning}")));
         }
         if tick.row {
-            let mut used = vec![0; measured.len()];
-            let mut at = 0;
-            for &(place, n) in &self.order {
-                for value in &mut self.values[at..at + n] {
-                    let probes = measured.get(place).map_or(&[][..], |m| m.probes);
-                    *value = used.get(place).and_then(|k| probes.get(*k).copied()).unwrap_or(f64::NAN);
-                    if let Some(k) = used.get_mut(place) {
-                        *k += 1;
-                    }
-                }
-                at += n;
-            }
+            let own: Vec<&[f64]> = measured.iter().map(|m| m.probes).collect();
+            let mut values = std::mem::take(&mut self.values);
+            self.arrange(&own, &mut values);
+            self.values = values;
             if let Some(log) = &mut self.log {
                 log.row(tick.time, &self.values)?;
             }

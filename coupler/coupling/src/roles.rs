@@ -2,7 +2,8 @@
 
 use halfstep_output::checkpoint::{StateWriter, file, file_name};
 use halfstep_output::{FrameWriter, OutputError};
-use halfstep_role::lockstep::{Member, RoleError};
+use halfstep_role::Member;
+use halfstep_role::lockstep::RoleError;
 use halfstep_role::role::Role;
 use halfstep_scene::{Probe, Scene};
 use halfstep_sph::Phase;

@@ -21,6 +21,7 @@
 mod advice;
 pub mod check;
 mod checkpoint;
+mod course;
 mod effects;
 mod error;
 pub mod explain;

@@ -75,8 +75,13 @@ impl RunOptions {
 
     /// Where a solid comes from; `None`: it is built in.
     pub fn source(&self, name: Name) -> Option<&SolidSource> {
-        self.foreign.iter().find(|(known, _)| *known == name).map(|(_, source)| source)
+        source(&self.foreign, name)
     }
+}
+
+/// Where a solid comes from that may be among those that are not built in.
+pub(crate) fn source(foreign: &[(Name, SolidSource)], name: Name) -> Option<&SolidSource> {
+    foreign.iter().find(|(known, _)| *known == name).map(|(_, source)| source)
 }
 
 /// The name of a solid of the scene.

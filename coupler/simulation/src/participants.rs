@@ -1,7 +1,7 @@
 //! The participants of a run: their messages' sizes before it, what they said at their ends after it.
 
 use crate::effects;
-use crate::options::{RunOptions, SolidSource};
+use crate::options::{SolidSource, source};
 use halfstep_coupling::couple::{Outcome, combined_hash};
 use halfstep_coupling::error::RunError;
 use halfstep_coupling::roles;
@@ -82,7 +82,7 @@ pub(crate) fn report_outcome(scene: &Scene, outcome: &Outcome, report: &mut RunR
 /// Puts what the participants said at their ends into the report: sums by phase, and a row for each of them.
 pub(crate) fn report_participants(
     scene: &Scene,
-    options: &RunOptions,
+    foreign: &[(Name, SolidSource)],
     last: &[StateHeader],
     reports: &[Option<Report>],
     config: Option<&LinkConfig>,
@@ -114,7 +114,7 @@ pub(crate) fn report_participants(
         if let Some(own) = pairs {
             *evaluations.get_or_insert(0) += own;
         }
-        let source = participant.name.parse().ok().and_then(|name| options.source(name));
+        let source = participant.name.parse().ok().and_then(|name| source(foreign, name));
         let model = match participant.phase {
             Phase::Fluid => Some("weakly-compressible".to_owned()),
             _ => scene

@@ -1,25 +1,18 @@
 //! One run from a scene to a folder, or on from where it was interrupted.
 
-use crate::advice::advice;
 use crate::checkpoint::Checkpoint;
-use crate::effects;
 use crate::options::{RunOptions, known_solid};
-use crate::participants::{report_outcome, report_participants};
 use crate::session::Session;
-use halfstep_coupling::checkpoints::Checkpoints;
-use halfstep_coupling::clock::Clock;
-use halfstep_coupling::couple::Course;
+use crate::{course, effects};
+use halfstep_coupling::course::Course;
 use halfstep_coupling::error::RunError;
 use halfstep_coupling::local::LocalRun;
-use halfstep_coupling::recorder::Recorder;
 use halfstep_coupling::roles;
 use halfstep_output::run_json::{Particles, RunStatus};
-use halfstep_output::{self as output, ProbeLog, RunDirectory, RunReport};
-use halfstep_role::report::Report;
+use halfstep_output::{RunDirectory, RunReport};
 use halfstep_role::serve;
 use halfstep_scene::{Scene, dispatch, geometry};
 use halfstep_sph::lane::Isa;
-use halfstep_wire::Name;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -33,7 +26,6 @@ pub type Ended = (RunReport, Option<RunError>);
 pub fn run(scene: &Scene, options: &RunOptions) -> Result<Ended, RunError> {
     check_foreign(scene, options)?;
     let directory = RunDirectory::create(&options.out, options.force)?;
-    write_scene(scene, &directory)?;
     execute(scene, options, &directory, None)
 }
 
@@ -84,11 +76,6 @@ pub fn read_scene(dir: &Path) -> Result<Scene, RunError> {
     Scene::from_json(&text).map_err(|error| wrong(error.to_string()))
 }
 
-pub(crate) fn write_scene(scene: &Scene, directory: &RunDirectory) -> Result<(), RunError> {
-    let text = scene.to_json().map_err(|e| RunError::System(format!("scene.json: {e}")))?;
-    Ok(output::atomic::replace_bytes(&directory.file("scene.json"), text.as_bytes())?)
-}
-
 fn check_foreign(scene: &Scene, options: &RunOptions) -> Result<(), RunError> {
     if !options.foreign.is_empty() && (scene.fluid.is_none() || scene.solids.is_empty()) {
         return Err(RunError::System("--solid needs a scene with [fluid] and [solid]".into()));
@@ -114,12 +101,6 @@ pub(crate) fn begin_report(scene: &Scene, isa: Isa) -> Result<RunReport, RunErro
     Ok(report)
 }
 
-/// Names of a scene's participants.
-pub(crate) fn names(scene: &Scene) -> Result<Vec<Name>, RunError> {
-    let name = |text: String| text.parse::<Name>().map_err(|e| RunError::System(e.to_string()));
-    scene.participants().into_iter().map(|participant| name(participant.name)).collect()
-}
-
 fn execute(
     scene: &Scene,
     options: &RunOptions,
@@ -141,88 +122,28 @@ fn execute_in<const D: usize>(
     resumed: Option<(Checkpoint, RunReport)>,
 ) -> Result<Ended, RunError> {
     let mut report = begin_report(scene, options.isa)?;
-    let probes = directory.file("probes.csv");
-    let recorder = |log| Recorder::new(scene, log, options.quiet);
-    let mut at = (0, 0.0);
-    let (checkpoint, recorder) = match resumed {
-        None => (None, recorder(Some(ProbeLog::create(&probes, &Recorder::columns(scene))?))),
-        Some((checkpoint, earlier)) => {
-            report.resumed = earlier.resumed;
-            report.resumed.push(checkpoint.resumption());
-            at = (checkpoint.manifest.number, checkpoint.manifest.time);
-            // What may be refused comes first: a refused run stays as it was.
-            let frames = checkpoint.frames()?;
-            let recorder = recorder(None).resume(scene, Some(&probes), checkpoint.part("recorder")?)?;
-            directory.forget_frames(frames)?;
-            write_scene(scene, directory)?;
-            (Some(checkpoint), recorder)
-        }
-    };
+    let checkpoint = resumed.map(|(checkpoint, earlier)| {
+        report.resumed = earlier.resumed;
+        report.resumed.push(checkpoint.resumption());
+        checkpoint
+    });
+    let (stop, from) = (Arc::clone(&options.stop.stop), checkpoint.as_ref());
+    let mut course = course::begin(scene, Some(directory), from, stop, options.isa, options.quiet)?;
     if options.log {
         start_log(directory)?;
     }
     report.write(&directory.file("run.json"))?;
-    let checkpoints = Checkpoints::new(scene, directory.path(), names(scene)?, options.isa.bits_name(), at)
-        .map_err(|e| RunError::System(format!("scene.json: {e}")))?;
-    let (clock, stop) = (Clock::new(scene), Arc::clone(&options.stop.stop));
-    let mut course =
-        Course { clock, recorder, checkpoints: Some(checkpoints), stop, progress: Arc::default() };
     let result = if scene.fluid.is_some() && !scene.solids.is_empty() {
         let layout = geometry::layout::<D>(scene);
-        Session::<D>::new(scene, options, directory, checkpoint.as_ref(), &layout)
+        Session::<D>::new(scene, options, directory, from, &layout)
             .and_then(|session| session.run(&mut course, &mut report))
     } else {
-        let local = local::<D>(scene, options, directory, checkpoint.as_ref(), course, &mut report);
+        let local = local::<D>(scene, options, directory, from, course, &mut report);
         let (ended, stopped) = local?;
         course = ended;
         stopped
     };
-    let Course { clock, recorder, .. } = course;
-    recorder.finish(&mut report);
-    let error = conclude(result, scene, &clock, &options.foreign_names(), &mut report);
-    report.write(&directory.file("run.json"))?;
-    draw(scene, directory);
-    Ok((report, error))
-}
-
-/// Draws the pictures of a run.
-pub(crate) fn draw(scene: &Scene, directory: &RunDirectory) {
-    for picture in
-        [output::draw_plot(scene, directory.path()).map(Some), output::draw_contact(scene, directory.path())]
-    {
-        if let Err(e) = picture {
-            tracing::warn!("a picture could not be drawn: {e}");
-        }
-    }
-}
-
-/// Puts the end of a run into its report: whether it was stopped, or why it failed.
-pub(crate) fn conclude(
-    result: Result<bool, RunError>,
-    scene: &Scene,
-    clock: &Clock,
-    foreign: &[Name],
-    report: &mut RunReport,
-) -> Option<RunError> {
-    match result {
-        Ok(stopped) => {
-            report.status = Some(if stopped { RunStatus::Stopped } else { RunStatus::Finished });
-            None
-        }
-        Err(mut error) => {
-            report.status = Some(match error {
-                RunError::StoppedAtOnce { .. } => RunStatus::Stopped,
-                _ => RunStatus::Failed,
-            });
-            if let RunError::Diverged { diverged, hint } = &mut error {
-                *hint = advice(diverged, scene, clock, foreign);
-                report.status = Some(RunStatus::Diverged);
-            }
-            tracing::error!("{error}");
-            report.error = Some(error.to_string());
-            Some(error)
-        }
-    }
+    course::end(course, result, scene, &options.foreign, Some(directory), report)
 }
 
 /// What this process has to say goes to the run's log, beside what its children say.
@@ -267,12 +188,7 @@ fn local<const D: usize>(
         let members = roles::members(scene, &places, options.isa, Some(directory.path()), from)?;
         let coupler = checkpoint.map(|checkpoint| &checkpoint.coupler);
         let mut run = LocalRun::<D>::new(members, scene, course, options.isa, coupler)?;
-        let result = run.run().map(|(outcome, reports)| {
-            report_outcome(scene, &outcome, report);
-            let reports: Vec<Option<Report>> = reports.into_iter().map(Some).collect();
-            report_participants(scene, options, &outcome.last, &reports, None, report);
-            outcome.stopped
-        });
+        let result = run.run().map(|ended| course::report_local(scene, &options.foreign, ended, report));
         Ok((run.into_course(), result))
     })?
 }

@@ -5,7 +5,8 @@ use crate::isa::{self, ISA_VARIABLE};
 use crate::options::{Launcher, RunOptions, SolidSource};
 use crate::participants::{participants, report_outcome, report_participants};
 use crate::silence::{Silence, TICK};
-use halfstep_coupling::couple::{Coupler, Course, Outcome};
+use halfstep_coupling::couple::{Coupler, Outcome};
+use halfstep_coupling::course::Course;
 use halfstep_coupling::error::RunError;
 use halfstep_coupling::foreign::ForeignSolid;
 use halfstep_coupling::say;
@@ -107,7 +108,14 @@ impl<'a, const D: usize> Session<'a, D> {
             let [p50, p99] = fluid.round_trip_us;
             Percentiles { p50, p99 }
         });
-        report_participants(self.scene, self.options, &outcome.last, &own, Some(&self.config), report);
+        report_participants(
+            self.scene,
+            &self.options.foreign,
+            &outcome.last,
+            &own,
+            Some(&self.config),
+            report,
+        );
         Ok(outcome.stopped)
     }
 

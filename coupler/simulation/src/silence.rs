@@ -1,6 +1,6 @@
 //! Watches a coupled run for silence: says who is waited for, and ends the wait where the run was told to stop.
 
-use halfstep_coupling::couple::Progress;
+use halfstep_coupling::course::Progress;
 use halfstep_coupling::say;
 use halfstep_coupling::supervise::StopFlags;
 use halfstep_wire::Name;

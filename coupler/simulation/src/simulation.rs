@@ -3,19 +3,14 @@
 use crate::checkpoint::Checkpoint;
 use crate::error::Error;
 use crate::options::{Launcher, RunOptions, known_solid};
-use crate::participants::{report_outcome, report_participants};
-use crate::run;
-use halfstep_coupling::checkpoints::Checkpoints;
-use halfstep_coupling::clock::Clock;
-use halfstep_coupling::couple::Course;
-use halfstep_coupling::error::RunError;
+use crate::{course, run};
 use halfstep_coupling::local::LocalRun;
 use halfstep_coupling::recorder::Recorder;
 use halfstep_coupling::roles;
 use halfstep_coupling::supervise::StopFlags;
 use halfstep_fluid::Fluid;
 use halfstep_fluid::effects::FluidEffect;
-use halfstep_output::{Frame, ProbeLog, RunDirectory, RunReport};
+use halfstep_output::{Frame, RunDirectory, RunReport};
 use halfstep_role::role::Role;
 use halfstep_scene::{Phase, Scene};
 use halfstep_solid::{Solid, SolidModel};
@@ -158,9 +153,6 @@ impl<X: FluidEffect<D>, const D: usize> Simulation<X, D> {
     /// Something could not be made.
     pub fn begin(self) -> Result<Running<D>, Error> {
         let folder = self.folder.as_deref().map(|dir| RunDirectory::create(dir, self.replace)).transpose()?;
-        if let Some(folder) = &folder {
-            run::write_scene(&self.scene, folder)?;
-        }
         self.begin_from(folder, None)
     }
 
@@ -207,45 +199,13 @@ impl<X: FluidEffect<D>, const D: usize> Simulation<X, D> {
         let own = owners(&scene, effect, solids, isa)?;
         let path = folder.as_ref().map(RunDirectory::path);
         let at = from.as_ref().map(|from| from.folder.as_path());
+        // Before the writers of frames look at what is there.
+        let course = course::begin(&scene, folder.as_ref(), from.as_ref(), Arc::clone(&stop), isa, true)?;
         let members = own.into_iter().map(|role| roles::equip(role, path, at)).collect::<Result<_, _>>()?;
-        let course = course(&scene, folder.as_ref(), from.as_ref(), Arc::clone(&stop), isa)?;
-        if let (Some(folder), Some(from)) = (&folder, &from) {
-            folder.forget_frames(from.frames()?)?;
-        }
         let coupler = from.as_ref().map(|from| &from.coupler);
         let run = pool.install(|| LocalRun::new(members, &scene, course, isa, coupler))?;
         Ok(Running { run, pool, scene, folder, own_solids: names, stop, isa, more: true })
     }
-}
-
-/// Time line and recorder of a run in this process.
-fn course(
-    scene: &Scene,
-    folder: Option<&RunDirectory>,
-    from: Option<&Checkpoint>,
-    stop: Arc<AtomicBool>,
-    isa: Isa,
-) -> Result<Course, Error> {
-    let probes = folder.map(|folder| folder.file("probes.csv"));
-    let recorder = match from {
-        Some(from) => {
-            Recorder::new(scene, None, true).resume(scene, probes.as_deref(), from.part("recorder")?)?
-        }
-        None => {
-            let create = |path: PathBuf| ProbeLog::create(&path, &Recorder::columns(scene));
-            Recorder::new(scene, probes.map(create).transpose()?, true)
-        }
-    };
-    let at = from.map_or((0, 0.0), |from| (from.manifest.number, from.manifest.time));
-    let checkpoints = match folder {
-        None => None,
-        Some(folder) => {
-            let names = run::names(scene)?;
-            let checkpoints = Checkpoints::new(scene, folder.path(), names, isa.bits_name(), at);
-            Some(checkpoints.map_err(|e| Error::Setup(format!("scene.json: {e}")))?)
-        }
-    };
-    Ok(Course { clock: Clock::new(scene), recorder, checkpoints, stop, progress: Arc::default() })
 }
 
 /// Owners of the particles, in the scene's order.
@@ -322,20 +282,16 @@ impl<const D: usize> Running<D> {
 
     /// All probes on the present state: names as in the columns of `probes.csv` (`tip.x [m]`), and values.
     pub fn probes(&self) -> Vec<(String, f64)> {
-        let mut values = Vec::new();
         let of_role = |role: &dyn Role| {
             let mut own = Vec::new();
             role.probes(&mut own);
-            own.into_iter()
+            own
         };
-        let mut by_place: Vec<_> = self.run.participants().roles().map(of_role).collect();
-        for (place, probe) in roles::measured_by(&self.scene).into_iter().zip(&self.scene.probes) {
-            for column in probe.columns(self.scene.dimension) {
-                let value = by_place.get_mut(place).and_then(Iterator::next);
-                values.push((column, value.unwrap_or(f64::NAN)));
-            }
-        }
-        values
+        let own: Vec<Vec<f64>> = self.run.participants().roles().map(of_role).collect();
+        let own: Vec<&[f64]> = own.iter().map(Vec::as_slice).collect();
+        let mut values = Vec::new();
+        self.run.course().recorder.arrange(&own, &mut values);
+        Recorder::columns(&self.scene).into_iter().zip(values).collect()
     }
 
     /// A probe's component on the present state, by its column with or without unit (`tip.x`); `None`: there is none.
@@ -365,24 +321,14 @@ impl<const D: usize> Running<D> {
         }
         let Self { mut run, scene, folder, own_solids, isa, .. } = self;
         let mut report = run::begin_report(&scene, isa)?;
-        let options =
-            RunOptions::new(folder.as_ref().map_or_else(PathBuf::new, |folder| folder.path().into()));
-        let result = run.end().map(|(outcome, reports)| {
-            report_outcome(&scene, &outcome, &mut report);
-            let reports: Vec<_> = reports.into_iter().map(Some).collect();
-            report_participants(&scene, &options, &outcome.last, &reports, None, &mut report);
-            outcome.stopped
-        });
+        let result = run.end().map(|ended| course::report_local(&scene, &[], ended, &mut report));
         for own in report.participants.iter_mut().filter(|own| own_solids.contains(&own.name)) {
             own.model = Some("own".into());
         }
-        let Course { clock, recorder, .. } = run.into_course();
-        recorder.finish(&mut report);
-        let error = run::conclude(result, &scene, &clock, &[], &mut report);
-        if let Some(folder) = &folder {
-            report.write(&folder.file("run.json"))?;
-            run::draw(&scene, folder);
+        let ended = course::end(run.into_course(), result, &scene, &[], folder.as_ref(), report)?;
+        match ended {
+            (report, None) => Ok(report),
+            (_, Some(error)) => Err(error.into()),
         }
-        error.map_or(Ok(report), |error: RunError| Err(error.into()))
     }
 }

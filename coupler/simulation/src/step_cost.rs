@@ -1,7 +1,8 @@
 //! What a step of a participant costs: the half-step loop of a run for a few steps, with a coupler that only counts.
 
 use halfstep_link::{Expect, LinkError, Port};
-use halfstep_role::lockstep::{Member, drive};
+use halfstep_role::Member;
+use halfstep_role::lockstep::drive;
 use halfstep_role::role::Role;
 use halfstep_wire::Name;
 use halfstep_wire::half_step::Stage;

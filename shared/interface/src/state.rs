@@ -5,6 +5,7 @@ use super::screen::Screen;
 use super::{Interface, Side};
 use halfstep_sph::columns::bounds;
 use halfstep_sph::neighbours::PADDING;
+use halfstep_wire::order;
 use halfstep_wire::state::{Fields, State, StateError};
 
 impl<const D: usize> Interface<D> {
@@ -57,24 +58,12 @@ impl<const D: usize> State for Side<D> {
 impl<const D: usize> Side<D> {
     /// The rows as they were when the lists were made, from the order and the positions of that time.
     fn restore(&mut self, height: f64) -> Result<(), StateError> {
-        self.records = self.record.iter().filter(|&&r| r != PADDING).count();
-        let mut seen = vec![false; self.records];
-        for &record in self.record.iter().filter(|&&r| r != PADDING) {
-            match seen.get_mut(record as usize) {
-                Some(seen) if !*seen => *seen = true,
-                _ => {
-                    return Err(StateError::contradiction(
-                        "an interface's records are not numbered one by one",
-                    ));
-                }
-            }
-        }
+        let particles = self.record.iter().filter(|&&r| r != PADDING).count();
+        let wrong = "an interface's records are not numbered one by one";
+        self.records = order::count(&self.record, particles, wrong)?;
         self.position.clone_from(&self.reference);
-        let (low, high) = bounds(&self.position);
-        self.rows.sort(&self.position, &self.record, height, low, high);
-        if self.rows.slots() != self.record.len() {
-            return Err(StateError::contradiction("an interface's rows are not where they were"));
-        }
+        let (x, around) = (&self.position, bounds(&self.position));
+        order::sort_again(&mut self.rows, x, &self.record, height, around, "an interface's rows")?;
         self.fit_columns();
         Ok(())
     }

@@ -26,6 +26,7 @@
 //! ```
 
 pub mod atomic;
+mod background;
 pub mod checkpoint;
 #[cfg(feature = "pictures")]
 pub mod pictures;

@@ -34,8 +34,8 @@ pub struct RunDirectory {
 }
 
 impl RunDirectory {
-    /// Creates the folder, or takes one that exists. Refuses one in which a run goes on, and, unless `force` is set,
-    /// one with files of an earlier run, which removes them. Files that no run leaves are never touched. What an
+    /// Creates the folder, or takes one that exists. Refuses one in which a run goes on, and one with files of an
+    /// earlier run unless `force` is set, which removes them. Files that no run leaves are never touched. What an
     /// interrupted write left under a temporary name is removed.
     pub fn create(dir: &Path, force: bool) -> Result<Self, OutputError> {
         let frames = series::frames_folder(dir);
@@ -53,14 +53,11 @@ impl RunDirectory {
             let found = first.strip_prefix(dir).unwrap_or(first).display().to_string();
             return Err(OutputError::Occupied { dir: dir.into(), found });
         }
-        found.extend(files(dir, |name| is_temporary(name, is_run_file))?);
-        found.extend(files(&frames, |name| is_temporary(name, is_frame))?);
+        found.extend(this.temporaries(&stems)?);
         for folder in checkpoints.iter().filter(|folder| folder.is_dir()) {
             found.extend(files(folder, |name| is_temporary(name, is_checkpoint_file))?);
         }
-        for file in found {
-            std::fs::remove_file(&file).map_err(OutputError::io("remove", &file))?;
-        }
+        remove(found)?;
         for folder in checkpoints {
             // One that holds files of others stays.
             let _ = std::fs::remove_dir(folder);
@@ -81,19 +78,22 @@ impl RunDirectory {
     /// # Errors
     /// The folder cannot be read or changed.
     pub fn forget_frames(&self, from: u64) -> Result<(), OutputError> {
-        let (dir, folder) = (self.path(), self.frames());
+        let folder = self.frames();
         std::fs::create_dir_all(&folder).map_err(OutputError::io("create", &folder))?;
         let stems = stems(&folder)?;
         for stem in &stems {
             let own = |name: &str| is_frame_file(name, std::slice::from_ref(stem));
             series::forget_from(&folder, stem, from as u32, own)?;
         }
-        let mut left = files(dir, |name| is_temporary(name, is_run_file))?;
-        left.extend(files(&folder, |name| is_temporary(name, |name| is_frame_file(name, &stems)))?);
-        for file in left {
-            std::fs::remove_file(&file).map_err(OutputError::io("remove", &file))?;
-        }
-        Ok(())
+        remove(self.temporaries(&stems)?)
+    }
+
+    /// What interrupted writes left of the run's files and of the frames of these participants.
+    fn temporaries(&self, stems: &[String]) -> Result<Vec<PathBuf>, OutputError> {
+        let mut found = files(&self.path, |name| is_temporary(name, is_run_file))?;
+        let is_frame = |name: &str| is_frame_file(name, stems);
+        found.extend(files(&self.frames(), |name| is_temporary(name, is_frame))?);
+        Ok(found)
     }
 
     /// The locked file, for processes of the run that outlive this one: while one of them has it open, the folder is in
@@ -116,6 +116,11 @@ impl RunDirectory {
     pub fn file(&self, name: &str) -> PathBuf {
         self.path.join(name)
     }
+}
+
+fn remove(files: Vec<PathBuf>) -> Result<(), OutputError> {
+    let mut files = files.into_iter();
+    files.try_for_each(|file| std::fs::remove_file(&file).map_err(OutputError::io("remove", &file)))
 }
 
 /// The regular files in a folder whose name `wanted` accepts, sorted.

@@ -3,28 +3,26 @@
 //! A thread of its own takes filled frames, writes them and hands the memory back. Two frames circulate: while one
 //! is on its way to the disk the next can be filled, and [`FrameWriter::submit`] waits when both are under way.
 
+use super::background::Background;
 use super::{Frame, OutputError, series, vtkhdf};
 use halfstep_wire::frame::{FrameSink, SinkError};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
-use std::thread::JoinHandle;
 
 /// Frames that circulate between the computation and the disk.
 const IN_FLIGHT: usize = 2;
 
-/// Writes the frames of one process.
+/// Writes the frames of one process. Dropping it writes what was submitted; an error is only logged then, use
+/// [`FrameWriter::finish`] to see it.
 #[derive(Debug)]
 pub struct FrameWriter {
-    folder: PathBuf,
-    stem: String,
-    /// Frames on their way to the disk. `None` once finished.
-    filled: Option<SyncSender<(u32, Frame)>>,
+    /// Frames on their way to the disk.
+    filled: Background<(u32, Frame)>,
     /// Frames that may be filled.
     free: Receiver<Frame>,
     safe: Arc<AtomicU32>,
-    thread: Option<JoinHandle<Result<(), OutputError>>>,
 }
 
 impl FrameWriter {
@@ -38,7 +36,6 @@ impl FrameWriter {
             true => series::Series::read(&index)?,
             false => series::Series::default(),
         };
-        let (filled, to_write) = sync_channel(IN_FLIGHT);
         let (written, free) = sync_channel(IN_FLIGHT);
         for _ in 0..IN_FLIGHT {
             // The receiver is right here and there is room for all of them.
@@ -46,11 +43,9 @@ impl FrameWriter {
         }
         let safe = Arc::new(AtomicU32::new(0));
         let job = Job { folder: folder.clone(), stem: stem.into(), index, listed, safe: safe.clone() };
-        let thread = std::thread::Builder::new()
-            .name(format!("{stem} frames"))
-            .spawn(move || job.run(&to_write, &written))
-            .map_err(OutputError::io("start a thread for", &folder))?;
-        Ok(Self { folder, stem: stem.into(), filled: Some(filled), free, safe, thread: Some(thread) })
+        let work = move |frames: Receiver<_>| job.run(&frames, &written);
+        let filled = Background::start(&folder, stem, "frames", IN_FLIGHT, work)?;
+        Ok(Self { filled, free, safe })
     }
 
     /// Hands frame `number` over to be written. `fill` gets an empty frame, with the memory of an earlier one. Waits
@@ -58,14 +53,10 @@ impl FrameWriter {
     ///
     /// Numbers ascend. The first one may lie below what an index on disk lists: from there on the list is replaced.
     pub fn submit(&mut self, number: u32, fill: impl FnOnce(&mut Frame)) -> Result<(), OutputError> {
-        let Ok(mut frame) = self.free.recv() else { return Err(self.failure()) };
+        let Ok(mut frame) = self.free.recv() else { return Err(self.filled.failure()) };
         frame.clear();
         fill(&mut frame);
-        let Some(filled) = &self.filled else { return Err(self.failure()) };
-        match filled.send((number, frame)) {
-            Ok(()) => Ok(()),
-            Err(_) => Err(self.failure()),
-        }
+        self.filled.send((number, frame))
     }
 
     /// The number up to which, not including it, all submitted frames are on disk and announced: with frames
@@ -76,27 +67,8 @@ impl FrameWriter {
 
     /// Waits until everything submitted is on disk; returns what [`Self::safe`] then is.
     pub fn finish(mut self) -> Result<u32, OutputError> {
-        match self.join() {
-            Some(Ok(())) => Ok(self.safe()),
-            Some(Err(error)) => Err(error),
-            None => Err(self.stopped()),
-        }
-    }
-
-    fn join(&mut self) -> Option<Result<(), OutputError>> {
-        self.filled = None;
-        self.thread.take()?.join().ok()
-    }
-
-    fn failure(&mut self) -> OutputError {
-        match self.join() {
-            Some(Err(error)) => error,
-            _ => self.stopped(),
-        }
-    }
-
-    fn stopped(&self) -> OutputError {
-        OutputError::WriterStopped { dir: self.folder.clone(), stem: self.stem.clone() }
+        self.filled.finish()?;
+        Ok(self.safe())
     }
 }
 
@@ -111,15 +83,6 @@ impl FrameSink for FrameWriter {
 
     fn finish(self: Box<Self>) -> Result<u32, SinkError> {
         Ok(Self::finish(*self)?)
-    }
-}
-
-impl Drop for FrameWriter {
-    /// Writes what was submitted; an error is only logged, use [`FrameWriter::finish`] to see it.
-    fn drop(&mut self) {
-        if let Some(Err(error)) = self.join() {
-            tracing::error!("{error}");
-        }
     }
 }
 

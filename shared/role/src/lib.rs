@@ -10,11 +10,15 @@
 //! assert_eq!(on_threads(2, || 6 * 7).expect("two threads"), 42);
 //! ```
 
+mod error;
 mod latency;
 pub mod lockstep;
+mod member;
 mod published;
 pub mod report;
 pub mod role;
 pub mod serve;
+mod track;
 
+pub use member::Member;
 pub use published::Published;

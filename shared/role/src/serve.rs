@@ -1,6 +1,7 @@
 //! Serving the participants of a process, as its environment says.
 
-use crate::lockstep::{Deliver, Member, RoleError, drive};
+use crate::lockstep::{Deliver, RoleError, drive};
+use crate::member::Member;
 use crate::report::Report;
 use halfstep_link::{LinkConfig, ProcessLink, Processes, Transport};
 use halfstep_scene::Scene;

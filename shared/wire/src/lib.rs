@@ -13,6 +13,7 @@ pub mod failure;
 pub mod frame;
 pub mod half_step;
 mod name;
+pub mod order;
 pub mod protocol;
 pub mod state;
 

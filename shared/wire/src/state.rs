@@ -216,17 +216,13 @@ impl Fields<'_> {
 
     /// A floating-point number.
     pub fn real(&mut self, field: &str, value: &mut f64) -> Result<(), StateError> {
-        let load = |column: &Column| reals(column).and_then(|v| <[f64; 1]>::try_from(v).ok()).map(|[v]| v);
+        let load = |column: &Column| at_most_one(&reals(column)?)?;
         self.visit(field, value, |&v| Column::Reals(vec![v]), load, "one floating-point number")
     }
 
     /// A floating-point number or none.
     pub fn optional_real(&mut self, field: &str, value: &mut Option<f64>) -> Result<(), StateError> {
-        let load = |column: &Column| match reals(column)?.as_slice() {
-            [] => Some(None),
-            [value] => Some(Some(*value)),
-            _ => None,
-        };
+        let load = |column: &Column| at_most_one(&reals(column)?);
         self.visit(field, value, |v| Column::Reals(v.iter().copied().collect()), load, "at most one number")
     }
 
@@ -238,23 +234,13 @@ impl Fields<'_> {
 
     /// A count.
     pub fn count(&mut self, field: &str, value: &mut u64) -> Result<(), StateError> {
-        let load = |column: &Column| match column {
-            Column::Counts(counts) => <[u64; 1]>::try_from(counts.as_slice()).ok().map(|[v]| v),
-            _ => None,
-        };
+        let load = |column: &Column| at_most_one(counts(column)?)?;
         self.visit(field, value, |&v| Column::Counts(vec![v]), load, "one count")
     }
 
     /// A count or none.
     pub fn optional_count(&mut self, field: &str, value: &mut Option<u64>) -> Result<(), StateError> {
-        let load = |column: &Column| match column {
-            Column::Counts(counts) => match counts.as_slice() {
-                [] => Some(None),
-                [count] => Some(Some(*count)),
-                _ => None,
-            },
-            _ => None,
-        };
+        let load = |column: &Column| at_most_one(counts(column)?);
         self.visit(field, value, |v| Column::Counts(v.iter().copied().collect()), load, "at most one count")
     }
 
@@ -301,14 +287,6 @@ impl Fields<'_> {
         }
     }
 
-    /// Names of the groups of the state that is loaded; none while saving.
-    pub fn group_names(&self) -> Vec<String> {
-        match &self.way {
-            Way::Save(_) => Vec::new(),
-            Way::Load(group) => group.groups.keys().cloned().collect(),
-        }
-    }
-
     /// Checks the length of a loaded field.
     ///
     /// # Errors
@@ -328,6 +306,22 @@ fn component(field: &str, d: usize) -> String {
 fn reals(column: &Column) -> Option<Vec<f64>> {
     match column {
         Column::Reals(values) => Some(values.clone()),
+        _ => None,
+    }
+}
+
+fn counts(column: &Column) -> Option<&[u64]> {
+    match column {
+        Column::Counts(values) => Some(values),
+        _ => None,
+    }
+}
+
+/// The value or none; `None` where there are several.
+fn at_most_one<T: Copy>(values: &[T]) -> Option<Option<T>> {
+    match values {
+        [] => Some(None),
+        [value] => Some(Some(*value)),
         _ => None,
     }
 }

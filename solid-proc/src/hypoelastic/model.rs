@@ -17,6 +17,7 @@ use halfstep_sph::columns::{copy, fit, moved_farther};
 use halfstep_sph::lane::Isa;
 use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_wire::half_step::{HalfStep, Stage};
+use halfstep_wire::order;
 use halfstep_wire::protocol::StateRecord;
 use halfstep_wire::state::StateError;
 use halfstep_wire::wire_component;
@@ -130,11 +131,14 @@ impl<const D: usize> Hypoelastic<D> {
 
     /// The rows as they were at the last sort.
     pub(super) fn sort_rows_at_reference(&mut self) -> Result<(), StateError> {
-        let (low, high) = self.domain;
-        self.rows.sort(&self.reference, &self.id, 2.0 * self.resolution, low, high);
-        match self.rows.slots() == self.id.len() {
-            true => Ok(()),
-            false => Err(StateError::contradiction("the solid's rows are not where they were")),
+        let (height, domain) = (2.0 * self.resolution, self.domain);
+        order::sort_again(&mut self.rows, &self.reference, &self.id, height, domain, "the solid's rows")
+    }
+
+    /// Notes the slot of each particle.
+    pub(super) fn slot_particles(&mut self) {
+        for (slot, &id) in self.id.iter().enumerate().filter(|&(_, &id)| id != PADDING) {
+            self.slot_of[id as usize] = slot as u32;
         }
     }
 
@@ -155,11 +159,7 @@ impl<const D: usize> Hypoelastic<D> {
         self.at_n.permute(&mut self.rows);
         self.step_start.permute(&mut self.rows);
         self.rows.permute_ids(&mut self.id);
-        for (slot, &id) in self.id.iter().enumerate() {
-            if id != PADDING {
-                self.slot_of[id as usize] = slot as u32;
-            }
-        }
+        self.slot_particles();
         let slots = self.id.len();
         for d in 0..D {
             copy(&mut self.reference[d], &self.now.position[d]);

@@ -5,7 +5,7 @@ use super::columns::{Source, State as Columns};
 use super::model::Hypoelastic;
 use halfstep_sph::columns::fit;
 use halfstep_sph::lane::LANES;
-use halfstep_sph::neighbours::PADDING;
+use halfstep_wire::order;
 use halfstep_wire::state::{Fields, State, StateError};
 
 impl<const D: usize> State for Hypoelastic<D> {
@@ -53,22 +53,12 @@ impl<const D: usize> State for Hypoelastic<D> {
 impl<const D: usize> Hypoelastic<D> {
     /// The slot of each particle, from the numbers of the slots.
     fn number_slots(&mut self) -> Result<(), StateError> {
-        let mut seen = vec![false; self.slot_of.len()];
-        for (slot, &id) in self.id.iter().enumerate().filter(|&(_, &id)| id != PADDING) {
-            match seen.get_mut(id as usize) {
-                Some(seen) if !*seen => *seen = true,
-                _ => {
-                    return Err(StateError::contradiction(
-                        "the solid's particles are not those of the scene",
-                    ));
-                }
-            }
-            self.slot_of[id as usize] = slot as u32;
+        let all = self.slot_of.len();
+        if order::count(&self.id, all, "the solid's particles are not those of the scene")? != all {
+            return Err(StateError::contradiction("a particle of the solid is missing"));
         }
-        match seen.into_iter().all(|seen| seen) {
-            true => Ok(()),
-            false => Err(StateError::contradiction("a particle of the solid is missing")),
-        }
+        self.slot_particles();
+        Ok(())
     }
 }
 

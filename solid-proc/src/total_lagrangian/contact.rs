@@ -17,6 +17,7 @@ use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::{Arch, Isa, LANES, Lane};
 use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_sph::pair::{self, PairLaw, distance};
+use halfstep_wire::order;
 use halfstep_wire::state::StateError;
 
 /// Distance, in smoothing lengths of the interface, that lists hold beyond reach.
@@ -118,10 +119,8 @@ impl<const D: usize> Contact<D> {
         2.0 * self.smoothing_length + self.skin()
     }
 
-    /// Sorts the rows by the present positions.
-    fn sort_rows(&mut self) {
-        let height = if self.walls.is_some() { self.wall_reach() } else { self.spacing + self.skin() };
-        self.rows.sort(&self.position, &self.id, height, self.domain.0, self.domain.1);
+    fn row_height(&self) -> f64 {
+        if self.walls.is_some() { self.wall_reach() } else { self.spacing + self.skin() }
     }
 
     /// Lists who is near whom, from the positions at the sort.
@@ -137,7 +136,8 @@ impl<const D: usize> Contact<D> {
     }
 
     fn sort(&mut self) {
-        self.sort_rows();
+        let height = self.row_height();
+        self.rows.sort(&self.position, &self.id, height, self.domain.0, self.domain.1);
         for d in 0..D {
             self.rows.permute(&mut self.position[d]);
             self.rows.permute(&mut self.velocity[d]);
@@ -164,19 +164,16 @@ impl<const D: usize> Contact<D> {
     pub(super) fn reorder(&mut self, bodies: &[(u32, f64)]) -> Result<(), StateError> {
         let n = self.id.len();
         self.body = vec![0.0; n];
-        let mut found = 0;
         for (slot, id) in self.id.iter().enumerate().filter(|&(_, &id)| id != PADDING) {
             let place = bodies.binary_search_by_key(id, |&(id, _)| id);
             let place =
                 place.map_err(|_| StateError::contradiction("a contact of a particle that has none"))?;
             self.body[slot] = bodies[place].1;
-            found += 1;
         }
-        let mut ids: Vec<u32> = self.id.iter().copied().filter(|&id| id != PADDING).collect();
-        ids.sort_unstable();
-        ids.dedup();
-        if found != bodies.len() || ids.len() != found || !n.is_multiple_of(LANES) {
-            return Err(StateError::contradiction("contacts of other particles than the scene's"));
+        let wrong = "contacts of other particles than the scene's";
+        let among = bodies.last().map_or(0, |&(id, _)| id as usize + 1);
+        if order::count(&self.id, among, wrong)? != bodies.len() || !n.is_multiple_of(LANES) {
+            return Err(StateError::contradiction(wrong));
         }
         self.position = self.listed.clone();
         self.velocity = vectors(n);
@@ -187,10 +184,8 @@ impl<const D: usize> Contact<D> {
 
     /// Rows and lists as they were at the last sort.
     pub(super) fn list_at_sort(&mut self) -> Result<(), StateError> {
-        self.sort_rows();
-        if self.rows.slots() != self.id.len() {
-            return Err(StateError::contradiction("the rows of contacts are not where they were"));
-        }
+        let (height, domain) = (self.row_height(), self.domain);
+        order::sort_again(&mut self.rows, &self.listed, &self.id, height, domain, "the rows of contacts")?;
         self.list();
         Ok(())
     }

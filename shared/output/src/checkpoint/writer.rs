@@ -2,23 +2,20 @@
 
 use super::{file, file_name, folder};
 use crate::OutputError;
+use crate::background::Background;
 use halfstep_wire::frame::SinkError;
 use halfstep_wire::state::{Group, StateSink};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
-use std::thread::JoinHandle;
+use std::sync::mpsc::Receiver;
 
-/// Writes the checkpoints of one participant, one after the other, on a thread of its own.
+/// Writes the checkpoints of one participant, one after the other, on a thread of its own. Dropping it writes what was
+/// submitted; an error is only logged then.
 #[derive(Debug)]
 pub struct StateWriter {
-    run: PathBuf,
-    participant: String,
-    /// `None` once finished.
-    states: Option<SyncSender<(u64, Group)>>,
+    states: Background<(u64, Group)>,
     safe: Arc<AtomicU64>,
-    thread: Option<JoinHandle<Result<(), OutputError>>>,
 }
 
 impl StateWriter {
@@ -27,28 +24,11 @@ impl StateWriter {
     /// # Errors
     /// The thread cannot be started.
     pub fn start(run: &Path, participant: &str) -> Result<Self, OutputError> {
-        // One state may wait while another is written.
-        let (states, to_write) = sync_channel::<(u64, Group)>(1);
         let safe = Arc::new(AtomicU64::new(0));
         let (written, own_run, name) = (Arc::clone(&safe), run.to_owned(), file_name(participant));
-        let thread = std::thread::Builder::new()
-            .name(format!("{participant} checkpoints"))
-            .spawn(move || write_all(&own_run, &name, &to_write, &written))
-            .map_err(OutputError::io("start a thread for", run))?;
-        let participant = participant.to_owned();
-        Ok(Self { run: run.to_owned(), participant, states: Some(states), safe, thread: Some(thread) })
-    }
-
-    fn join(&mut self) -> Option<Result<(), OutputError>> {
-        self.states = None;
-        self.thread.take()?.join().ok()
-    }
-
-    fn failure(&mut self) -> OutputError {
-        match self.join() {
-            Some(Err(error)) => error,
-            _ => OutputError::WriterStopped { dir: self.run.clone(), stem: self.participant.clone() },
-        }
+        let work = move |states: Receiver<_>| write_all(&own_run, &name, &states, &written);
+        // One state may wait while another is written.
+        Ok(Self { states: Background::start(run, participant, "checkpoints", 1, work)?, safe })
     }
 }
 
@@ -69,11 +49,7 @@ fn write_all(
 
 impl StateSink for StateWriter {
     fn submit(&mut self, number: u64, state: Group) -> Result<(), SinkError> {
-        let Some(states) = &self.states else { return Err(self.failure().into()) };
-        match states.send((number, state)) {
-            Ok(()) => Ok(()),
-            Err(_) => Err(self.failure().into()),
-        }
+        Ok(self.states.send((number, state))?)
     }
 
     fn safe(&self) -> u64 {
@@ -81,20 +57,8 @@ impl StateSink for StateWriter {
     }
 
     fn finish(mut self: Box<Self>) -> Result<u64, SinkError> {
-        match self.join() {
-            Some(Ok(())) => Ok(StateSink::safe(&*self)),
-            Some(Err(error)) => Err(error.into()),
-            None => Err(self.failure().into()),
-        }
-    }
-}
-
-impl Drop for StateWriter {
-    /// Writes what was submitted; an error is only logged.
-    fn drop(&mut self) {
-        if let Some(Err(error)) = self.join() {
-            tracing::error!("{error}");
-        }
+        self.states.finish()?;
+        Ok(StateSink::safe(&*self))
     }
 }
 

@@ -1,0 +1,50 @@
+//! The course of a run: its time line, what is written down of it, and how it is watched and ended.
+
+use crate::checkpoints::Checkpoints;
+use crate::clock::Clock;
+use crate::recorder::Recorder;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
+
+/// The one time line of a run, what is written down of it, and who may end it.
+pub struct Course {
+    /// Steps and times.
+    pub clock: Clock,
+    /// Probe log, statistics, progress.
+    pub recorder: Recorder,
+    /// `None`: nothing is saved.
+    pub checkpoints: Option<Checkpoints>,
+    /// Set, it ends the run at the next state n.
+    pub stop: Arc<AtomicBool>,
+    /// For who watches the run.
+    pub progress: Arc<Progress>,
+}
+
+/// How far a run is, seen from another thread.
+#[derive(Debug, Default)]
+pub struct Progress {
+    messages: AtomicU64,
+    awaited: AtomicUsize,
+}
+
+impl Progress {
+    /// Messages received so far.
+    pub fn messages(&self) -> u64 {
+        self.messages.load(Ordering::Relaxed)
+    }
+
+    /// Place of the participant whose message was awaited last.
+    pub fn awaited(&self) -> usize {
+        self.awaited.load(Ordering::Relaxed)
+    }
+
+    /// A participant's message is awaited.
+    pub(crate) fn await_message(&self, place: usize) {
+        self.awaited.store(place, Ordering::Relaxed);
+    }
+
+    /// It has come.
+    pub(crate) fn note_message(&self) {
+        self.messages.fetch_add(1, Ordering::Relaxed);
+    }
+}

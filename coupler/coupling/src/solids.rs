@@ -1,0 +1,240 @@
+//! What the coupler holds of the solids: their interfaces with the fluid, the forces on both sides, and the work that
+//! these do.
+
+use crate::error::RunError;
+use crate::foreign::ForeignSolid;
+use halfstep_interface::cross_viscosity::CrossViscosity;
+use halfstep_interface::{Interface, Parameters};
+use halfstep_link::{FLUID, StateMessage};
+use halfstep_scene::Scene;
+use halfstep_sph::lane::Isa;
+use halfstep_wire::protocol::{ForceRecord, StateRecord};
+use halfstep_wire::state::{Fields, State, StateError};
+use halfstep_wire::wide;
+use xxhash_rust::xxh3::Xxh3;
+
+/// All solids of a run. Participants are named by their place in the run, and `states` are those of all of them.
+pub(crate) struct Solids<const D: usize> {
+    /// Place of the first solid: 1 after a fluid, else 0.
+    pub(crate) first: usize,
+    solids: Vec<SolidSide<D>>,
+    cross: CrossViscosity<D>,
+    fluid_forces: Vec<ForceRecord>,
+}
+
+struct SolidSide<const D: usize> {
+    /// `None` where there is no fluid.
+    interface: Option<Interface<D>>,
+    forces: Vec<ForceRecord>,
+    /// Positions at n, m.
+    at_n: Vec<[f64; 3]>,
+    /// Number of its interface particles, once known.
+    count: Option<u64>,
+    /// Hash of the state that a checkpoint was made of, as the solid published it.
+    saved: u64,
+    foreign: Option<ForeignSolid>,
+}
+
+impl<const D: usize> Solids<D> {
+    /// Of a scene; `foreign` has an entry for each.
+    pub(crate) fn new(scene: &Scene, foreign: Vec<Option<ForeignSolid>>, isa: Isa) -> Self {
+        let side = |(solid, foreign)| SolidSide {
+            interface: Parameters::new(scene, solid, isa).map(Interface::new),
+            forces: Vec::new(),
+            at_n: Vec::new(),
+            count: None,
+            saved: 0,
+            foreign,
+        };
+        Self {
+            first: usize::from(scene.fluid.is_some()),
+            solids: foreign.into_iter().enumerate().map(side).collect(),
+            cross: CrossViscosity::default(),
+            fluid_forces: Vec::new(),
+        }
+    }
+
+    /// Takes the first states of a run that begins.
+    pub(crate) fn begin(&mut self, states: &[impl StateMessage]) {
+        for (side, state) in self.solids.iter_mut().zip(&states[self.first..]) {
+            if let Some(foreign) = &mut side.foreign {
+                foreign.begin(state.records());
+            }
+        }
+    }
+
+    /// Notes the states that a checkpoint is made of.
+    pub(crate) fn note_saved(&mut self, states: &[impl StateMessage]) {
+        for (side, state) in self.solids.iter_mut().zip(&states[self.first..]) {
+            side.saved = positions_hash(state.records());
+        }
+    }
+
+    /// Place of a solid whose state is not the one that the checkpoint was made of.
+    pub(crate) fn changed_since_saved<S: StateMessage>(&self, states: &[S]) -> Option<usize> {
+        let changed = |(side, state): (&SolidSide<D>, &S)| positions_hash(state.records()) != side.saved;
+        let solid = self.solids.iter().zip(&states[self.first..]).position(changed)?;
+        Some(self.first + solid)
+    }
+
+    /// Place of a solid whose number of interface particles is not what it was, with that number at first and now.
+    pub(crate) fn recounted(&mut self, states: &[impl StateMessage]) -> Option<(usize, u64, u64)> {
+        let all = self.solids.iter_mut().zip(&states[self.first..]).enumerate();
+        let mut counts = all.map(|(solid, (side, state))| {
+            let now = state.records().len() as u64;
+            (self.first + solid, *side.count.get_or_insert(now), now)
+        });
+        counts.find(|(_, first, now)| first != now)
+    }
+
+    /// Another program computes this participant.
+    pub(crate) fn is_foreign(&self, place: usize) -> bool {
+        place.checked_sub(self.first).is_some_and(|solid| self.solids[solid].foreign.is_some())
+    }
+
+    /// What stands in for a participant that another program computes, and the forces on it.
+    pub(crate) fn foreign(&mut self, place: usize) -> Option<(&mut ForeignSolid, &[ForceRecord])> {
+        let side = &mut self.solids[place.checked_sub(self.first)?];
+        Some((side.foreign.as_mut()?, &side.forces))
+    }
+
+    /// Waits until the frames of foreign solids are on disk.
+    pub(crate) fn finish(&mut self) -> Result<(), RunError> {
+        let mut foreign = self.solids.iter_mut().filter_map(|side| side.foreign.take());
+        Ok(foreign.try_for_each(ForeignSolid::finish)?)
+    }
+
+    /// Work of the fluid on each participant from the state at n before to this one, J: the force of n + 1/2 moved a
+    /// solid all the way.
+    pub(crate) fn work(&mut self, states: &[impl StateMessage]) -> Vec<f64> {
+        let mut work = vec![0.0; states.len()];
+        for (place, side) in self.solids.iter_mut().enumerate() {
+            let records = states[place + self.first].records();
+            let ways = records.iter().zip(&side.at_n).zip(&side.forces);
+            let done = ways.map(|((record, from), force)| {
+                let force = force.force(record.mass);
+                (0..3).map(|d| force[d] * (record.position[d] - from[d])).sum::<f64>()
+            });
+            work[place + self.first] = done.sum();
+            side.at_n.clear();
+            side.at_n.extend(records.iter().map(|r| r.position));
+        }
+        work
+    }
+
+    /// Evaluates the forces on both sides; returns the pairs listed for it.
+    pub(crate) fn evaluate(&mut self, states: &[impl StateMessage]) -> u64 {
+        if self.solids.is_empty() || self.first == 0 {
+            return 0;
+        }
+        let blank = |id| ForceRecord { id, ..ForceRecord::default() };
+        let fluid = &states[FLUID];
+        let mut pairs = 0;
+        self.fluid_forces.clear();
+        self.fluid_forces.extend(fluid.records().iter().map(|r| blank(r.id)));
+        for (place, side) in self.solids.iter_mut().enumerate() {
+            let solid = &states[place + self.first];
+            side.forces.clear();
+            side.forces.extend(solid.records().iter().map(|r| blank(r.id)));
+            let Some(interface) = &mut side.interface else { continue };
+            interface.update(fluid.records(), solid.records(), fluid.header().epoch);
+            pairs += interface.pairs() as u64;
+            let forces = &mut side.forces;
+            interface.act_on_solid(|record, force| forces[record].stress_force = wide(force));
+            self.cross.on_solid(interface, |record, a| forces[record].cross_viscosity = wide(a));
+            let forces = &mut self.fluid_forces;
+            self.cross.on_fluid(interface, |record, a| {
+                let sum = &mut forces[record].cross_viscosity;
+                // The first solid's share is taken as it is: a sum would lose the sign of a zero.
+                *sum = if place == 0 { wide(a) } else { std::array::from_fn(|d| sum[d] + wide(a)[d]) };
+            });
+        }
+        pairs
+    }
+
+    /// The forces on each participant, in the order in which they are answered: the solids before the fluid.
+    pub(crate) fn answers(&self) -> impl Iterator<Item = (usize, &[ForceRecord])> {
+        let solids = self.solids.iter().enumerate();
+        let solids = solids.map(|(solid, side)| (self.first + solid, side.forces.as_slice()));
+        solids.chain((self.first > 0).then_some((FLUID, self.fluid_forces.as_slice())))
+    }
+
+    /// Sum of all interface forces over the sum of their magnitudes; `None` where there are none.
+    pub(crate) fn audit(&mut self, states: &[impl StateMessage]) -> Option<f64> {
+        let (mut sum, mut scale) = ([0.0; 3], 0.0);
+        let mut add = |force: [f64; 3]| {
+            for d in 0..3 {
+                sum[d] += force[d];
+                scale += force[d].abs();
+            }
+        };
+        let records = states.first()?.records();
+        for interface in self.solids.iter_mut().filter_map(|side| side.interface.as_mut()) {
+            interface.act_on_fluid(|record, a, _| add(wide(a).map(|a| a * records[record].mass)));
+        }
+        for (force, record) in self.fluid_forces.iter().zip(records) {
+            add(force.cross_viscosity.map(|a| a * record.mass));
+        }
+        for side in &self.solids {
+            let Some(interface) = &side.interface else { continue };
+            for (slot, record) in interface.solid.slots() {
+                add(side.forces[record].force(interface.solid.own_mass[slot]));
+            }
+        }
+        (scale > 0.0).then(|| sum.iter().fold(0.0_f64, |m, s| m.max(s.abs())) / scale)
+    }
+}
+
+impl<const D: usize> State for Solids<D> {
+    fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
+        let mut solids = self.solids.iter_mut().enumerate();
+        solids.try_for_each(|(solid, side)| fields.part(&format!("solid_{solid}"), side))
+    }
+
+    fn restored(&mut self) -> Result<(), StateError> {
+        self.solids.iter_mut().try_for_each(State::restored)
+    }
+}
+
+impl<const D: usize> State for SolidSide<D> {
+    fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
+        fields.optional_count("count", &mut self.count)?;
+        fields.count("published", &mut self.saved)?;
+        fields.points("position", &mut self.at_n)?;
+        let mut cross_viscosity = self.forces.iter().map(|f| f.cross_viscosity).collect();
+        let mut stress_force = self.forces.iter().map(|f| f.stress_force).collect();
+        fields.points("cross_viscosity", &mut cross_viscosity)?;
+        fields.points("stress_force", &mut stress_force)?;
+        if fields.loading() {
+            fields.length("stress_force", cross_viscosity.len(), stress_force.len())?;
+            let of = |(cross_viscosity, stress_force)| ForceRecord {
+                cross_viscosity,
+                stress_force,
+                ..ForceRecord::default()
+            };
+            self.forces = cross_viscosity.into_iter().zip(stress_force).map(of).collect();
+        }
+        if let Some(interface) = &mut self.interface {
+            fields.part("interface", interface)?;
+        }
+        match &mut self.foreign {
+            Some(foreign) => fields.part("foreign", foreign),
+            None => Ok(()),
+        }
+    }
+
+    fn restored(&mut self) -> Result<(), StateError> {
+        self.interface.as_mut().map_or(Ok(()), State::restored)?;
+        self.foreign.as_mut().map_or(Ok(()), State::restored)
+    }
+}
+
+/// Hash of particles and their positions.
+fn positions_hash(records: &[StateRecord]) -> u64 {
+    let mut hash = Xxh3::new();
+    for record in records {
+        hash.update(&record.id.to_le_bytes());
+        record.position.iter().for_each(|x| hash.update(&x.to_le_bytes()));
+    }
+    hash.digest()
+}

@@ -1,0 +1,137 @@
+//! What every run has, in whatever processes its participants are: its course from the start or from a checkpoint, and
+//! its report at the end.
+
+use crate::advice::advice;
+use crate::checkpoint::Checkpoint;
+use crate::options::SolidSource;
+use crate::participants::{report_outcome, report_participants};
+use halfstep_coupling::checkpoints::Checkpoints;
+use halfstep_coupling::clock::Clock;
+use halfstep_coupling::couple::Outcome;
+use halfstep_coupling::course::Course;
+use halfstep_coupling::error::RunError;
+use halfstep_coupling::recorder::Recorder;
+use halfstep_output::run_json::RunStatus;
+use halfstep_output::{self as output, ProbeLog, RunDirectory, RunReport};
+use halfstep_role::report::Report;
+use halfstep_scene::Scene;
+use halfstep_sph::lane::Isa;
+use halfstep_wire::Name;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+/// The course of a run, which writes to a folder if there is one; `quiet` hides its progress. What may be refused comes
+/// first: a run that cannot go on stays as it was.
+pub(crate) fn begin(
+    scene: &Scene,
+    folder: Option<&RunDirectory>,
+    from: Option<&Checkpoint>,
+    stop: Arc<AtomicBool>,
+    isa: Isa,
+    quiet: bool,
+) -> Result<Course, RunError> {
+    let probes = folder.map(|folder| folder.file("probes.csv"));
+    let unwritable = |e: serde_json::Error| RunError::System(format!("scene.json: {e}"));
+    let recorder = match from {
+        Some(from) => {
+            let (frames, state) = (from.frames()?, from.part("recorder")?);
+            let recorder = Recorder::new(scene, None, quiet).resume(scene, probes.as_deref(), state)?;
+            folder.map_or(Ok(()), |folder| folder.forget_frames(frames))?;
+            recorder
+        }
+        None => {
+            let create = |path| ProbeLog::create(path, &Recorder::columns(scene));
+            Recorder::new(scene, probes.as_deref().map(create).transpose()?, quiet)
+        }
+    };
+    let checkpoints = match folder {
+        Some(folder) => {
+            let text = scene.to_json().map_err(unwritable)?;
+            output::atomic::replace_bytes(&folder.file("scene.json"), text.as_bytes())?;
+            let at = from.map_or((0, 0.0), |from| (from.manifest.number, from.manifest.time));
+            let names = names(scene)?;
+            let isa = isa.bits_name();
+            Some(Checkpoints::new(scene, folder.path(), names, isa, at).map_err(unwritable)?)
+        }
+        None => None,
+    };
+    Ok(Course { clock: Clock::new(scene), recorder, checkpoints, stop, progress: Arc::default() })
+}
+
+/// Names of a scene's participants.
+fn names(scene: &Scene) -> Result<Vec<Name>, RunError> {
+    let name = |text: String| text.parse::<Name>().map_err(|e| RunError::System(e.to_string()));
+    scene.participants().into_iter().map(|participant| name(participant.name)).collect()
+}
+
+/// Puts the end of a run in one process into its report; returns whether it was stopped.
+pub(crate) fn report_local(
+    scene: &Scene,
+    foreign: &[(Name, SolidSource)],
+    (outcome, reports): (Outcome, Vec<Report>),
+    report: &mut RunReport,
+) -> bool {
+    report_outcome(scene, &outcome, report);
+    let reports: Vec<Option<Report>> = reports.into_iter().map(Some).collect();
+    report_participants(scene, foreign, &outcome.last, &reports, None, report);
+    outcome.stopped
+}
+
+/// Completes the report of a run that was stopped or not, or failed, and writes what stands at its end.
+pub(crate) fn end(
+    course: Course,
+    result: Result<bool, RunError>,
+    scene: &Scene,
+    foreign: &[(Name, SolidSource)],
+    folder: Option<&RunDirectory>,
+    mut report: RunReport,
+) -> Result<(RunReport, Option<RunError>), RunError> {
+    let Course { clock, recorder, .. } = course;
+    recorder.finish(&mut report);
+    let foreign: Vec<Name> = foreign.iter().map(|(name, _)| *name).collect();
+    let error = conclude(result, scene, &clock, &foreign, &mut report);
+    if let Some(folder) = folder {
+        report.write(&folder.file("run.json"))?;
+        draw(scene, folder);
+    }
+    Ok((report, error))
+}
+
+/// Whether the run was stopped, or why it failed.
+fn conclude(
+    result: Result<bool, RunError>,
+    scene: &Scene,
+    clock: &Clock,
+    foreign: &[Name],
+    report: &mut RunReport,
+) -> Option<RunError> {
+    match result {
+        Ok(stopped) => {
+            report.status = Some(if stopped { RunStatus::Stopped } else { RunStatus::Finished });
+            None
+        }
+        Err(mut error) => {
+            report.status = Some(match &mut error {
+                RunError::StoppedAtOnce { .. } => RunStatus::Stopped,
+                RunError::Diverged { diverged, hint } => {
+                    *hint = advice(diverged, scene, clock, foreign);
+                    RunStatus::Diverged
+                }
+                _ => RunStatus::Failed,
+            });
+            tracing::error!("{error}");
+            report.error = Some(error.to_string());
+            Some(error)
+        }
+    }
+}
+
+fn draw(scene: &Scene, folder: &RunDirectory) {
+    for picture in
+        [output::draw_plot(scene, folder.path()).map(Some), output::draw_contact(scene, folder.path())]
+    {
+        if let Err(e) = picture {
+            tracing::warn!("a picture could not be drawn: {e}");
+        }
+    }
+}
