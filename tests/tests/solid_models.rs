@@ -7,16 +7,16 @@ use halfstep_solid::total_lagrangian::TotalLagrangian;
 use halfstep_sph::lane::Isa;
 use halfstep_tests::conformance::solid::{self, Make};
 
-/// One test for each case of the suite.
+/// One test for each case of the suite, in two and in three dimensions.
 macro_rules! conformance {
-    ($name:ident, $model:ident, $keys:literal, [$($case:ident),*]) => {
-        mod $name {
+    ($model:ident, $keys:literal, $dimension:ident $D:literal, [$($case:ident),*]) => {
+        mod $dimension {
             use super::*;
 
-            const MODEL: Make = Make { build, keys: $keys };
+            const MODEL: Make<$D> = Make { build, keys: $keys };
 
-            fn build(scene: &Scene, isa: Isa) -> Option<Box<dyn SolidModel<2>>> {
-                Some(Box::new($model::<2>::new(scene, 0, isa)?))
+            fn build(scene: &Scene, isa: Isa) -> Option<Box<dyn SolidModel<$D>>> {
+                Some(Box::new($model::<$D>::new(scene, 0, isa)?))
             }
 
             $(
@@ -27,11 +27,18 @@ macro_rules! conformance {
             )*
         }
     };
-    ($($name:ident: $model:ident, $keys:literal;)*) => {
-        $(conformance!($name, $model, $keys, [
+    ($model:ident, $keys:literal, $($dimension:ident $D:literal),*) => {
+        $(conformance!($model, $keys, $dimension $D, [
             identity, interface_set, rest, uniform_force, stage_0_is_forgotten, sub_steps, clamps, conservation,
             bodies_collide, wall_contact, bounds, threads, interruption
         ]);)*
+    };
+    ($($name:ident: $model:ident, $keys:literal;)*) => {
+        $(mod $name {
+            use super::*;
+
+            conformance!($model, $keys, plane 2, space 3);
+        })*
     };
 }
 

@@ -34,6 +34,8 @@ mod screen;
 mod screen_tests;
 mod side;
 mod state;
+#[cfg(test)]
+mod symmetry_tests;
 mod thin_plate;
 
 pub use phase_blind::SolidRates;

@@ -2,7 +2,7 @@
 //!   {grad rho}_i = sum_j V_j (rho_j - rho_i) L_i grad W,  L_i = M_i^-1,  M_i = sum_j V_j (x_j - x_i) (x) grad W.
 //!
 //! M is the unit matrix inside a regular packing and nearly singular for lone particles, jets and films: there
-//! (det M < 0.05) the gradient is zero and the diffusion falls back to the simple one.
+//! (`tensor::smallest_determinant`) the gradient is zero and the diffusion falls back to the simple one.
 
 use crate::columns::Shown;
 use halfstep_sph::kernel::Kernel;

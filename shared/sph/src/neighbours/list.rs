@@ -145,33 +145,46 @@ mod tests {
     use crate::neighbours::PADDING;
     use proptest::prelude::*;
 
-    proptest! {
-        /// The list holds every pair within reach, none twice, and no padding.
-        #[test]
-        fn every_pair_within_reach_is_listed(points in prop::collection::vec((0.0..4.0f64, 0.0..4.0f64), 1..120)) {
-            let mut x = [points.iter().map(|p| p.0).collect::<Vec<_>>(), points.iter().map(|p| p.1).collect()];
-            let mut id: Vec<u32> = (0..points.len() as u32).collect();
-            let mut rows = Rows::<2>::default();
-            rows.sort(&x, &id, 1.0, [0.0; 2], [4.0; 2]);
-            for column in &mut x {
-                rows.permute(column);
-            }
-            rows.permute_ids(&mut id);
-            let mut list = ClusterList::default();
-            list.build(&x, &x, &rows, 1.0);
-            for i in 0..id.len() {
-                let listed = list.of(i / LANES);
-                prop_assert!(listed.windows(2).all(|w| w[0] < w[1]));
-                for j in 0..id.len() {
-                    let r2 = (x[0][i] - x[0][j]).powi(2) + (x[1][i] - x[1][j]).powi(2);
-                    let is_listed = listed.contains(&(j as u32));
-                    if id[j] == PADDING {
-                        prop_assert!(!is_listed);
-                    } else if id[i] != PADDING && r2 < 1.0 {
-                        prop_assert!(is_listed, "{i} {j} {r2}");
-                    }
+    /// The list holds every pair within reach, none twice, and no padding.
+    fn every_pair_within_reach_is_listed<const D: usize>(points: &[[f64; 3]]) {
+        let mut x: [Vec<f64>; D] = std::array::from_fn(|d| points.iter().map(|p| p[d]).collect());
+        let mut id: Vec<u32> = (0..points.len() as u32).collect();
+        let mut rows = Rows::<D>::default();
+        rows.sort(&x, &id, 1.0, [0.0; D], [4.0; D]);
+        for column in &mut x {
+            rows.permute(column);
+        }
+        rows.permute_ids(&mut id);
+        let mut list = ClusterList::default();
+        list.build(&x, &x, &rows, 1.0);
+        for i in 0..id.len() {
+            let listed = list.of(i / LANES);
+            assert!(listed.windows(2).all(|w| w[0] < w[1]));
+            for j in 0..id.len() {
+                let r2: f64 = x.iter().map(|x| (x[i] - x[j]).powi(2)).sum();
+                let is_listed = listed.contains(&(j as u32));
+                if id[j] == PADDING {
+                    assert!(!is_listed);
+                } else if id[i] != PADDING && r2 < 1.0 {
+                    assert!(is_listed, "{i} {j} {r2}");
                 }
             }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn every_pair_is_listed_in_the_plane(
+            points in prop::collection::vec(prop::array::uniform3(0.0..4.0f64), 1..120)
+        ) {
+            every_pair_within_reach_is_listed::<2>(&points);
+        }
+
+        #[test]
+        fn every_pair_is_listed_in_space(
+            points in prop::collection::vec(prop::array::uniform3(0.0..4.0f64), 1..200)
+        ) {
+            every_pair_within_reach_is_listed::<3>(&points);
         }
     }
 }
