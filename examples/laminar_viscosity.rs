@@ -5,8 +5,11 @@
 
 use halfstep_fluid::effects::FluidEffect;
 use halfstep_fluid::rates::{FluidPair, PairEffect, PairRates};
-use halfstep_scene::{Decision, Scene};
+use halfstep_scene::{Decision, Derived, Scene};
 use halfstep_sph::lane::{Arch, Lane};
+
+/// The effect's key in `[effects]`, and its name in reports.
+pub(crate) const NAME: &str = "laminar-viscosity";
 
 /// The effect, and its share of a pair.
 #[derive(Clone, Copy, Debug)]
@@ -16,12 +19,12 @@ pub(crate) struct LaminarViscosity {
 }
 
 impl<const D: usize> FluidEffect<D> for LaminarViscosity {
-    const NAME: &'static str = "laminar-viscosity";
+    const NAME: &'static str = NAME;
     type Pair<'a> = Self;
     type AtWall<'a> = Self;
 
-    fn decide(_: &Scene) -> Decision {
-        Decision { name: <Self as FluidEffect<D>>::NAME, on: true, why: "the program has it".into() }
+    fn decide(scene: &Scene) -> Decision {
+        Decision::own(scene, NAME, Derived::On("the program has it".into()))
     }
     fn pair(&self) -> Option<Self> {
         Some(*self)

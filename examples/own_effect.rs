@@ -43,7 +43,7 @@ fn speed(run: &Running) -> f64 {
 }
 
 fn two_particles() -> Result<Scene, Error> {
-    Ok(scene::parse(TWO_PARTICLES, Path::new("two-particles.toml"), &[])?)
+    Ok(scene::parse_with(TWO_PARTICLES, Path::new("two-particles.toml"), &[], &[laminar_viscosity::NAME])?)
 }
 
 /// The end of a run with one more effect.
@@ -85,6 +85,30 @@ mod tests {
         assert!((speed(&run) / 1e-6 - 0.914_476).abs() < 1e-5, "{:e}", speed(&run));
         let velocities = run.particles("fluid").unwrap().velocity;
         assert_eq!(velocities[0][1], -velocities[1][1], "action is reaction");
+    }
+
+    #[test]
+    fn the_scene_switches_it_and_the_report_names_it() {
+        let parse = |own: &[&str]| {
+            let switch = ["effects.laminar-viscosity=off".to_owned()];
+            scene::parse_with(TWO_PARTICLES, Path::new("two-particles.toml"), &switch, own)
+        };
+        let off = parse(&[laminar_viscosity::NAME]).unwrap();
+        let effect = LaminarViscosity { viscosity: 10.0 };
+        let row = |scene: &Scene| {
+            let report = end(scene, effect).unwrap().finish().unwrap();
+            report.effects.into_iter().find(|row| row.name == "laminar-viscosity").unwrap()
+        };
+        assert!(row(&two_particles().unwrap()).on);
+        assert_eq!((row(&off).on, row(&off).why.as_str()), (false, "effects.laminar-viscosity is \"off\""));
+        assert!(
+            (speed(&end(&off, effect).unwrap()) / 1e-6 - 1.0).abs() < 1e-9,
+            "without it nothing slows them"
+        );
+        // Who does not have the effect cannot read the scene, nor run it.
+        assert_eq!(parse(&[]).unwrap_err().problems[0].reason, "unknown effect");
+        let error = Simulation::new(off).begin().map(drop).unwrap_err();
+        assert!(error.to_string().contains("effects.laminar-viscosity: the simulation has no such effect"));
     }
 
     /// Takes part in every pair and adds nothing.

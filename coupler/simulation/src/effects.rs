@@ -17,15 +17,15 @@ const INTERFACE: &str = "interface";
 /// The force f_i.
 const CROSS_VISCOSITY: &str = "cross-viscosity";
 
+/// The row of an effect.
+pub(crate) fn row(decision: Decision) -> EffectReport {
+    let Decision { name, on, why } = decision;
+    EffectReport { name: name.into(), on, why, ..EffectReport::default() }
+}
+
 /// The ledger of effects of a scene, without shares.
 pub(crate) fn ledger(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
-    let row = |name: &str, on: bool, why: String| EffectReport {
-        name: name.into(),
-        on,
-        why,
-        ..EffectReport::default()
-    };
-    let decided = |d: Decision| row(d.name, d.on, d.why);
+    let row = |name, on, why| row(Decision { name, on, why });
     let (fluid, solid) = (scene.fluid.is_some(), !scene.solids.is_empty());
     let moving = scene.gravity.iter().any(|&g| g != 0.0);
     let mut list = vec![
@@ -45,7 +45,7 @@ pub(crate) fn ledger(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
         let decided_on = dispatch!(scene.dimension, D => halfstep_fluid::effects::decide::<D>(scene));
         list.extend(decided_on.unwrap_or_default().into_iter().map(|(decision, bytes)| {
             let bytes_per_particle = (bytes > 0).then_some(bytes as f64);
-            EffectReport { bytes_per_particle, ..decided(decision) }
+            EffectReport { bytes_per_particle, ..self::row(decision) }
         }));
     }
     list.push(row(
@@ -59,7 +59,7 @@ pub(crate) fn ledger(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
         if solid { "[solid]: stress, neighbours, time step" } else { "no [solid]: no solid process" }.into(),
     ));
     if solid {
-        list.extend(halfstep_solid::effects::decide(scene).into_iter().map(decided));
+        list.extend(halfstep_solid::effects::decide(scene).into_iter().map(self::row));
     }
     let coupled = fluid && solid;
     let treatment = match scene.interface.treatment {

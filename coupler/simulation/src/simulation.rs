@@ -3,7 +3,7 @@
 use crate::checkpoint::Checkpoint;
 use crate::error::Error;
 use crate::options::{Launcher, RunOptions, known_solid};
-use crate::{course, run};
+use crate::{course, effects, run};
 use halfstep_coupling::local::LocalRun;
 use halfstep_coupling::recorder::Recorder;
 use halfstep_coupling::roles;
@@ -12,7 +12,7 @@ use halfstep_fluid::Fluid;
 use halfstep_fluid::effects::FluidEffect;
 use halfstep_output::{Frame, RunDirectory, RunReport};
 use halfstep_role::role::Role;
-use halfstep_scene::{Phase, Scene};
+use halfstep_scene::{Decision, Phase, Scene};
 use halfstep_solid::{Solid, SolidModel};
 use halfstep_sph::lane::Isa;
 use std::ops::ControlFlow;
@@ -91,7 +91,8 @@ impl Simulation {
 
 impl<X: FluidEffect<D>, const D: usize> Simulation<X, D> {
     /// With one more effect on the fluid, whose passes are compiled with it. It takes part where its
-    /// [`FluidEffect::decide`] says so.
+    /// [`FluidEffect::decide`] says so; its name is a key of `[effects]` in a scene read by
+    /// [`halfstep_scene::load_with`].
     pub fn effect<E: FluidEffect<D>>(self, effect: E) -> Simulation<E, D> {
         let Self { scene, solids, observers, folder, replace, threads, stop, .. } = self;
         Simulation { scene, effect: Some(effect), solids, observers, folder, replace, threads, stop }
@@ -196,6 +197,10 @@ impl<X: FluidEffect<D>, const D: usize> Simulation<X, D> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let pool = pool.map_err(|e| Error::Setup(format!("cannot start {threads} threads: {e}")))?;
         let names: Vec<String> = solids.iter().map(|(name, _)| name.clone()).collect();
+        if let Some(stranger) = scene.own_effects.keys().find(|name| effect.is_none() || *name != X::NAME) {
+            return Err(Error::Setup(format!("effects.{stranger}: the simulation has no such effect")));
+        }
+        let own_effect = (effect.is_some() && scene.fluid.is_some()).then(|| X::decide(&scene));
         let own = owners(&scene, effect, solids, isa)?;
         let path = folder.as_ref().map(RunDirectory::path);
         let at = from.as_ref().map(|from| from.folder.as_path());
@@ -204,7 +209,7 @@ impl<X: FluidEffect<D>, const D: usize> Simulation<X, D> {
         let members = own.into_iter().map(|role| roles::equip(role, path, at)).collect::<Result<_, _>>()?;
         let coupler = from.as_ref().map(|from| &from.coupler);
         let run = pool.install(|| LocalRun::new(members, &scene, course, isa, coupler))?;
-        Ok(Running { run, pool, scene, folder, own_solids: names, stop, isa, more: true })
+        Ok(Running { run, pool, scene, folder, own_solids: names, own_effect, stop, isa, more: true })
     }
 }
 
@@ -242,6 +247,7 @@ pub struct Running<const D: usize = 2> {
     scene: Scene,
     folder: Option<RunDirectory>,
     own_solids: Vec<String>,
+    own_effect: Option<Decision>,
     stop: Arc<AtomicBool>,
     isa: Isa,
     more: bool,
@@ -319,8 +325,9 @@ impl<const D: usize> Running<D> {
             self.stop();
             self.step()?;
         }
-        let Self { mut run, scene, folder, own_solids, isa, .. } = self;
+        let Self { mut run, scene, folder, own_solids, own_effect, isa, .. } = self;
         let mut report = run::begin_report(&scene, isa)?;
+        report.effects.extend(own_effect.map(effects::row));
         let result = run.end().map(|ended| course::report_local(&scene, &[], ended, &mut report));
         for own in report.participants.iter_mut().filter(|own| own_solids.contains(&own.name)) {
             own.model = Some("own".into());

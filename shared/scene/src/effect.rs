@@ -110,15 +110,24 @@ pub enum Derived {
 impl Decision {
     /// The user's switch decides where the effect is possible; else what follows from the scene.
     pub fn new(scene: &Scene, effect: EffectName, derived: Derived) -> Self {
-        let key = |word: &str| format!("effects.{} is \"{word}\"", effect.name());
-        let (on, why) = match (derived, scene.switch(effect)) {
+        Self::of(effect.name(), scene.switch(effect), derived)
+    }
+
+    /// The same of an effect that the program knows and this crate does not ([`crate::load_with`]).
+    pub fn own(scene: &Scene, name: &'static str, derived: Derived) -> Self {
+        Self::of(name, scene.own_effects.get(name).copied().unwrap_or(Switch::Auto), derived)
+    }
+
+    fn of(name: &'static str, switch: Switch, derived: Derived) -> Self {
+        let key = |word: &str| format!("effects.{name} is \"{word}\"");
+        let (on, why) = match (derived, switch) {
             (Derived::Impossible(why), _) => (false, why),
             (_, Switch::On) => (true, key("on")),
             (_, Switch::Off) => (false, key("off")),
             (Derived::On(why), Switch::Auto) => (true, why),
             (Derived::Off(why), Switch::Auto) => (false, why),
         };
-        Self { name: effect.name(), on, why }
+        Self { name, on, why }
     }
 }
 

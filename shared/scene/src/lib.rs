@@ -47,7 +47,7 @@ pub use effect::{Decision, Derived, EffectName, Switch};
 pub use error::{Place, SceneError, SceneErrors};
 pub use halfstep_sph::Phase;
 pub use halfstep_sph::kernel::KernelName;
-pub use load::{load, parse};
+pub use load::{load, load_with, parse, parse_with};
 pub use metric::{Metric, MetricKind, MetricReference};
 pub use motion::{Motion, Placement};
 pub use participant::Participant;
@@ -104,6 +104,9 @@ pub struct Scene {
     pub metrics: Vec<Metric>,
     /// Effects that the user or the preset forces on or off; those absent are `auto`.
     pub effects: BTreeMap<EffectName, Switch>,
+    /// The same of effects that only the program has that read the scene ([`load_with`]), by their names.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub own_effects: BTreeMap<String, Switch>,
     /// Numerical parameters that are no physics.
     pub numerics: Numerics,
 }

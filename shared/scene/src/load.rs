@@ -11,8 +11,16 @@ use std::path::Path;
 /// # Errors
 /// Everything that is wrong with the scene at once, each with its place.
 pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, SceneErrors> {
+    load_with(path, overrides, &[])
+}
+
+/// As [`load`], for a program with effects of its own: their names are further keys of `[effects]`.
+///
+/// # Errors
+/// Everything that is wrong with the scene at once, each with its place.
+pub fn load_with(path: &Path, overrides: &[String], own_effects: &[&str]) -> Result<Scene, SceneErrors> {
     match std::fs::read_to_string(path) {
-        Ok(text) => parse(&text, path, overrides),
+        Ok(text) => parse_with(&text, path, overrides, own_effects),
         Err(error) => Err(SceneErrors::whole(path, format!("cannot be read: {error}"))),
     }
 }
@@ -22,6 +30,19 @@ pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, SceneErrors> {
 /// # Errors
 /// Everything that is wrong with the scene at once, each with its place.
 pub fn parse(text: &str, path: &Path, overrides: &[String]) -> Result<Scene, SceneErrors> {
+    parse_with(text, path, overrides, &[])
+}
+
+/// As [`load_with`], with the file's text at hand.
+///
+/// # Errors
+/// Everything that is wrong with the scene at once, each with its place.
+pub fn parse_with(
+    text: &str,
+    path: &Path,
+    overrides: &[String],
+    own_effects: &[&str],
+) -> Result<Scene, SceneErrors> {
     let file = SourceText { name: path.display().to_string(), text: text.into(), is_override: false };
     let sources = std::iter::once(file).chain(overrides.iter().map(|o| overrides::source(o)));
     let report = Report::new(sources.collect());
@@ -40,7 +61,7 @@ pub fn parse(text: &str, path: &Path, overrides: &[String]) -> Result<Scene, Sce
     for (index, text) in overrides.iter().enumerate() {
         overrides::apply(&mut root, text, index + 1, &report);
     }
-    let mut draft = read::scene(&root, path, &report);
+    let mut draft = read::scene(&root, path, &report, own_effects);
     Check { scene: &draft.scene, root: &root, report: &report }.all();
     if report.is_empty() && draft.sound_speed_auto {
         let found = resources::sound_speed(&draft.scene, &root, &report);

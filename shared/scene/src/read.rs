@@ -27,7 +27,7 @@ pub(super) const MAX_THREADS: u32 = 1024;
 const PRESSURE: Range = Range::at_least(0.0).up_to(1e15);
 pub(crate) const COEFFICIENT: Range = Range::at_least(0.0).up_to(100.0);
 
-pub(super) fn scene(root: &Node, path: &Path, report: &Report) -> Draft {
+pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&str]) -> Draft {
     let top = Section::root(root, report);
     let preset = top.node("preset").and_then(|n| top.as_choice("preset", n, &[("kayaki", Preset::Kayaki)]));
     let defaults = Defaults::of(preset);
@@ -53,6 +53,7 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report) -> Draft {
         top.tables("shape").into_iter().map(|s| read_shape::shape(s, dimension, &names)).collect();
     let probe = |p| read_probe::probe(p, dimension, &names, &shapes);
     let probes = top.tables("probe").into_iter().filter_map(probe).collect();
+    let (effects, own_effects) = effects(&top, &defaults, own_effects);
     let scene = Scene {
         name: stem,
         // A path that is no Unicode could not be written to JSON.
@@ -78,7 +79,8 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report) -> Draft {
             top.tables("reference").into_iter().filter_map(|r| read_probe::reference(r, folder)).collect()
         },
         metrics: top.tables("metric").into_iter().filter_map(read_metric::metric).collect(),
-        effects: effects(&top, &defaults),
+        effects,
+        own_effects,
         numerics,
     };
     top.finish();
@@ -183,12 +185,23 @@ fn output(section: Section<'_>, end_time: f64) -> Output {
     output
 }
 
-fn effects(top: &Section<'_>, defaults: &Defaults) -> BTreeMap<EffectName, Switch> {
+/// The switches of the effects of the list, and of those that only the calling program has.
+fn effects(
+    top: &Section<'_>,
+    defaults: &Defaults,
+    own: &[&str],
+) -> (BTreeMap<EffectName, Switch>, BTreeMap<String, Switch>) {
     const SWITCHES: [(&str, Switch); 3] = [("auto", Switch::Auto), ("on", Switch::On), ("off", Switch::Off)];
     let mut effects: BTreeMap<_, _> = defaults.effects.iter().copied().collect();
+    let mut own_effects = BTreeMap::new();
     let section = top.section("effects");
-    let Some(table) = top.node("effects").and_then(Node::table) else { return effects };
+    let Some(table) = top.node("effects").and_then(Node::table) else { return (effects, own_effects) };
     for (key, entry) in table {
+        if own.contains(&key.as_str()) {
+            let switch = section.as_choice(key, &entry.node, &SWITCHES);
+            own_effects.extend(switch.map(|switch| (key.clone(), switch)));
+            continue;
+        }
         match EffectName::ALL.iter().find(|effect| effect.name() == key) {
             Some(effect) => {
                 if let Some(switch) = section.as_choice(key, &entry.node, &SWITCHES) {
@@ -196,7 +209,7 @@ fn effects(top: &Section<'_>, defaults: &Defaults) -> BTreeMap<EffectName, Switc
                 }
             }
             None => {
-                let known = || EffectName::ALL.iter().map(|effect| effect.name());
+                let known = || EffectName::ALL.iter().map(|effect| effect.name()).chain(own.iter().copied());
                 let note = top.report.place(&section.path_of(key), entry.key, "unknown effect");
                 match nearest(key, known()) {
                     Some(near) => note.help(format!("did you mean `{near}`?")),
@@ -205,7 +218,7 @@ fn effects(top: &Section<'_>, defaults: &Defaults) -> BTreeMap<EffectName, Switc
             }
         }
     }
-    effects
+    (effects, own_effects)
 }
 
 fn numerics(section: Section<'_>, dimension: usize, defaults: &Defaults) -> Numerics {

@@ -59,6 +59,7 @@ pub(crate) fn scene() -> Scene {
         ],
         metrics: Vec::new(),
         effects: Default::default(),
+        own_effects: Default::default(),
         numerics: Numerics {
             kernel: KernelName::WendlandC2,
             cfl: 0.25,

@@ -50,6 +50,7 @@ fn scene(shapes: Vec<Shape>) -> Scene {
         references: Vec::new(),
         metrics: Vec::new(),
         effects: BTreeMap::new(),
+        own_effects: BTreeMap::new(),
         numerics: Numerics {
             kernel: KernelName::CubicSpline,
             cfl: 0.25,
