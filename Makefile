@@ -43,15 +43,21 @@ bench: setup
 docs: setup
 	RUSTDOCFLAGS="-D warnings" cargo doc --release --no-deps --workspace
 
-# All pages as a book, in target/book; nothing is fetched when it is read. Its tool goes to target/tools.
+# All pages as a book, in target/book; nothing is fetched when it is read. Its tools go to target/tools: mdbook, and
+# mathcore, which makes MathML of the formulas.
 MDBOOK_VERSION := 0.5.4
 MDBOOK := target/tools/mdbook-$(MDBOOK_VERSION)/bin/mdbook
-book: setup $(MDBOOK)
-	sh docs/book.sh $(abspath $(MDBOOK))
+MATHCORE_VERSION := 0.7.0
+MATHCORE := target/tools/math-core-$(MATHCORE_VERSION)/bin/mathcore
+book: setup $(MDBOOK) $(MATHCORE)
+	sh docs/book.sh $(abspath $(MDBOOK)) $(abspath $(MATHCORE))
 
 $(MDBOOK):
 	cargo install --locked --version $(MDBOOK_VERSION) --root target/tools/mdbook-$(MDBOOK_VERSION) \
 		--no-default-features --features search mdbook
+
+$(MATHCORE):
+	cargo install --locked --version $(MATHCORE_VERSION) --root target/tools/math-core-$(MATHCORE_VERSION) math-core-cli
 
 setup:
 	@./setup.sh

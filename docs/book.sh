@@ -1,12 +1,13 @@
 #!/bin/sh
-# Builds all pages as a book in target/book, with the mdbook named as the first argument.
+# Builds all pages as a book in target/book, with the mdbook and the mathcore named as arguments.
 set -eu
 cd "$(dirname "$0")/.."
 mdbook=$1
+mathcore=$2
 book=target/book-src
 rm -rf "$book"
 mkdir -p "$book/src"
-cp docs/book.toml "$book"
+cp docs/book.toml docs/book.css "$book"
 
 # The pages where they stand in the repository, with what they show or link to.
 git ls-files --cached --others --exclude-standard -- \
@@ -46,4 +47,9 @@ others() { # FOLDER: its pages beside the first one, README.md.
 } > "$book/src/SUMMARY.md"
 
 "$mdbook" build "$book"
+
+# Formulas are code to Markdown, so that it leaves them as they are: a block ```math, or $`...`$ within a line. What
+# mdbook makes of them becomes MathML here. A formula with an error ends the script with the file's name.
+"$mathcore" --recursive --inline-open '$<code>' --inline-close '</code>$' \
+    --block-open '<pre><code class="language-math">' --block-close '</code></pre>' target/book
 echo "The book: $PWD/target/book/index.html"
