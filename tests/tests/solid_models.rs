@@ -7,16 +7,27 @@ use halfstep_solid::total_lagrangian::TotalLagrangian;
 use halfstep_sph::lane::Isa;
 use halfstep_tests::conformance::solid::{self, Make};
 
-/// One test for each case of the suite, in two and in three dimensions.
+/// The same scene with the solids' spacing as their own and all else twice as coarse.
+fn finer_than_the_rest(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    for shape in scene.shapes.iter_mut().filter(|shape| shape.solid.is_some()) {
+        shape.spacing = Some(scene.resolution);
+    }
+    scene.resolution *= 2.0;
+    scene
+}
+
+/// One test for each case of the suite.
 macro_rules! conformance {
-    ($model:ident, $keys:literal, $dimension:ident $D:literal, [$($case:ident),*]) => {
-        mod $dimension {
+    ($name:ident $D:literal: $model:ident, $keys:literal, $scene:expr; $($case:ident)*) => {
+        mod $name {
             use super::*;
 
             const MODEL: Make<$D> = Make { build, keys: $keys };
 
-            fn build(scene: &Scene, isa: Isa) -> Option<Box<dyn SolidModel<$D>>> {
-                Some(Box::new($model::<$D>::new(scene, 0, isa)?))
+            fn build(scene_of_suite: &Scene, isa: Isa) -> Option<Box<dyn SolidModel<$D>>> {
+                let scene: fn(&Scene) -> Scene = $scene;
+                Some(Box::new($model::<$D>::new(&scene(scene_of_suite), 0, isa)?))
             }
 
             $(
@@ -27,17 +38,20 @@ macro_rules! conformance {
             )*
         }
     };
-    ($model:ident, $keys:literal, $($dimension:ident $D:literal),*) => {
-        $(conformance!($model, $keys, $dimension $D, [
-            identity, interface_set, rest, uniform_force, stage_0_is_forgotten, sub_steps, clamps, conservation,
-            bodies_collide, wall_contact, bounds, threads, interruption
-        ]);)*
-    };
     ($($name:ident: $model:ident, $keys:literal;)*) => {
         $(mod $name {
             use super::*;
 
-            conformance!($model, $keys, plane 2, space 3);
+            conformance!(plane 2: $model, $keys, Scene::clone; identity interface_set rest uniform_force
+                stage_0_is_forgotten sub_steps clamps conservation bodies_collide wall_contact bounds threads
+                interruption);
+            conformance!(space 3: $model, $keys, Scene::clone; identity interface_set rest uniform_force
+                stage_0_is_forgotten sub_steps clamps conservation bodies_collide wall_contact bounds threads
+                interruption);
+            // All but `interface_set`, which counts particles within reach of the fluid's kernel.
+            conformance!(finer_than_the_fluid 2: $model, $keys, finer_than_the_rest; identity rest uniform_force
+                stage_0_is_forgotten sub_steps clamps conservation bodies_collide wall_contact bounds threads
+                interruption);
         })*
     };
 }

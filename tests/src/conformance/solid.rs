@@ -179,8 +179,8 @@ pub fn identity<const D: usize>(make: Make<D>) {
     assert_eq!(model.strain_energy(), 0.0);
 }
 
-/// 60 x 60 spacings (in space 8 deep), 2h = 3 dx: surface rows lie half a spacing under the surface, two more are closer than
-/// that.
+/// 60 x 60 spacings (in space 8 deep), 2h = 3 dx: surface rows lie half a spacing under the surface, two more are
+/// closer than that.
 pub fn interface_set<const D: usize>(make: Make<D>) {
     let model = model(make, &[BLOCK], &["shape.block.box.max=[0.6,0.6]"]);
     let (all, inner) = if D == 2 { (60 * 60, 54 * 54) } else { (60 * 60 * 8, 54 * 54 * 2) };
