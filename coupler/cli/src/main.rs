@@ -203,6 +203,9 @@ fn run_scene(arguments: RunArguments, isa: Isa) -> ExitCode {
         Ok(options) => options,
         Err(error) => return usage(&error),
     };
+    for warning in halfstep::remarks::remarks(&scene) {
+        say::warn(format_args!("warning: {warning}"));
+    }
     match run::run(&scene, &options) {
         Err(error) => usage(&error),
         Ok(ended) => tell(&scene, &options.out, ended),
@@ -271,6 +274,10 @@ fn tell(scene: &Scene, out: &Path, (report, error): run::Ended) -> ExitCode {
     let finished = report.status == Some(RunStatus::Finished);
     if !finished && FOLDERS.iter().any(|folder| out.join(folder).join(MANIFEST).exists()) {
         say::tell(format_args!("halfstep resume '{}' goes on from the last checkpoint", out.display()));
+    }
+    let remarked = halfstep::remarks::outcome(&report);
+    if !remarked.is_empty() {
+        say::warn(format_args!("warning: {}", remarked.join("; ")));
     }
     match report.status {
         Some(RunStatus::Finished) => ExitCode::SUCCESS,

@@ -1,7 +1,7 @@
 //! What a scene asks for, before anything is run.
 
-use crate::effects;
 use crate::step_cost::step_cost;
+use crate::{effects, remarks};
 use halfstep_coupling::roles;
 use halfstep_link::LinkConfig;
 use halfstep_scene::geometry;
@@ -29,6 +29,9 @@ fn describe_in<const D: usize>(scene: &Scene, isa: Isa) -> String {
     };
     line("scene", format!("{} ({})", scene.name, scene.path.display()));
     line("particles", format!("{} fluid, {} solid, {} wall", counts.fluid, counts.solid, counts.wall));
+    for shape in remarks::placed(scene, &layout) {
+        line(&format!("  {}", shape.name), shape.to_string());
+    }
     for (k, solid) in scene.solids.iter().enumerate() {
         let spacing = scene.solid_spacing(k);
         if spacing != scene.resolution {
@@ -97,6 +100,9 @@ fn describe_in<const D: usize>(scene: &Scene, isa: Isa) -> String {
     for effect in effects::ledger(scene, &counts) {
         let _ =
             writeln!(text, "{:<28}{:<5}{}", effect.name, if effect.on { "on" } else { "off" }, effect.why);
+    }
+    for (k, warning) in remarks::remarks_in(scene, &layout).into_iter().enumerate() {
+        let _ = writeln!(text, "{}warning: {warning}", if k == 0 { "\n" } else { "" });
     }
     text
 }

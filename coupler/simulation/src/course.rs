@@ -5,6 +5,7 @@ use crate::advice::advice;
 use crate::checkpoint::Checkpoint;
 use crate::options::SolidSource;
 use crate::participants::{report_outcome, report_participants};
+use crate::remarks;
 use halfstep_coupling::checkpoints::Checkpoints;
 use halfstep_coupling::clock::Clock;
 use halfstep_coupling::couple::Outcome;
@@ -90,6 +91,9 @@ pub(crate) fn end(
     recorder.finish(&mut report);
     let foreign: Vec<Name> = foreign.iter().map(|(name, _)| *name).collect();
     let error = conclude(result, scene, &clock, &foreign, &mut report);
+    let remarked = remarks::outcome(&report);
+    remarked.iter().for_each(|warning| tracing::warn!("{warning}"));
+    report.warnings.extend(remarked);
     if let Some(folder) = folder {
         report.write(&folder.file("run.json"))?;
         draw(scene, folder);

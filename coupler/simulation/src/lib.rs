@@ -28,6 +28,7 @@ pub mod explain;
 pub mod isa;
 pub mod options;
 mod participants;
+pub mod remarks;
 mod role_main;
 pub mod run;
 mod session;

@@ -3,7 +3,7 @@
 use crate::checkpoint::Checkpoint;
 use crate::options::{RunOptions, known_solid};
 use crate::session::Session;
-use crate::{course, effects};
+use crate::{course, effects, remarks};
 use halfstep_coupling::course::Course;
 use halfstep_coupling::error::RunError;
 use halfstep_coupling::local::LocalRun;
@@ -88,11 +88,15 @@ fn check_foreign(scene: &Scene, options: &RunOptions) -> Result<(), RunError> {
 
 /// What the report of a run says at its start.
 pub(crate) fn begin_report(scene: &Scene, isa: Isa) -> Result<RunReport, RunError> {
-    let counts = dispatch!(scene.dimension, D => geometry::layout::<D>(scene).counts());
-    let counts = counts.ok_or_else(|| unknown_dimension(scene))?;
+    let placed = dispatch!(scene.dimension, D => {
+        let layout = geometry::layout::<D>(scene);
+        (layout.counts(), remarks::remarks_in(scene, &layout))
+    });
+    let (counts, warnings) = placed.ok_or_else(|| unknown_dimension(scene))?;
     let mut report = RunReport {
         scene: serde_json::to_value(scene).map_err(|e| RunError::System(e.to_string()))?,
         version: env!("CARGO_PKG_VERSION").into(),
+        warnings,
         particles: Particles { fluid: counts.fluid, solid: counts.solid, wall: counts.wall, removed: 0 },
         ..RunReport::default()
     };
@@ -131,6 +135,7 @@ fn execute_in<const D: usize>(
     let mut course = course::begin(scene, Some(directory), from, stop, options.isa, options.quiet)?;
     if options.log {
         start_log(directory)?;
+        report.warnings.iter().for_each(|warning| tracing::warn!("{warning}"));
     }
     report.write(&directory.file("run.json"))?;
     let result = if scene.fluid.is_some() && !scene.solids.is_empty() {

@@ -12,6 +12,8 @@ pub struct RunReport {
     pub status: Option<RunStatus>,
     /// Why it did not finish.
     pub error: Option<String>,
+    /// What the author of the scene, or the reader of its results, should know.
+    pub warnings: Vec<String>,
     /// The scene as resolved.
     pub scene: serde_json::Value,
     /// Version of the program.
@@ -279,7 +281,7 @@ mod tests {
         assert_eq!(value["status"], "diverged");
         assert_eq!(value["audit"]["state_hash"], "ffffffffffffffff");
         for pointer in [
-            "/error /scene /version /steps /time /wall_seconds /particles/fluid /particles/solid /particles/wall",
+            "/error /warnings /scene /version /steps /time /wall_seconds /particles/fluid /particles/solid /particles/wall",
             "/particle_steps_per_second /dt/min /dt/mean /dt/max /sub_steps /roles/fluid/compute /roles/fluid/wait",
             "/roles/fluid/exchange /roles/fluid/output /roles/solid /roles/coupler /round_trip_us/p50",
             "/round_trip_us/p99 /audit/momentum_drift /audit/energy_drift /audit/action_reaction",

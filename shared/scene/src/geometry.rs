@@ -35,6 +35,8 @@ pub struct FluidPoint<const D: usize> {
     /// Pressure, Pa, above the background's: rho g times the depth below its shape's highest point, or zero; and what
     /// belongs to its velocity field.
     pub pressure: f64,
+    /// Index of its shape in [`Scene::shapes`].
+    pub shape: u32,
 }
 
 /// A solid particle.
@@ -154,11 +156,17 @@ pub fn layout<const D: usize>(scene: &Scene) -> Layout<D> {
                     position: p.position,
                     velocity: added(velocity, field_velocity(scene, shape, &p.position)),
                     pressure: initial_pressure(scene, shape, &p.position),
+                    shape: index as u32,
                 })),
             }
         }
     }
     layout
+}
+
+/// Number of particles that a shape would have if it were alone.
+pub fn particles_alone<const D: usize>(scene: &Scene, shape: &Shape) -> usize {
+    points::of_shape::<D>(&shape.geometry, Spacing::of(scene, shape)).len()
 }
 
 /// The numbers of particles from the shapes' sizes, without placing any: overlaps count twice, curved shapes by

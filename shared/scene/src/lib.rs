@@ -14,6 +14,7 @@
 //! assert!(wrong.problems[0].to_string().contains("resolution=-1"));
 //! ```
 
+mod bodies;
 pub mod bounds;
 mod check;
 mod check_metric;
@@ -53,7 +54,7 @@ pub use metric::{Metric, MetricKind, MetricReference};
 pub use motion::{Motion, Placement};
 pub use participant::Participant;
 pub use probe::{Probe, ProbeKind, Reference};
-pub use resources::{BYTES_PER_PARTICLE, memory_available, memory_needed};
+pub use resources::{BYTES_PER_PARTICLE, expected_speed, memory_available, memory_needed};
 pub use solid::{
     ArtificialStress, HypoelasticKeys, Material, ModelKeys, Solid, SolidModelName, SubSteps,
     TotalLagrangianKeys,

@@ -49,11 +49,10 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&s
     };
     let solids = read_solid::solids(&top, defaults.with_treatment(interface.treatment), &numerics);
     let names: Vec<&str> = solids.iter().map(|s| s.name.as_str()).collect();
-    let shapes: Vec<Shape> = top
-        .tables("shape")
-        .into_iter()
-        .map(|s| read_shape::shape(s, dimension, &names, numerics.lattice))
-        .collect();
+    let tables = top.tables("shape");
+    let contact_said: Vec<bool> = tables.iter().map(|shape| shape.node("contact").is_some()).collect();
+    let shapes: Vec<Shape> =
+        tables.into_iter().map(|s| read_shape::shape(s, dimension, &names, numerics.lattice)).collect();
     let probe = |p| read_probe::probe(p, dimension, &names, &shapes);
     let probes = top.tables("probe").into_iter().filter_map(probe).collect();
     let (effects, own_effects) = effects(&top, &defaults, own_effects);
@@ -87,6 +86,7 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&s
         numerics,
     };
     scene.share_spacings();
+    scene.touch_free_bodies(&contact_said);
     top.finish();
     Draft { scene, sound_speed_auto, linear_auto }
 }

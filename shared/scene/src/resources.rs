@@ -105,19 +105,24 @@ pub(super) fn check_solids(scene: &Scene, root: &Node, report: &Report) {
     }
 }
 
-/// The sound speed that keeps a fluid weakly compressible: ten times the expected speed, which is the larger of the
-/// speed of a fall through the fluid's height, sqrt(2 g H), and the fastest shape's initial speed, or field's.
-pub(super) fn sound_speed(scene: &Scene, root: &Node, report: &Report) -> Option<f64> {
+/// The speed that a scene's fluid may reach, m/s: the larger of that of a fall from its highest point to the lowest
+/// floor, sqrt(2 g H), and the fastest shape's initial speed, or field's.
+pub fn expected_speed(scene: &Scene) -> f64 {
     let speed = |v: &[f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
     let g = speed(&scene.gravity);
-    let height = if g > 0.0 { fluid_extent(scene, scene.gravity.map(|c| c / g)) } else { 0.0 };
+    let height = if g > 0.0 { fall(scene, scene.gravity.map(|c| c / g)) } else { 0.0 };
     let field = |s: &Shape| s.velocity_field.map_or(0.0, |field| field.fastest(g));
     let fastest = scene
         .shapes
         .iter()
         .map(|s| speed(&s.velocity) + field(s) + s.motion.map_or(0.0, |m| m.fastest()))
         .fold(0.0, f64::max);
-    let expected = (2.0 * g * height).sqrt().max(fastest);
+    (2.0 * g * height).sqrt().max(fastest)
+}
+
+/// The sound speed that keeps a fluid weakly compressible: ten times the expected speed.
+pub(super) fn sound_speed(scene: &Scene, root: &Node, report: &Report) -> Option<f64> {
+    let expected = expected_speed(scene);
     if expected > 0.0 && (10.0 * expected).is_finite() {
         return Some(10.0 * expected);
     }
@@ -127,23 +132,31 @@ pub(super) fn sound_speed(scene: &Scene, root: &Node, report: &Report) -> Option
     None
 }
 
-/// How far the fluid reaches along a unit vector.
-fn fluid_extent(scene: &Scene, along: [f64; 3]) -> f64 {
-    let project = |v: &[f64; 3]| (0..3).map(|a| v[a] * along[a]).sum::<f64>();
-    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    for shape in scene.shapes.iter().filter(|s| s.phase == Phase::Fluid) {
-        let [least, most] = match &shape.geometry {
-            Geometry::Disc { center, radius: r } | Geometry::Ring { center, outer: r, .. } => {
-                [project(center) - r, project(center) + r]
-            }
-            Geometry::Box(b) | Geometry::Tank { cavity: b, .. } => {
-                let ends = (0..3).map(|a| [b.min[a] * along[a], b.max[a] * along[a]]);
-                ends.fold([0.0, 0.0], |[l, h], [p, q]| [l + p.min(q), h + p.max(q)])
-            }
-        };
-        (low, high) = (low.min(least), high.max(most));
+/// How far the fluid may fall along a unit vector, m: from where it is highest to where it is lowest, or to the lowest
+/// wall's upper side.
+fn fall(scene: &Scene, down: [f64; 3]) -> f64 {
+    let project = |v: &[f64; 3]| (0..3).map(|a| v[a] * down[a]).sum::<f64>();
+    let ends = |shape: &Shape| match &shape.geometry {
+        Geometry::Disc { center, radius: r } | Geometry::Ring { center, outer: r, .. } => {
+            [project(center) - r, project(center) + r]
+        }
+        Geometry::Box(b) | Geometry::Tank { cavity: b, .. } => {
+            let ends = (0..3).map(|a| [b.min[a] * down[a], b.max[a] * down[a]]);
+            ends.fold([0.0, 0.0], |[l, h], [p, q]| [l + p.min(q), h + p.max(q)])
+        }
+    };
+    let (mut highest, mut lowest) = (f64::INFINITY, f64::NEG_INFINITY);
+    for shape in &scene.shapes {
+        let [upper, lower] = ends(shape);
+        match (shape.phase, &shape.geometry) {
+            (Phase::Fluid, _) => (highest, lowest) = (highest.min(upper), lowest.max(lower)),
+            // What lies in a tank may reach its floor.
+            (Phase::Wall, Geometry::Tank { .. }) => lowest = lowest.max(lower),
+            (Phase::Wall, _) => lowest = lowest.max(upper),
+            (Phase::Solid, _) => {}
+        }
     }
-    (high - low).max(0.0)
+    (lowest - highest).max(0.0)
 }
 
 #[cfg(test)]

@@ -1,0 +1,40 @@
+//! What a scene means that its author may not: every shape as it is computed, and remarks on what differs from what
+//! was asked, on bodies and clamps, on water and on magnitudes. A run says them at its start, `halfstep check` as well,
+//! and `run.json` keeps them.
+
+mod bodies;
+mod magnitudes;
+mod outcome;
+mod shapes;
+mod water;
+
+pub use outcome::outcome;
+pub(crate) use shapes::placed;
+
+use halfstep_scene::geometry::{self, Layout};
+use halfstep_scene::{Scene, dispatch};
+
+/// The remarks on a scene, most telling first.
+pub fn remarks(scene: &Scene) -> Vec<String> {
+    let all = dispatch!(scene.dimension, D => remarks_in::<D>(scene, &geometry::layout::<D>(scene)));
+    all.unwrap_or_default()
+}
+
+/// The same with its particles at hand.
+pub(crate) fn remarks_in<const D: usize>(scene: &Scene, layout: &Layout<D>) -> Vec<String> {
+    let mut all = Vec::new();
+    let placed = placed(scene, layout);
+    bodies::clamps(scene, &mut all);
+    bodies::free(scene, &mut all);
+    bodies::joined(scene, &mut all);
+    shapes::sizes(scene, &placed, &mut all);
+    shapes::overlaps(&placed, &mut all);
+    water::hanging(scene, layout, &mut all);
+    water::expected_speed(scene, &mut all);
+    magnitudes::materials(scene, &mut all);
+    magnitudes::lengths(scene, &mut all);
+    all
+}
+
+#[cfg(test)]
+mod tests;

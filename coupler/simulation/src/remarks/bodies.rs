@@ -1,0 +1,68 @@
+//! Remarks on bodies: what holds them, what they stand on, what they are joined with.
+
+use halfstep_scene::{Block, EffectName, Phase, Scene, Shape, Switch, geometry};
+
+/// Clamps keep their place while a wall around them moves away.
+pub(super) fn clamps(scene: &Scene, all: &mut Vec<String>) {
+    let moving = |wall: &&Shape| wall.phase == Phase::Wall && wall.motion.is_some_and(|m| m.fastest() > 0.0);
+    for shape in &scene.shapes {
+        for wall in scene.shapes.iter().filter(moving) {
+            let around = geometry::bounding_box(wall, scene);
+            if shape.clamp.iter().any(|clamp| meet(clamp, &around, scene)) {
+                all.push(format!(
+                    "the clamp of `{}` stands in `{}`, which moves: the clamp stays where it is",
+                    shape.name, wall.name
+                ));
+            }
+        }
+    }
+}
+
+fn meet(a: &Block, b: &Block, scene: &Scene) -> bool {
+    (0..scene.dimension).all(|d| a.min[d] <= b.max[d] && b.min[d] <= a.max[d])
+}
+
+/// Bodies that no clamp holds, where walls do not stop them.
+pub(super) fn free(scene: &Scene, all: &mut Vec<String>) {
+    let walls = || scene.shapes.iter().filter(|shape| shape.phase == Phase::Wall);
+    if walls().next().is_none() {
+        return;
+    }
+    for body in scene.bodies().into_iter().filter(|body| !scene.is_held(body)) {
+        let name = names(scene, &body);
+        if scene.switch(EffectName::WallContact) == Switch::Off {
+            all.push(format!(
+                "{name} is held by no clamp, and effects.wall-contact is \"off\": no wall stops it"
+            ));
+            continue;
+        }
+        let through: Vec<String> =
+            walls().filter(|wall| !wall.contact).map(|wall| format!("`{}`", wall.name)).collect();
+        if !through.is_empty() {
+            let (are, them) = if through.len() == 1 { ("does", "it") } else { ("do", "them") };
+            all.push(format!(
+                "{name} is held by no clamp, and {} {are} not stop it (contact is false): it goes through {them}",
+                through.join(" and ")
+            ));
+        }
+    }
+}
+
+/// Shapes of one solid that touch are one piece.
+pub(super) fn joined(scene: &Scene, all: &mut Vec<String>) {
+    for body in scene.bodies().into_iter().filter(|body| body.len() > 1) {
+        let clamped = body.iter().filter(|&&k| !scene.shapes[k].clamp.is_empty()).count();
+        // A held and a free shape beside each other are what is easily mistaken for two bodies.
+        let mixed = clamped > 0 && clamped < body.len();
+        let what = if mixed { ", held by the clamp of one" } else { "" };
+        all.push(format!(
+            "{} touch and are one connected piece{what}: they never part (a [[solid]] of its own parts them)",
+            names(scene, &body)
+        ));
+    }
+}
+
+fn names(scene: &Scene, body: &[usize]) -> String {
+    let names: Vec<String> = body.iter().map(|&k| format!("`{}`", scene.shapes[k].name)).collect();
+    names.join(" and ")
+}

@@ -1,0 +1,40 @@
+//! Remarks on numbers that are right and yet hardly meant.
+
+use halfstep_scene::{Block, Geometry, Scene, geometry};
+
+/// Softer than any gel, stiffer than diamond, Pa.
+const STIFFNESS: [f64; 2] = [1e3, 2e12];
+/// Lighter than aerogel, heavier than osmium, kg/m³.
+const DENSITY: [f64; 2] = [50.0, 25_000.0];
+/// Smaller than a drop, larger than a harbour, m.
+const SIZE: [f64; 2] = [1e-3, 1e3];
+
+/// Materials that hardly exist.
+pub(super) fn materials(scene: &Scene, all: &mut Vec<String>) {
+    let mut check = |what: String, value: f64, [low, high]: [f64; 2], unit: &str| {
+        if !(low..=high).contains(&value) {
+            let word = if value < low { "little" } else { "much" };
+            all.push(format!("{what} = {value} {unit} is very {word}: is the unit right?"));
+        }
+    };
+    if let Some(fluid) = &scene.fluid {
+        check("fluid.density".into(), fluid.density, DENSITY, "kg/m³");
+    }
+    for solid in &scene.solids {
+        check(format!("{}.density", solid.name), solid.density, DENSITY, "kg/m³");
+        check(format!("{}.youngs_modulus", solid.name), solid.youngs_modulus, STIFFNESS, "Pa");
+    }
+}
+
+/// Scenes of a size that is hardly meant.
+pub(super) fn lengths(scene: &Scene, all: &mut Vec<String>) {
+    let boxes = scene.shapes.iter().map(|shape| match &shape.geometry {
+        Geometry::Tank { cavity, .. } => *cavity,
+        _ => geometry::bounding_box(shape, scene),
+    });
+    let extent = |b: Block| (0..scene.dimension).map(|a| b.max[a] - b.min[a]).fold(0.0, f64::max);
+    let largest = boxes.map(extent).fold(0.0, f64::max);
+    if largest > 0.0 && !(SIZE[0]..=SIZE[1]).contains(&largest) {
+        all.push(format!("the largest shape is {largest} m long: lengths are in metres"));
+    }
+}

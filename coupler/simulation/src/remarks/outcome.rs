@@ -1,0 +1,24 @@
+//! Remarks on how a run went.
+
+use halfstep_output::RunReport;
+
+/// Density error that a weakly compressible fluid should stay below.
+const DENSITY_ERROR: f64 = 0.03;
+/// Distance of fluid and solid particles that says that one went into the other, over the mean spacing.
+const CLOSEST: f64 = 0.1;
+
+/// What at the end of a run says that its result is not to be trusted as it is.
+pub fn outcome(report: &RunReport) -> Vec<String> {
+    let mut all = Vec::new();
+    let (removed, fluid) = (report.particles.removed, report.particles.fluid);
+    if removed > 0 {
+        all.push(format!("{removed} of {fluid} fluid particles left the domain"));
+    }
+    if let Some(error) = report.audit.density_error.filter(|error| *error > DENSITY_ERROR) {
+        all.push(format!("density error {:.0} %: the fluid was compressed or torn", 100.0 * error));
+    }
+    if let Some(gap) = report.audit.min_gap.filter(|gap| *gap < CLOSEST) {
+        all.push(format!("fluid and solid came as close as {gap:.3} dx"));
+    }
+    all
+}

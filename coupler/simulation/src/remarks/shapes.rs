@@ -1,0 +1,183 @@
+//! Every shape as asked and as computed.
+
+use halfstep_scene::geometry::{Layout, Plate};
+use halfstep_scene::{Geometry, Phase, Scene, Shape};
+use std::fmt;
+
+/// From which relative difference on a size is remarked.
+const NOTABLE: f64 = 0.02;
+/// From which share of its particles on a loss to other shapes is remarked.
+const LOST: f64 = 0.1;
+
+/// A shape with its particles.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Placed {
+    /// Name of the shape.
+    pub(crate) name: String,
+    phase: Phase,
+    /// Sizes along the axes that the scene asks for, m; a disc's diameter, a ring's thickness.
+    asked: Vec<f64>,
+    /// The same as computed, m.
+    computed: Vec<f64>,
+    /// Particles that it has.
+    particles: usize,
+    /// Particles that lie in shapes that take their places.
+    lost: usize,
+    /// Of its particles, those that a clamp holds.
+    clamped: usize,
+    /// Mass, kg (2D: kg/m).
+    mass: f64,
+    /// Rows across a plate.
+    rows: Option<f64>,
+    /// A wall's motion.
+    moves: bool,
+}
+
+/// The shapes of a scene, in its order.
+pub(crate) fn placed<const D: usize>(scene: &Scene, layout: &Layout<D>) -> Vec<Placed> {
+    scene.shapes.iter().enumerate().map(|(index, shape)| of_shape(scene, layout, index, shape)).collect()
+}
+
+fn of_shape<const D: usize>(scene: &Scene, layout: &Layout<D>, index: usize, shape: &Shape) -> Placed {
+    let dx = scene.spacing(shape);
+    let own = |body: u32| body as usize == index;
+    let clamped = layout.solid.iter().filter(|p| own(p.body) && p.clamped).count();
+    let (particles, density) = match shape.phase {
+        Phase::Solid => (
+            layout.solid.iter().filter(|p| own(p.body)).count(),
+            shape.solid.and_then(|k| scene.solids.get(k)).map_or(0.0, |solid| solid.density),
+        ),
+        Phase::Fluid => (
+            layout.fluid.iter().filter(|p| own(p.shape)).count(),
+            scene.fluid.as_ref().map_or(0.0, |fluid| fluid.density),
+        ),
+        Phase::Wall => (layout.wall.iter().filter(|p| own(p.shape)).count(), 0.0),
+    };
+    let whole = halfstep_scene::geometry::particles_alone::<D>(scene, shape);
+    let cells = |extent: f64| (extent / dx).round() * dx;
+    let (asked, computed) = match &shape.geometry {
+        Geometry::Box(b) | Geometry::Tank { cavity: b, .. } => {
+            let asked: Vec<f64> = (0..D).map(|a| b.max[a] - b.min[a]).collect();
+            let computed = asked.iter().map(|&extent| cells(extent)).collect();
+            (asked, computed)
+        }
+        // What has the area (volume) of its particles.
+        Geometry::Disc { radius, .. } => (vec![2.0 * radius], vec![2.0 * equivalent_radius::<D>(whole, dx)]),
+        Geometry::Ring { inner, outer, .. } => {
+            let hole = inner.powi(D as i32);
+            let radius = (equivalent_radius::<D>(whole, dx).powi(D as i32) + hole).powf(1.0 / D as f64);
+            (vec![outer - inner], vec![radius - inner])
+        }
+    };
+    Placed {
+        name: shape.name.clone(),
+        phase: shape.phase,
+        asked,
+        computed,
+        particles,
+        lost: whole.saturating_sub(particles),
+        clamped,
+        mass: density * particles as f64 * dx.powi(D as i32),
+        rows: Plate::<D>::of(scene, shape).map(|plate| plate.rows),
+        moves: shape.motion.is_some(),
+    }
+}
+
+/// Radius of the disc or ball that has the measure of so many particles, m.
+fn equivalent_radius<const D: usize>(particles: usize, dx: f64) -> f64 {
+    let unit = if D == 2 { std::f64::consts::PI } else { 4.0 / 3.0 * std::f64::consts::PI };
+    dx * (particles as f64 / unit).powf(1.0 / D as f64)
+}
+
+impl Placed {
+    /// The axis on which the computed size differs most, and by which factor.
+    fn worst(&self) -> Option<(usize, f64)> {
+        let factors = self.asked.iter().zip(&self.computed).map(|(asked, computed)| computed / asked);
+        factors.enumerate().max_by(|a, b| (a.1 - 1.0).abs().total_cmp(&(b.1 - 1.0).abs()))
+    }
+}
+
+impl fmt::Display for Placed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let size = |of: &[f64]| of.iter().map(|x| length(*x)).collect::<Vec<_>>().join(" x ");
+        let phase = match self.phase {
+            Phase::Fluid => "fluid",
+            Phase::Solid => "solid",
+            Phase::Wall => "wall",
+        };
+        write!(f, "{phase:<7}{} m", size(&self.asked))?;
+        if self.worst().is_some_and(|(_, factor)| (factor - 1.0).abs() >= 5e-4) {
+            write!(f, " asked, {} m computed", size(&self.computed))?;
+        }
+        write!(f, "; {} particles", self.particles)?;
+        if self.lost > 0 {
+            write!(f, " ({} more lie in other shapes)", self.lost)?;
+        }
+        if let Some(rows) = self.rows {
+            write!(f, ", {rows:.0} across")?;
+        }
+        if self.mass > 0.0 {
+            write!(f, ", {} kg/m", length(self.mass))?;
+        }
+        if self.clamped > 0 {
+            write!(f, ", {} clamped", self.clamped)?;
+        }
+        if self.moves {
+            write!(f, ", moves")?;
+        }
+        Ok(())
+    }
+}
+
+/// A number with four digits that count.
+fn length(x: f64) -> String {
+    let rounded: f64 = format!("{x:.3e}").parse().unwrap_or(x);
+    format!("{rounded}")
+}
+
+/// Shapes whose size is another one than asked for.
+pub(super) fn sizes(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
+    for (shape, of_scene) in placed.iter().zip(&scene.shapes) {
+        let Some((axis, factor)) = shape.worst().filter(|(_, factor)| (factor - 1.0).abs() >= NOTABLE) else {
+            continue;
+        };
+        let box_ = matches!(of_scene.geometry, Geometry::Box(_));
+        if shape.phase == Phase::Wall && box_ {
+            // A wall's thickness is nobody's question.
+            continue;
+        }
+        let (asked, computed) = (length(shape.asked[axis]), length(shape.computed[axis]));
+        let what = match &of_scene.geometry {
+            Geometry::Box(_) | Geometry::Tank { .. } => ["wide", "high", "deep"][axis],
+            Geometry::Disc { .. } => "across",
+            Geometry::Ring { .. } => "thick",
+        };
+        let thin = shape.rows.is_some() && shape.asked.iter().all(|extent| *extent >= shape.asked[axis]);
+        let stiffness = match thin {
+            true => format!(": {:.2} times the bending stiffness", factor.powi(3)),
+            false => String::new(),
+        };
+        let dx = scene.spacing(of_scene);
+        let remedy = match shape.phase {
+            Phase::Solid => format!(" (its spacing is {}; `across` at the shape makes it fit)", length(dx)),
+            _ => format!(" (the resolution is {})", length(dx)),
+        };
+        all.push(format!(
+            "`{}` is {asked} m {what} in the scene and {computed} m as computed{stiffness}{remedy}",
+            shape.name
+        ));
+    }
+}
+
+/// Shapes that lose many of their particles to others.
+pub(super) fn overlaps(placed: &[Placed], all: &mut Vec<String>) {
+    for shape in placed.iter().filter(|shape| shape.phase != Phase::Wall) {
+        let whole = shape.particles + shape.lost;
+        if shape.lost as f64 > LOST * whole as f64 {
+            all.push(format!(
+                "`{}` has {} of its {whole} particles: the others' places are taken by shapes that it overlaps",
+                shape.name, shape.particles
+            ));
+        }
+    }
+}

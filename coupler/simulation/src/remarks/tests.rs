@@ -1,0 +1,171 @@
+//! Scenes that are valid and mean something else than they say, and what is remarked on each.
+
+use super::remarks;
+use halfstep_scene::parse;
+use std::path::Path;
+
+/// Water on a floor, and what a test adds.
+fn scene(resolution: f64, rest: &str) -> Vec<String> {
+    let text = format!(
+        "resolution = {resolution}\nend_time = 1.0\n[fluid]\ndensity = 1000.0\n[solid]\ndensity = 1100.0\n\
+         youngs_modulus = 12e6\npoissons_ratio = 0.4\n{rest}"
+    );
+    remarks(&parse(&text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}")))
+}
+
+const TANK: &str = "[[shape]]\nname = \"tank\"\nphase = \"wall\"\ntank = { min = [0.0, 0.0], max = [0.4, 0.3], open = [\"top\"] }\n";
+const WATER: &str =
+    "[[shape]]\nname = \"water\"\nphase = \"fluid\"\nbox = { min = [0.0, 0.0], max = [0.1, 0.1] }\n";
+const PLATE: &str = "[[shape]]\nname = \"plate\"\nphase = \"solid\"\nbox = { min = [0.2, 0.0], max = [0.22, 0.1] }\n\
+                     clamp = { min = [0.2, 0.0], max = [0.22, 0.01] }\n";
+
+fn plain(parts: &[&str]) -> Vec<String> {
+    scene(0.005, &parts.concat())
+}
+
+#[test]
+fn a_scene_that_means_what_it_says_is_not_remarked_on() {
+    assert_eq!(plain(&[TANK, WATER, PLATE]), [""; 0]);
+}
+
+#[test]
+fn every_shipped_scene_means_what_it_says() {
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    let mut found = 0;
+    for entry in std::fs::read_dir(scenes).expect("scenes") {
+        let path = entry.expect("a scene").path();
+        if path.extension().is_some_and(|e| e == "toml") {
+            let scene = halfstep_scene::load(&path, &[]).expect("a right scene");
+            assert_eq!(remarks(&scene), [""; 0], "{}", path.display());
+            found += 1;
+        }
+    }
+    assert!(found >= 12, "{found}");
+}
+
+#[test]
+fn a_clamp_in_a_wall_that_moves() {
+    let moving = TANK
+        .replace("open", "open")
+        .replace("phase = \"wall\"", "phase = \"wall\"\nmotion = { amplitude = [0.01, 0.0], period = 1.0 }");
+    let found = plain(&[
+        &moving,
+        WATER,
+        &PLATE.replace("[0.2, 0.0], max = [0.22, 0.01]", "[0.2, -0.01], max = [0.22, 0.01]"),
+    ]);
+    assert_eq!(found, ["the clamp of `plate` stands in `tank`, which moves: the clamp stays where it is"]);
+}
+
+#[test]
+fn a_plate_of_another_thickness() {
+    // 5 mm at 1.4 mm are four rows: 5.6 mm, and (5.6 / 5)³ = 1.40. All else are multiples of 1.4 mm.
+    let rest =
+        [TANK, WATER].concat().replace("0.4, 0.3]", "0.42, 0.308]").replace("0.1, 0.1]", "0.098, 0.098]");
+    let plate = PLATE.replace("0.22", "0.205").replace("0.1]", "0.098]");
+    assert_eq!(
+        scene(0.0014, &format!("{rest}{plate}")),
+        [
+            "`plate` is 0.005 m wide in the scene and 0.0056 m as computed: 1.40 times the bending stiffness (its \
+          spacing is 0.0014; `across` at the shape makes it fit)"
+        ]
+    );
+    // With a spacing of its own it fits.
+    let fitted = plate.replace("phase = \"solid\"", "phase = \"solid\"\nacross = 4");
+    assert_eq!(scene(0.0014, &format!("{rest}{fitted}")), [""; 0]);
+}
+
+#[test]
+fn a_tank_of_another_width() {
+    // 0.4 m at 0.03 m are 13 cells: 0.39 m.
+    let plate = PLATE
+        .replace("0.2,", "0.15,")
+        .replace("0.22,", "0.24,")
+        .replace("0.1]", "0.12]")
+        .replace("0.01]", "0.03]");
+    let found = scene(0.03, &[TANK, &WATER.replace("0.1, 0.1]", "0.12, 0.12]"), &plate].concat());
+    assert!(found[0].starts_with("`tank` is 0.4 m wide in the scene and 0.39 m as computed"), "{found:?}");
+}
+
+#[test]
+fn shapes_that_touch_are_one_piece() {
+    let above = PLATE.replace("\"plate\"", "\"block\"").replace("0.22", "0.3").replace("[0.2,", "[0.22,");
+    let free = above.lines().filter(|line| !line.starts_with("clamp")).collect::<Vec<_>>().join("\n");
+    let found = plain(&[TANK, WATER, PLATE, &free]);
+    assert_eq!(
+        found,
+        [
+            "`plate` and `block` touch and are one connected piece, held by the clamp of one: they never part (a \
+          [[solid]] of its own parts them)"
+        ]
+    );
+}
+
+#[test]
+fn a_body_that_falls_through_a_wall() {
+    let block = PLATE.lines().filter(|line| !line.starts_with("clamp")).collect::<Vec<_>>().join("\n") + "\n";
+    // By default walls that stand still carry it.
+    assert_eq!(plain(&[TANK, WATER, &block]), [""; 0]);
+    let passing = TANK.replace("phase = \"wall\"", "phase = \"wall\"\ncontact = false");
+    assert_eq!(
+        plain(&[&passing, WATER, &block]),
+        ["`plate` is held by no clamp, and `tank` does not stop it (contact is false): it goes through it"]
+    );
+    let off = plain(&[TANK, WATER, &block, "[effects]\nwall-contact = \"off\"\n"]);
+    assert!(off[0].contains("effects.wall-contact is \"off\": no wall stops it"), "{off:?}");
+}
+
+#[test]
+fn water_in_the_air_and_in_a_wall() {
+    let high = WATER.replace("[0.0, 0.0], max = [0.1, 0.1]", "[0.0, 0.1], max = [0.1, 0.2]");
+    assert_eq!(
+        plain(&[TANK, &high, PLATE]),
+        ["`water` hangs in the air: nothing is right below it, so it falls"]
+    );
+    // Carried by other water it does not.
+    assert_eq!(plain(&[TANK, WATER, &high.replace("\"water\"", "\"more\""), PLATE]), [""; 0]);
+    // Three of ten columns lie in the tank's wall, 15 mm thick.
+    let beside = WATER.replace("[0.0, 0.0], max = [0.1, 0.1]", "[0.365, 0.0], max = [0.415, 0.1]");
+    let found = plain(&[TANK, &beside, PLATE]);
+    assert_eq!(
+        found,
+        ["`water` has 140 of its 200 particles: the others' places are taken by shapes that it overlaps"]
+    );
+}
+
+#[test]
+fn water_that_falls_too_fast_for_its_sound_speed() {
+    // sqrt(2 g 0.1 m) = 1.40 m/s, and over 7 m/s Mach 0.2.
+    let slow = [TANK, WATER, PLATE].concat();
+    let text = format!(
+        "resolution = 0.005\nend_time = 1.0\n[fluid]\ndensity = 1000.0\nsound_speed = 7.0\n[solid]\n\
+                        density = 1100.0\nyoungs_modulus = 12e6\npoissons_ratio = 0.4\n{slow}"
+    );
+    let found = remarks(&parse(&text, Path::new("x.toml"), &[]).expect("a right scene"));
+    assert_eq!(
+        found,
+        [
+            "the fluid can fall to 1.40 m/s, Mach 0.20: it is compressed by about 4 %; fluid.sound_speed = 15 keeps it \
+          below 1 %"
+        ]
+    );
+}
+
+#[test]
+fn units_that_are_hardly_meant() {
+    let text = [TANK, WATER, PLATE].concat();
+    let change = |from: &str, to: &str| {
+        let head = "resolution = 0.005\nend_time = 1.0\n[fluid]\ndensity = 1000.0\n[solid]\ndensity = 1100.0\n\
+                    youngs_modulus = 12e6\npoissons_ratio = 0.4\n";
+        let scene = format!("{head}{text}").replace(from, to);
+        remarks(&parse(&scene, Path::new("x.toml"), &[]).expect("a right scene"))
+    };
+    assert_eq!(change("12e6", "12.0"), ["solid.youngs_modulus = 12 Pa is very little: is the unit right?"]);
+    assert_eq!(
+        change("density = 1000.0", "density = 1.1"),
+        ["fluid.density = 1.1 kg/m³ is very little: is the unit right?"]
+    );
+    assert_eq!(
+        change("max = [0.4, 0.3]", "max = [2e3, 0.3]"),
+        ["the largest shape is 2000 m long: lengths are in metres"]
+    );
+}
