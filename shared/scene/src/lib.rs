@@ -23,6 +23,7 @@ mod dimension;
 mod document;
 mod effect;
 mod error;
+mod file;
 pub mod geometry;
 mod load;
 mod metric;
