@@ -1,6 +1,6 @@
 # What people run. Every target first installs what is missing (setup.sh) and then calls cargo.
 
-.PHONY: gate test validate stability baselines bench prices docs book setup
+.PHONY: gate test torture validate stability baselines bench prices docs book setup
 
 # Where rustup puts cargo, for shells that were open before.
 export PATH := $(PATH):$(HOME)/.cargo/bin
@@ -19,6 +19,11 @@ test: setup
 # The benchmarks of the literature at full resolution: long.
 validate: setup
 	cargo test --release -p halfstep-tests -- --ignored --nocapture
+
+# Interrupts real runs at random instants by random signals, and resumes them: RUNS (1000) of them or SECONDS long.
+torture: setup
+	cargo build --release -p halfstep-tests --bins
+	target/release/torture $(or $(RUNS),1000) $(or $(SECONDS),1000000)
 
 # Stores the bits of the coarse runs in validation/CASE/baseline.toml anew, at each instruction set level of this
 # processor, and prints which changed. Say in CHANGELOG.md why they did.

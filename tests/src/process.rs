@@ -37,6 +37,18 @@ pub fn role_of(launcher: u32, role: &str) -> Option<u32> {
     })
 }
 
+/// All processes with this value of an environment variable, whoever started them.
+pub fn with_variable(name: &str, value: &str) -> Vec<u32> {
+    let wanted = format!("{name}={value}").into_bytes();
+    let processes = std::fs::read_dir("/proc").into_iter().flatten().flatten();
+    let pids = processes.filter_map(|entry| entry.file_name().to_str()?.parse().ok());
+    pids.filter(|pid: &u32| {
+        let variables = std::fs::read(format!("/proc/{pid}/environ")).unwrap_or_default();
+        variables.split(|&byte| byte == 0).any(|variable| variable == wanted)
+    })
+    .collect()
+}
+
 /// What the runs of a launcher have in shared memory and in the folders for temporary files.
 pub fn leftovers(launcher: u32) -> Vec<String> {
     let prefix = format!("hs{launcher}-");

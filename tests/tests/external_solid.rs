@@ -96,6 +96,36 @@ fn a_run_with_the_block_goes_on_after_an_interruption() {
     );
 }
 
+/// What cannot be is refused where it arrives, and named by its field and not by what the fluid makes of it.
+#[test]
+fn a_block_that_sends_nonsense_is_named() {
+    let script = std::fs::read_to_string(repository().join("tests/python/spring_block.py")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    for (honest, lie, named) in [
+        (
+            "(x_mid, 0, 0)",
+            "(x_mid + 10 * (fields['step'] == 20), 0, 0)",
+            "by 1.000e1 m at step 20, although its particles are no faster than",
+        ),
+        ("speed, density, mass", "speed, density, -mass", "mass is "),
+        ("send(len(rest)", "send(0", "publishes no interface particles"),
+        (
+            "stage=stage, time=time",
+            "stage=stage, status=3 * (step == 20), time=time",
+            "status is 3, expected 0 (ok)",
+        ),
+    ] {
+        let lying = folder.path().join("lying_block.py");
+        assert!(script.contains(honest), "{honest}");
+        std::fs::write(&lying, script.replace(honest, lie)).unwrap();
+        let line = format!("{} {} {STIFFNESS}", python(), lying.display());
+        let outcome = scene("spring-block").until(0.05).argument("--solid").argument(line).outcome();
+        assert_eq!(outcome.code(), Some(2), "{lie}: {}", outcome.stderr);
+        let error = outcome.report().error.unwrap();
+        assert!(error.contains("the solid") && error.contains(named), "{lie}: {error}");
+    }
+}
+
 #[test]
 fn a_block_started_by_hand_moves_as_one_that_the_run_starts() {
     let started = scene("spring-block").until(0.05).argument("--solid").argument(command()).run();

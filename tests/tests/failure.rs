@@ -87,6 +87,54 @@ fn a_killed_launcher_takes_its_roles_along() {
     usable(&outcome, launcher);
 }
 
+/// Also a program that the shell of another program has started, and that does not want to end; the launcher is killed
+/// while that program is about to connect.
+#[test]
+fn a_killed_launcher_takes_foreign_programs_along() {
+    for line in [
+        "exec >&-; trap '' TERM; sleep 1000 & echo $! > PID; wait; wait",
+        "sh -c 'echo $$ > PID; exec sleep 1000'",
+    ] {
+        let _machine = whole_machine();
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("pid");
+        let line = line.replace("PID", &file.display().to_string());
+        let running = scene("spring-block").argument("--solid").argument(line).start();
+        let launcher = running.pid();
+        let written = || std::fs::read_to_string(&file).ok()?.trim().parse::<u32>().ok();
+        eventually(20.0, "the foreign program", || written().is_some());
+        let program = written().unwrap();
+        eventually(20.0, "the run's objects", || leftovers(launcher).len() > 10);
+        assert!(is_alive(program), "it does not end by itself");
+        kill(launcher, libc::SIGKILL);
+        running.wait();
+        eventually(PROMISE, "its end", || !is_alive(program));
+        eventually(PROMISE, "the end of all", || leftovers(launcher).is_empty());
+    }
+}
+
+/// Cleaners of temporary folders remove what has not been touched for long. The run's sockets are among it.
+#[test]
+fn a_run_whose_temporary_folder_is_removed_goes_on() {
+    let _machine = whole_machine();
+    let temporary = tempfile::tempdir().unwrap();
+    let gate = || scene("elastic-gate").set("resolution", 0.0025).until(0.03);
+    let running = gate().variable("TMPDIR", temporary.path()).start();
+    let launcher = running.pid();
+    let index = running.dir().join("frames/solid.hdf.series");
+    eventually(60.0, "the first frame", || index.exists());
+    let folder = || std::fs::read_dir(temporary.path()).unwrap().flatten().next();
+    std::fs::remove_dir_all(folder().expect("the folder of the run").path()).unwrap();
+    let solid = role_of(launcher, "solid").expect("a child");
+    kill(solid, libc::SIGSTOP);
+    std::thread::sleep(Duration::from_millis(300));
+    kill(solid, libc::SIGCONT);
+    let outcome = running.wait();
+    assert_eq!(outcome.code(), Some(0), "{}", outcome.stderr);
+    assert_eq!(outcome.report().audit.state_hash, gate().start().wait().report().audit.state_hash);
+    assert_eq!(leftovers(launcher), Vec::<String>::new());
+}
+
 #[test]
 fn an_interrupted_run_is_stopped_and_complete() {
     let _machine = whole_machine();

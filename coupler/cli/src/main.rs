@@ -261,15 +261,20 @@ fn options(
 /// Says how a run ended and where to look.
 fn tell(scene: &Scene, out: &Path, (report, error): run::Ended) -> ExitCode {
     if let Some(error) = error {
-        say::warn(format_args!("error: {error}"));
+        let log = out.join("log.txt");
+        let is_empty = std::fs::metadata(&log).map_or(true, |log| log.len() == 0);
+        let more = if is_empty { String::new() } else { format!("\nthe log has more: {}", log.display()) };
+        say::warn(format_args!("error: {error}{more}"));
     }
+    // What could be drawn: a run may have lost what its picture is made of.
+    let picture = Some(out.join("plot.png")).filter(|picture| picture.exists());
     say::tell(format_args!(
         "{}: {} steps to t = {} s in {:.1} s; see {}",
         scene.name,
         report.steps,
         report.time,
         report.wall_seconds,
-        out.join("plot.png").display()
+        picture.as_deref().unwrap_or(out).display()
     ));
     let finished = report.status == Some(RunStatus::Finished);
     if !finished && FOLDERS.iter().any(|folder| out.join(folder).join(MANIFEST).exists()) {

@@ -6,7 +6,7 @@ use crate::energy::Account;
 use crate::error::RunError;
 use crate::foreign::ForeignSolid;
 use crate::recorder::Measured;
-use crate::solids::Solids;
+use crate::solids::{Jump, Solids};
 use halfstep_link::{CouplerPort, Expect, StateMessage};
 use halfstep_output::run_json::RoleSeconds;
 use halfstep_scene::Scene;
@@ -269,10 +269,19 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
         if expect.is_last() {
             return Ok(());
         }
-        match self.solids.recounted(&self.states) {
+        let (step, name) = (expect.step, |place| self.port.name(place));
+        if let Some((place, first, now)) = self.solids.recounted(&self.states) {
+            let solid = name(place);
+            return Err(match first {
+                0 => RunError::NoParticles { solid },
+                _ => RunError::SolidCount { solid, first, now, step },
+            });
+        }
+        let dt = self.tick.and_then(|tick| tick.dt).unwrap_or_default();
+        match self.solids.jumped(&self.states, dt) {
             None => Ok(()),
-            Some((place, first, now)) => {
-                Err(RunError::SolidCount { solid: self.port.name(place), first, now, step: expect.step })
+            Some(Jump { place, particle, distance, speed }) => {
+                Err(RunError::Jump { solid: name(place), particle, distance, speed, dt, step })
             }
         }
     }
@@ -285,7 +294,7 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
                 let names: Vec<Name> = (0..self.port.participants()).map(|k| self.port.name(k)).collect();
                 Err(Diverged::told(role, &names, header).into())
             }
-            _ => Err(RunError::RoleFailed { role, step: header.step }),
+            _ => Err(RunError::RoleFailed { role, step: header.step, said: None }),
         }
     }
 

@@ -7,6 +7,7 @@ use halfstep_role::lockstep::RoleError;
 use halfstep_wire::Name;
 use halfstep_wire::failure::Diverged;
 use halfstep_wire::state::StateError;
+use std::fmt::{Display, Formatter};
 use std::process::ExitStatus;
 
 /// Why a run failed.
@@ -21,23 +22,18 @@ pub enum RunError {
         hint: String,
     },
     /// A role gave up.
-    #[error("the {role} failed at step {step}; log.txt says why")]
+    #[error("the {role} failed at step {step}{}", after_colon(said.as_deref()))]
     RoleFailed {
         /// Which.
         role: Name,
         /// Step n.
         step: u64,
+        /// Its last words in the log.
+        said: Option<String>,
     },
     /// A role's process ended.
-    #[error("the {role} process ended ({status}) while the run was going on: {link}")]
-    RoleEnded {
-        /// Which.
-        role: Name,
-        /// How.
-        status: ExitStatus,
-        /// What the coupler saw.
-        link: Box<LinkError>,
-    },
+    #[error("{0}")]
+    RoleEnded(Box<RoleEnd>),
     /// Nobody started a solid.
     #[error("no solid came within {seconds} s (--solid-wait)")]
     NoSolid {
@@ -66,6 +62,31 @@ pub enum RunError {
         first: u64,
         /// Now.
         now: u64,
+        /// Step n.
+        step: u64,
+    },
+    /// A solid has nothing that the fluid could meet.
+    #[error("the {solid} publishes no interface particles: a solid has at least one")]
+    NoParticles {
+        /// Which solid.
+        solid: Name,
+    },
+    /// A particle of a solid is somewhere else from one state to the next.
+    #[error(
+        "the {solid} moved its particle {particle} by {distance:.3e} m at step {step}, although its particles are no \
+         faster than {speed:.3e} m/s and the step is {dt:.3e} s: what its process sends does not belong together"
+    )]
+    Jump {
+        /// Which solid.
+        solid: Name,
+        /// Number of the particle.
+        particle: u32,
+        /// How far, m.
+        distance: f64,
+        /// Largest speed of its particles, m/s.
+        speed: f64,
+        /// Time step, s.
+        dt: f64,
         /// Step n.
         step: u64,
     },
@@ -108,4 +129,43 @@ impl From<RoleError> for RunError {
             other => Self::Role(other),
         }
     }
+}
+
+/// How the process of a role ended while the run was going on.
+#[derive(Debug)]
+pub struct RoleEnd {
+    /// Which.
+    pub role: Name,
+    /// How.
+    pub status: ExitStatus,
+    /// Step n and its time, s; `None`: the run had not begun.
+    pub at: Option<(u64, f64)>,
+    /// Its last words in the log.
+    pub said: Option<String>,
+    /// It is no program of the user's: one that ends with words has found the fault, at itself or at another.
+    pub is_own: bool,
+    /// What the coupler saw.
+    pub link: LinkError,
+}
+
+impl Display for RoleEnd {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        let Self { role, status, link, .. } = self;
+        let when = match self.at {
+            Some((step, time)) => format!("at step {step}, t = {time:.6e} s"),
+            None => "before the run had begun".into(),
+        };
+        match &self.said {
+            Some(said) if self.is_own => {
+                write!(f, "{said} (the {role} process ended with it, {status}, {when})")
+            }
+            Some(said) => write!(f, "the {role} process ended ({status}) {when}: {said}"),
+            None if *link == LinkError::Aborted => write!(f, "the {role} process ended ({status}) {when}"),
+            None => write!(f, "the {role} process ended ({status}) {when}: {link}"),
+        }
+    }
+}
+
+fn after_colon(said: Option<&str>) -> String {
+    said.map_or_else(|| "; log.txt says why".into(), |said| format!(": {said}"))
 }

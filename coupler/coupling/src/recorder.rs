@@ -11,8 +11,11 @@ use halfstep_wire::failure::Diverged;
 use halfstep_wire::protocol::{Audit, StateHeader};
 use halfstep_wire::state::{Fields, Group, State, StateError};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
+
+/// Least pause between two renewals of the report: each waits for the disk.
+const RENEWAL: Duration = Duration::from_secs(1);
 
 /// What a participant measured on the state at n.
 #[derive(Clone, Copy, Debug)]
@@ -42,6 +45,9 @@ pub struct Recorder {
     log: Option<ProbeLog>,
     /// Length of the log when it was last synchronised, bytes.
     log_bytes: u64,
+    /// What a crash of the machine leaves of the run's report: its file, and when it was written last.
+    report: Option<(PathBuf, RunReport)>,
+    renewed: Instant,
     /// For each probe the place of its participant and its number of values.
     order: Vec<(usize, usize)>,
     values: Vec<f64>,
@@ -112,7 +118,24 @@ impl Recorder {
             balance: EnergyBalance::new(scene),
             earlier: 0.0,
             log_bytes: 0,
+            report: None,
+            renewed: now,
         }
+    }
+
+    /// Renews the report in a file with frames, at most every second, with the steps done and the time reached.
+    pub fn renew(&mut self, path: PathBuf, report: RunReport) {
+        self.report = Some((path, report));
+    }
+
+    /// Writes down how far the run has come, and makes sure that the rows so far outlive a crash of the machine.
+    fn renew_report(&mut self) -> Result<(), OutputError> {
+        self.renewed = Instant::now();
+        self.synchronise()?;
+        let wall_seconds = self.wall_seconds();
+        let Some((path, report)) = &mut self.report else { return Ok(()) };
+        (report.steps, report.time, report.wall_seconds) = (self.steps, self.time, wall_seconds);
+        report.write(path)
     }
 
     /// The columns of a scene's probe log.
@@ -195,6 +218,9 @@ impl Recorder {
             self.steps += 1;
             self.particle_steps += particles as f64;
             self.dt = (self.dt.0.min(dt), self.dt.1 + dt, self.dt.2.max(dt));
+        }
+        if tick.frame && self.renewed.elapsed() > RENEWAL {
+            self.renew_report()?;
         }
         for solid in measured.iter().filter(|m| m.phase == Phase::Solid) {
             self.sub_steps = self.sub_steps.max(solid.sub_steps);

@@ -13,6 +13,18 @@ use halfstep_wire::state::{Fields, State, StateError};
 use halfstep_wire::wide;
 use xxhash_rust::xxh3::Xxh3;
 
+/// Part of the smoothing length that a particle of a solid may move between two states: more, and the fluid's interface
+/// particles would no longer cover it.
+const REACH: f64 = 0.6;
+
+/// A particle that is somewhere else from one state to the next, although its solid says that it is slow.
+pub(crate) struct Jump {
+    pub(crate) place: usize,
+    pub(crate) particle: u32,
+    pub(crate) distance: f64,
+    pub(crate) speed: f64,
+}
+
 /// All solids of a run. Participants are named by their place in the run, and `states` are those of all of them.
 pub(crate) struct Solids<const D: usize> {
     /// Place of the first solid: 1 after a fluid, else 0.
@@ -30,6 +42,10 @@ struct SolidSide<const D: usize> {
     at_n: Vec<[f64; 3]>,
     /// Number of its interface particles, once known.
     count: Option<u64>,
+    /// Positions of the state before, m: of a foreign solid.
+    before: Vec<[f64; 3]>,
+    /// How far a particle may come between two states whatever its velocity, m.
+    reach: f64,
     /// Hash of the state that a checkpoint was made of, as the solid published it.
     saved: u64,
     foreign: Option<ForeignSolid>,
@@ -43,6 +59,8 @@ impl<const D: usize> Solids<D> {
             forces: Vec::new(),
             at_n: Vec::new(),
             count: None,
+            before: Vec::new(),
+            reach: REACH * scene.smoothing_ratio * scene.resolution,
             saved: 0,
             foreign,
         };
@@ -77,14 +95,35 @@ impl<const D: usize> Solids<D> {
         Some(self.first + solid)
     }
 
-    /// Place of a solid whose number of interface particles is not what it was, with that number at first and now.
+    /// Place of a solid that has no interface particles, or not as many as it had; with their number at first and now.
     pub(crate) fn recounted(&mut self, states: &[impl StateMessage]) -> Option<(usize, u64, u64)> {
         let all = self.solids.iter_mut().zip(&states[self.first..]).enumerate();
         let mut counts = all.map(|(solid, (side, state))| {
             let now = state.records().len() as u64;
             (self.first + solid, *side.count.get_or_insert(now), now)
         });
-        counts.find(|(_, first, now)| first != now)
+        counts.find(|(_, first, now)| first != now || *now == 0)
+    }
+
+    /// A particle of a foreign solid that has come farther since the state before than the solid's velocities and the
+    /// time step, s, explain. The fluid would take it for one that is too fast.
+    pub(crate) fn jumped(&mut self, states: &[impl StateMessage], dt: f64) -> Option<Jump> {
+        let all = self.solids.iter_mut().zip(&states[self.first..]).enumerate();
+        all.filter(|(_, (side, _))| side.foreign.is_some()).find_map(|(solid, (side, state))| {
+            let (records, reach) = (state.records(), side.reach);
+            let length = |v: [f64; 3]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
+            let way =
+                |(r, x): (&StateRecord, &[f64; 3])| length(std::array::from_fn(|d| r.position[d] - x[d]));
+            let speed = records.iter().map(|r| length(r.velocity)).fold(0.0, f64::max);
+            let far = records.iter().zip(&side.before).map(|pair| (pair.0.id, way(pair)));
+            let jump = far
+                .max_by(|a, b| a.1.total_cmp(&b.1))
+                .filter(|(_, distance)| *distance > reach + 2.0 * speed * dt);
+            side.before.clear();
+            side.before.extend(records.iter().map(|r| r.position));
+            let place = self.first + solid;
+            jump.map(|(particle, distance)| Jump { place, particle, distance, speed })
+        })
     }
 
     /// Another program computes this participant.

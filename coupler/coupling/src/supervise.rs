@@ -63,6 +63,8 @@ struct Supervised {
     child: Child,
     /// The child leads a process group that may outlive it.
     group: bool,
+    /// Ends that group if this process is killed.
+    watchdog: Option<Watchdog>,
     status: Option<ExitStatus>,
 }
 
@@ -79,6 +81,7 @@ impl Supervised {
         // An empty group is forgotten at once: its number may be given to others.
         if self.status.is_some() && self.group && !self.signal(0) {
             self.group = false;
+            self.watchdog = None;
         }
     }
 
@@ -116,8 +119,16 @@ impl Children {
         more: &[(&str, &Path)],
     ) -> Result<(), SuperviseError> {
         let mut command = Command::new("sh");
-        command.arg("-c").arg(line).envs(link.to_env_of(participant)).envs(more.iter().copied());
-        self.start(participant.name, command, true)
+        let replaces = if is_one_program(line) { "exec " } else { "" };
+        command.arg("-c").arg(format!("{replaces}{line}"));
+        command.envs(link.to_env_of(participant)).envs(more.iter().copied());
+        self.start(participant.name, command, true)?;
+        // The shell's death signal does not reach what the shell has started.
+        let Some(child) = self.children.last_mut() else { return Ok(()) };
+        child.watchdog = Some(Watchdog::start(child.child.id(), &link.prefix).map_err(|source| {
+            SuperviseError::Start { role: participant.name, command: "sh".into(), source }
+        })?);
+        Ok(())
     }
 
     fn start(&mut self, role: Name, mut command: Command, group: bool) -> Result<(), SuperviseError> {
@@ -149,7 +160,7 @@ impl Children {
                 .join(" "),
             source,
         })?;
-        self.children.push(Supervised { role, child, group, status: None });
+        self.children.push(Supervised { role, child, group, watchdog: None, status: None });
         Ok(())
     }
 
@@ -263,6 +274,45 @@ fn bind_to_parent(parent: u32, foreign: bool) -> io::Result<()> {
     Ok(())
 }
 
+/// A process that outlives this one where this one is killed, and then ends a process group and removes what it may
+/// have made in shared memory. It learns of the end from a pipe that the system closes.
+#[derive(Debug)]
+struct Watchdog(Child);
+
+impl Watchdog {
+    /// What it does, with the group and the prefix of the run's objects as arguments.
+    const SCRIPT: &str = "trap '' HUP INT TERM; read -r _; kill -s TERM -- \"-$1\"; sleep 1; \
+                          kill -s KILL -- \"-$1\"; rm -f -- /dev/shm/\"$2\"*";
+
+    fn start(group: u32, prefix: &str) -> io::Result<Self> {
+        let mut command = Command::new("sh");
+        command.args(["-c", Self::SCRIPT, "halfstep-watchdog", &group.to_string(), prefix]);
+        command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null()).process_group(0);
+        command.spawn().map(Self)
+    }
+}
+
+impl Drop for Watchdog {
+    fn drop(&mut self) {
+        // The group has ended, or been killed.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// Whether a line for the shell does nothing but start one program, which can then take the shell's place.
+fn is_one_program(line: &str) -> bool {
+    const OF_THE_SHELL: [&str; 31] = [
+        ".", ":", "!", "{", "alias", "bg", "break", "case", "cd", "command", "continue", "eval", "exec",
+        "exit", "export", "fg", "for", "if", "jobs", "read", "readonly", "return", "set", "shift", "times",
+        "trap", "ulimit", "umask", "unset", "until", "while",
+    ];
+    let first = line.split_whitespace().next().unwrap_or_default();
+    // Also within quotes, where they would do nothing: the shell without its program is only the longer way.
+    let joins = |c: char| ";&|()<>\n`".contains(c);
+    !(first.is_empty() || first.contains('=') || OF_THE_SHELL.contains(&first) || line.contains(joins))
+}
+
 /// What a process that people see is asked to do.
 #[derive(Clone, Debug, Default)]
 pub struct StopFlags {
@@ -303,4 +353,27 @@ pub fn abort_flag() -> io::Result<Arc<AtomicBool>> {
     let flag = Arc::new(AtomicBool::new(false));
     signal_hook::flag::register(END, Arc::clone(&flag))?;
     Ok(flag)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_program_takes_the_place_of_its_shell_and_a_script_does_not() {
+        for line in ["./solid", "python3 'my block.py' 2e4", "  \"/opt/my solver/bin\" -k $HOME/x"] {
+            assert!(is_one_program(line), "{line}");
+        }
+        for line in [
+            "",
+            "K=2 ./solid",
+            "cd solver && ./solid",
+            "./solid > x",
+            "./solid; true",
+            ". ./env",
+            "exec ./solid",
+        ] {
+            assert!(!is_one_program(line), "{line}");
+        }
+    }
 }

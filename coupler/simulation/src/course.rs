@@ -86,19 +86,27 @@ pub(crate) fn end(
     foreign: &[(Name, SolidSource)],
     folder: Option<&RunDirectory>,
     mut report: RunReport,
-) -> Result<(RunReport, Option<RunError>), RunError> {
-    let Course { clock, recorder, .. } = course;
+) -> (RunReport, Option<RunError>) {
+    let Course { clock, mut recorder, .. } = course;
+    // Rows that are lost make a run fail that has nothing else to complain of.
+    let rows = recorder.synchronise();
+    let result = result.and_then(|stopped| Ok(rows.map(|()| stopped)?));
     recorder.finish(&mut report);
     let foreign: Vec<Name> = foreign.iter().map(|(name, _)| *name).collect();
-    let error = conclude(result, scene, &clock, &foreign, &mut report);
+    let mut error = conclude(result, scene, &clock, &foreign, &mut report);
     let remarked = remarks::outcome(&report);
     remarked.iter().for_each(|warning| tracing::warn!("{warning}"));
     report.warnings.extend(remarked);
     if let Some(folder) = folder {
-        report.write(&folder.file("run.json"))?;
+        // The run has been computed: that its report cannot be written is how it ended.
+        if let Err(unwritten) = report.write(&folder.file("run.json")) {
+            tracing::error!("{unwritten}");
+            report.status = Some(RunStatus::Failed);
+            error.get_or_insert(unwritten.into());
+        }
         draw(scene, folder);
     }
-    Ok((report, error))
+    (report, error)
 }
 
 /// Whether the run was stopped, or why it failed.

@@ -19,6 +19,7 @@
 //! [`run`](mod@run) is what the command `halfstep run` does: participants as processes, supervised.
 
 mod advice;
+mod cause;
 pub mod check;
 mod checkpoint;
 mod course;

@@ -138,6 +138,7 @@ fn execute_in<const D: usize>(
         report.warnings.iter().for_each(|warning| tracing::warn!("{warning}"));
     }
     report.write(&directory.file("run.json"))?;
+    course.recorder.renew(directory.file("run.json"), report.clone());
     let result = if scene.fluid.is_some() && !scene.solids.is_empty() {
         let layout = geometry::layout::<D>(scene);
         Session::<D>::new(scene, options, directory, from, &layout)
@@ -148,7 +149,7 @@ fn execute_in<const D: usize>(
         course = ended;
         stopped
     };
-    course::end(course, result, scene, &options.foreign, Some(directory), report)
+    Ok(course::end(course, result, scene, &options.foreign, Some(directory), report))
 }
 
 /// What this process has to say goes to the run's log, beside what its children say.

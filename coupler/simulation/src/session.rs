@@ -1,10 +1,11 @@
 //! A coupled run: starts its roles as processes or as threads, couples them, and finds out why one of them ended.
 
+use crate::cause::Cause;
 use crate::checkpoint::Checkpoint;
 use crate::isa::{self, ISA_VARIABLE};
 use crate::options::{Launcher, RunOptions, SolidSource};
 use crate::participants::{participants, report_outcome, report_participants};
-use crate::silence::{Silence, TICK};
+use crate::silence::{Silence, TICK, TOLD};
 use halfstep_coupling::couple::{Coupler, Outcome};
 use halfstep_coupling::course::Course;
 use halfstep_coupling::error::RunError;
@@ -125,7 +126,8 @@ impl<'a, const D: usize> Session<'a, D> {
         let scene_file = self.directory.file("scene.json");
         let scene_file = scene_file.canonicalize().map_err(|e| system("scene.json", e))?;
         let folder = self.directory.path().canonicalize().map_err(|e| system("the run's folder", e))?;
-        let mut children = Children::new(&self.directory.file("log.txt"));
+        let log = self.directory.file("log.txt");
+        let mut children = Children::new(&log);
         // A role that outlives this process still has the folder.
         children.keep(self.directory.lock());
         let checkpoint = self.checkpoint.map(|checkpoint| (CHECKPOINT_VARIABLE, checkpoint.folder.as_path()));
@@ -175,8 +177,9 @@ impl<'a, const D: usize> Session<'a, D> {
             done.store(true, Ordering::Relaxed);
             let (early, silent) = watcher.join().unwrap_or((None, None));
             match (result, early, silent) {
-                (Err(RunError::Link(link)), Some((role, status)), _) => {
-                    Err(RunError::RoleEnded { role, status, link: Box::new(link) })
+                (Err(error @ RunError::Link(_)), Some(ended), _) => {
+                    let foreign = self.options.foreign_names();
+                    Err(Cause { log: &log, foreign: &foreign, at: None }.of(error, Some(ended)))
                 }
                 (Err(RunError::Link(_)), _, Some((role, silence))) => {
                     Err(RunError::StoppedAtOnce { role, seconds: silence.as_secs_f64() })
@@ -211,10 +214,11 @@ impl<'a, const D: usize> Session<'a, D> {
                     _ if waiting && by_hand && started.elapsed().as_secs_f64() >= seconds => {
                         RunError::NoSolid { seconds }
                     }
-                    (RunError::Link(link), Some((role, status))) => {
-                        RunError::RoleEnded { role, status, link: Box::new(link) }
+                    (error, ended) => {
+                        let foreign = self.options.foreign_names();
+                        let at = (!waiting).then(|| (course.clock.step(), course.clock.time()));
+                        Cause { log: &log, foreign: &foreign, at }.of(error, ended)
                     }
-                    (error, _) => error,
                 })
             }
         }
@@ -327,7 +331,16 @@ fn watch(
     done: &AtomicBool,
     stop: &AtomicBool,
 ) -> Option<(Name, ExitStatus)> {
+    let (started, mut told) = (Instant::now(), false);
     while !connected.load(Ordering::Relaxed) && !done.load(Ordering::Relaxed) {
+        if started.elapsed() > TOLD && !std::mem::replace(&mut told, true) {
+            let names: Vec<String> = children.pids().iter().map(|(name, _)| name.to_string()).collect();
+            let seconds = TOLD.as_secs();
+            say::warn(format_args!(
+                "waiting since {seconds} s for the processes to connect: {}",
+                names.join(", ")
+            ));
+        }
         let exit = children.first_exit();
         if exit.is_some() || stop.load(Ordering::Relaxed) {
             abort.store(true, Ordering::Relaxed);

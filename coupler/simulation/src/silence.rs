@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 pub(crate) const TICK: Duration = Duration::from_millis(20);
 
 /// Silence that is told.
-const TOLD: Duration = Duration::from_secs(5);
+pub(crate) const TOLD: Duration = Duration::from_secs(5);
 
 /// Silence that a run which was told to stop waits for at least.
 const GRACE: Duration = Duration::from_secs(2);

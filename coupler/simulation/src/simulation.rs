@@ -332,7 +332,7 @@ impl<const D: usize> Running<D> {
         for own in report.participants.iter_mut().filter(|own| own_solids.contains(&own.name)) {
             own.model = Some("own".into());
         }
-        let ended = course::end(run.into_course(), result, &scene, &[], folder.as_ref(), report)?;
+        let ended = course::end(run.into_course(), result, &scene, &[], folder.as_ref(), report);
         match ended {
             (report, None) => Ok(report),
             (_, Some(error)) => Err(error.into()),

@@ -149,11 +149,17 @@ impl<S: Transport, R: Plain, H: Plain> Incoming<S, R, H> {
         }
     }
 
-    pub(super) fn receive(&mut self, hub: &mut Hub<S>) -> Result<Message<S, R, H>, LinkError> {
-        let subscriber = &self.subscriber;
-        hub.wait(self.sender, self.process, || {
-            subscriber.receive().map_err(|e| LinkError::transport("receiving", e))
-        })
+    pub(super) fn receive(&mut self, hub: &mut Hub<S>) -> Result<Received<S, R, H>, LinkError> {
+        let (subscriber, channel) = (&self.subscriber, &self.channel);
+        hub.wait(
+            self.sender,
+            self.process,
+            || channel.writer_node().is_some(),
+            || {
+                let message = subscriber.receive().map_err(|e| LinkError::transport("receiving", e))?;
+                Ok(message.map(Received::new))
+            },
+        )
     }
 }
 
@@ -212,48 +218,73 @@ impl<S: Transport, R: Plain, H: Plain> Outgoing<S, R, H> {
     }
 }
 
+/// A message whose header and number of records are those that were there when it came. Both lie where its sender can
+/// still write: what was checked must be what is used.
+#[derive(Debug)]
+pub(super) struct Received<S: Transport, R: Plain, H: Plain> {
+    header: H,
+    records: *const R,
+    count: usize,
+    /// Keeps the records where they are.
+    _message: Message<S, R, H>,
+}
+
+impl<S: Transport, R: Plain, H: Plain> Received<S, R, H> {
+    fn new(message: Message<S, R, H>) -> Self {
+        let records = Slot::values(message.payload());
+        let (header, records, count) = (message.user_header().0, records.as_ptr(), records.len());
+        Self { header, records, count, _message: message }
+    }
+
+    fn records(&self) -> &[R] {
+        // SAFETY: so many records were there when the message came, and its memory is this reader's as long as it is
+        // held.
+        unsafe { std::slice::from_raw_parts(self.records, self.count) }
+    }
+}
+
 /// A received state, read where its sender wrote it. At most two of a channel can be held.
 #[derive(Debug)]
-pub struct StateSample<S: Transport>(pub(super) Message<S, StateRecord, StateHeader>);
+pub struct StateSample<S: Transport>(pub(super) Received<S, StateRecord, StateHeader>);
 
 impl<S: Transport> StateMessage for StateSample<S> {
     fn header(&self) -> &StateHeader {
-        &self.0.user_header().0
+        &self.0.header
     }
 
     fn records(&self) -> &[StateRecord] {
-        Slot::values(self.0.payload())
+        self.0.records()
     }
 }
 
 /// Received probe values. At most two of a channel can be held.
 #[derive(Debug)]
-pub struct ProbeSample<S: Transport>(pub(super) Message<S, f64, ProbeHeader>);
+pub struct ProbeSample<S: Transport>(pub(super) Received<S, f64, ProbeHeader>);
 
 impl<S: Transport> ProbeSample<S> {
     /// Header of the message.
     pub fn header(&self) -> &ProbeHeader {
-        &self.0.user_header().0
+        &self.0.header
     }
 
     /// The values.
     pub fn values(&self) -> &[f64] {
-        Slot::values(self.0.payload())
+        self.0.records()
     }
 }
 
 /// Received forces, read where the coupler wrote them. At most two of a channel can be held.
 #[derive(Debug)]
-pub struct ForceSample<S: Transport>(pub(super) Message<S, ForceRecord, ForceHeader>);
+pub struct ForceSample<S: Transport>(pub(super) Received<S, ForceRecord, ForceHeader>);
 
 impl<S: Transport> ForceSample<S> {
     /// Header of the message.
     pub fn header(&self) -> &ForceHeader {
-        &self.0.user_header().0
+        &self.0.header
     }
 
     /// The forces, in the order of the state they answer.
     pub fn records(&self) -> &[ForceRecord] {
-        Slot::values(self.0.payload())
+        self.0.records()
     }
 }

@@ -105,6 +105,21 @@ impl Check<'_> {
         LinkError::NotFinite { peer: self.peer, field, particle, value, step, stage }
     }
 
+    /// What is wrong with a record of which something is.
+    fn impossible(&self, record: &StateRecord) -> LinkError {
+        let Expect { step, stage, .. } = *self.expect;
+        let (peer, particle) = (self.peer, record.id);
+        match state_values(record).find(|(_, value)| !value.is_finite()) {
+            Some((field, value)) => self.not_finite(field, Some(particle), value),
+            None => {
+                let density = record.density <= 0.0;
+                let (field, value) =
+                    if density { ("density", record.density) } else { ("mass", record.mass) };
+                LinkError::NotPositive { peer, field, particle, value, step, stage }
+            }
+        }
+    }
+
     fn identity(&self, own: u64, run: u64, protocol: u32, schema: u64) -> Result<(), LinkError> {
         self.equal("run_id", own, run)?;
         self.equal("protocol", PROTOCOL, protocol)?;
@@ -141,10 +156,10 @@ impl Identities {
         self.ids.push(id);
     }
 
-    /// Whether these are finite states of the known particles: one pass without branches for the usual message. What is
-    /// wrong with another one is found out at leisure.
+    /// Whether these are possible states of the known particles: one pass without branches for the usual message. What
+    /// is wrong with another one is found out at leisure.
     fn match_at_once(&self, epoch: u64, records: &[StateRecord]) -> bool {
-        let good = |(id, record): (&u32, &StateRecord)| (*id == record.id) & state_is_finite(record);
+        let good = |(id, record): (&u32, &StateRecord)| (*id == record.id) & state_is_possible(record);
         self.is_current(epoch, records.len())
             && self.ids.iter().zip(records).fold(true, |all, pair| all & good(pair))
     }
@@ -173,7 +188,7 @@ impl StateCheck {
         Self { run_id, peer: name, is_fluid: place == FLUID, capacity: capacity as usize, known }
     }
 
-    /// Whether this is the message that is due. A message that says that its sender failed or finished is: it must only
+    /// Whether this is the message that is due. A message that says that its sender failed is, at any time: it must only
     /// be of this run.
     pub(super) fn verify(
         &mut self,
@@ -196,7 +211,14 @@ impl StateCheck {
         match header.status {
             status::OK => {}
             status::DIVERGED | status::FAILED => return Ok(()),
-            status::FINISHED => return check.equal("stage", LAST_STAGE, header.stage),
+            status::FINISHED if expect.is_last() => {
+                check.equal("count", 0, records.len())?;
+                check.equal("step", expect.step, header.step)?;
+                return check.equal("stage", LAST_STAGE, header.stage);
+            }
+            status::FINISHED => {
+                return Err(check.mismatch("status", "0 (ok): the run has not been stopped", header.status));
+            }
             unknown => return Err(check.mismatch("status", "0 to 3", unknown)),
         }
         check.position(header.step, header.stage, header.time, header.dt)?;
@@ -209,12 +231,9 @@ impl StateCheck {
             return Ok(());
         }
         self.identities(&check, header, records)?;
-        match records.iter().find(|record| !state_is_finite(record)) {
+        match records.iter().find(|record| !state_is_possible(record)) {
             None => Ok(()),
-            Some(record) => {
-                let (field, value) = state_values(record).find(|(_, v)| !v.is_finite()).expect("just found");
-                Err(check.not_finite(field, Some(record.id), value))
-            }
+            Some(record) => Err(check.impossible(record)),
         }
     }
 
@@ -307,11 +326,12 @@ fn is_not_finite(value: f64) -> bool {
     value.to_bits() & EXPONENT == EXPONENT
 }
 
-/// Without early exit, so that it compiles to a few vector instructions.
-fn state_is_finite(r: &StateRecord) -> bool {
+/// Finite, with a positive density and mass. Without early exit, so that it compiles to a few vector instructions.
+fn state_is_possible(r: &StateRecord) -> bool {
     let vectors = r.position.iter().chain(&r.velocity).chain(&r.deviatoric_stress);
     let bad = vectors.fold(false, |bad, v| bad | is_not_finite(*v));
-    !(bad | is_not_finite(r.density) | is_not_finite(r.pressure) | is_not_finite(r.mass))
+    let bad = bad | is_not_finite(r.density) | is_not_finite(r.pressure) | is_not_finite(r.mass);
+    !bad & (r.density > 0.0) & (r.mass > 0.0)
 }
 
 fn force_is_finite(r: &ForceRecord) -> bool {

@@ -1,19 +1,19 @@
 //! A run's files, and who removes them: whoever leaves last.
 //!
-//! Every role holds a shared lock on one file in the run's root folder. The system releases it when the role ends,
-//! however that happens. A role that leaves tries to get the lock for itself: if it can, nobody else is left, and it
-//! removes everything that carries the run's prefix. So nothing stays behind even when the launcher was killed; and
-//! a later run recognises the files of runs that were killed as a whole by the same lock.
+//! Every role holds a shared lock on one file beside the run's objects in shared memory. The system releases the lock
+//! when the role ends, however that happens. A role that leaves tries to get the lock for itself: if it can, nobody
+//! else is left, and it removes everything that carries the run's prefix. So nothing stays behind even when the
+//! launcher was killed; and a later run recognises the files of runs that were killed as a whole by the same lock.
 
 use super::memory::SHM;
 use super::{LinkConfig, LinkError};
+use std::collections::BTreeSet;
 use std::fs::{DirBuilder, DirEntry, File, OpenOptions};
-use std::io::ErrorKind;
+use std::io::{ErrorKind, Read, Write};
 use std::os::fd::AsRawFd;
+use std::os::unix::ffi::{OsStrExt, OsStringExt};
 use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
-
-const LOCK: &str = "lock";
 
 /// Presence in a run. The last one to be dropped removes the run's files.
 #[derive(Debug)]
@@ -27,23 +27,23 @@ impl Claim {
     /// Joins the run. A launcher does this before it starts the roles and keeps the claim until they have ended.
     pub fn new(config: &LinkConfig) -> Result<Self, LinkError> {
         config.transport()?;
-        let path = config.root.join(LOCK);
+        let path = lock_path(&config.prefix);
         loop {
+            let mut lock = open_lock(&path, true).map_err(|e| LinkError::io(&path, &e))?;
+            flock(&lock, libc::LOCK_SH).map_err(|e| LinkError::io(&path, &e))?;
+            // The last role of before may just have removed the file.
+            if !is_file_at(&lock, &path) {
+                continue;
+            }
+            // Whoever cleans up after all of them shall find the folder. All write the same.
+            lock.write_all(config.root.as_os_str().as_bytes()).map_err(|e| LinkError::io(&path, &e))?;
             match DirBuilder::new().mode(0o700).create(&config.root) {
                 Err(e) if e.kind() != ErrorKind::AlreadyExists => {
                     return Err(LinkError::io(&config.root, &e));
                 }
                 _ => {}
             }
-            let lock = match open_lock(&path, true) {
-                // The last role of before has just removed the folder.
-                Err(e) if e.kind() == ErrorKind::NotFound => continue,
-                other => other.map_err(|e| LinkError::io(&path, &e))?,
-            };
-            flock(&lock, libc::LOCK_SH).map_err(|e| LinkError::io(&path, &e))?;
-            if is_file_at(&lock, &path) {
-                return Ok(Self { lock, prefix: config.prefix.clone(), root: config.root.clone() });
-            }
+            return Ok(Self { lock, prefix: config.prefix.clone(), root: config.root.clone() });
         }
     }
 }
@@ -51,7 +51,7 @@ impl Claim {
 impl Drop for Claim {
     fn drop(&mut self) {
         if flock(&self.lock, libc::LOCK_EX | libc::LOCK_NB).is_ok()
-            && is_file_at(&self.lock, &self.root.join(LOCK))
+            && is_file_at(&self.lock, &lock_path(&self.prefix))
         {
             remove_files(&self.prefix, &self.root);
         }
@@ -65,40 +65,90 @@ pub fn cleanup(config: &LinkConfig) -> bool {
         Ok(claim) => drop(claim),
         Err(_) => return false,
     }
-    !config.root.exists()
+    !lock_path(&config.prefix).exists()
 }
 
 /// Removes what runs of this user left behind that nobody is part of any more. Returns how many there were.
+///
+/// A run that was killed as a whole leaves a lock that nobody holds. What a participant of another program made after
+/// the last role had gone has no lock; it is removed when the launcher that its name tells of has ended.
 pub fn cleanup_stale() -> usize {
     let mut places = vec![PathBuf::from("/tmp")];
     if std::env::temp_dir() != places[0] {
         places.push(std::env::temp_dir());
     }
-    let entries = places.iter().filter_map(|place| std::fs::read_dir(place).ok()).flatten().flatten();
-    entries.filter(|entry| remove_if_stale(&entry.path())).count()
+    let shm = entries(Path::new(SHM))
+        .filter_map(|entry| Some(run_of_object(&entry.file_name().to_string_lossy())?.to_owned()));
+    let folders = places.iter().flat_map(|place| entries(place));
+    let folders =
+        folders.filter_map(|entry| entry.file_name().into_string().ok()).filter(|name| is_run_name(name));
+    let runs: BTreeSet<String> = shm.chain(folders).collect();
+    runs.iter().filter(|name| remove_if_stale(name, &places)).count()
 }
 
-fn remove_if_stale(root: &Path) -> bool {
-    let Some(name) = root.file_name().and_then(|n| n.to_str()).filter(|n| is_run_name(n)) else {
-        return false;
+fn entries(folder: &Path) -> impl Iterator<Item = DirEntry> + use<> {
+    // SAFETY: the call has no preconditions.
+    let user = unsafe { libc::geteuid() };
+    let own = move |entry: &DirEntry| entry.metadata().is_ok_and(|metadata| metadata.uid() == user);
+    std::fs::read_dir(folder).into_iter().flatten().flatten().filter(own)
+}
+
+fn remove_if_stale(name: &str, places: &[PathBuf]) -> bool {
+    let prefix = format!("{name}_");
+    let path = lock_path(&prefix);
+    let mut roots: Vec<PathBuf> = places.iter().map(|place| place.join(name)).collect();
+    let lock = match open_lock(&path, false) {
+        Ok(mut lock) => {
+            let free = flock(&lock, libc::LOCK_EX | libc::LOCK_NB).is_ok() && is_file_at(&lock, &path);
+            if !free {
+                return false;
+            }
+            let mut root = Vec::new();
+            let _ = lock.read_to_end(&mut root);
+            roots.push(PathBuf::from(std::ffi::OsString::from_vec(root)));
+            Some(lock)
+        }
+        Err(_) if launcher_lives(name) => return false,
+        Err(_) => None,
     };
     // SAFETY: the call has no preconditions.
     let user = unsafe { libc::geteuid() };
-    if !std::fs::symlink_metadata(root).is_ok_and(|m| m.is_dir() && m.uid() == user) {
-        return false;
+    let is_own = |root: &PathBuf| {
+        root.file_name().is_some_and(|own| own == name)
+            && std::fs::symlink_metadata(root).is_ok_and(|m| m.is_dir() && m.uid() == user)
+    };
+    for root in roots.iter().filter(|root| is_own(root)) {
+        remove_folder(root);
     }
-    let path = root.join(LOCK);
-    match open_lock(&path, false) {
-        Ok(lock) => {
-            let free = flock(&lock, libc::LOCK_EX | libc::LOCK_NB).is_ok() && is_file_at(&lock, &path);
-            if free {
-                remove_files(&format!("{name}_"), root);
-            }
-            free
-        }
-        // Either about to be claimed, then it is made again, or half removed.
-        Err(_) => std::fs::remove_dir(root).is_ok(),
-    }
+    remove_objects(&prefix);
+    drop(lock);
+    true
+}
+
+/// Whether the process in a run's name is there.
+fn launcher_lives(name: &str) -> bool {
+    let pid =
+        name.strip_prefix("hs").and_then(|rest| rest.split_once('-')).and_then(|(pid, _)| pid.parse().ok());
+    pid.is_some_and(process_lives)
+}
+
+/// Whether a process runs: it exists, and does not just wait for its parent to ask how it ended.
+pub(super) fn process_lives(pid: u32) -> bool {
+    let Ok(text) = std::fs::read_to_string(format!("/proc/{pid}/stat")) else { return false };
+    // The name before the last bracket may hold anything.
+    let state = text.rsplit_once(')').and_then(|(_, rest)| rest.trim_start().chars().next());
+    !matches!(state, None | Some('Z' | 'X'))
+}
+
+/// The name of the run that an object in shared memory belongs to.
+fn run_of_object(name: &str) -> Option<&str> {
+    name.split_once('_').map(|(run, _)| run).filter(|run| is_run_name(run))
+}
+
+/// The file that roles lock: it lies where the run's objects do, because cleaners of temporary folders do not come
+/// there.
+fn lock_path(prefix: &str) -> PathBuf {
+    Path::new(SHM).join(format!("{prefix}lock"))
 }
 
 /// The pattern of [`LinkConfig::new`]: `hs`, a process number, `-`, eight hexadecimal digits.
@@ -113,7 +163,15 @@ fn is_run_name(name: &str) -> bool {
 }
 
 fn open_lock(path: &Path, create: bool) -> std::io::Result<File> {
-    OpenOptions::new().read(true).write(true).create(create).truncate(false).mode(0o600).open(path)
+    let flags = libc::O_NOFOLLOW;
+    OpenOptions::new()
+        .read(true)
+        .write(true)
+        .create(create)
+        .truncate(false)
+        .mode(0o600)
+        .custom_flags(flags)
+        .open(path)
 }
 
 fn is_file_at(file: &File, path: &Path) -> bool {
@@ -137,21 +195,30 @@ fn flock(file: &File, operation: i32) -> std::io::Result<()> {
     }
 }
 
-/// The lock goes last: whoever is killed in the middle of this leaves a run that the next one recognises.
 fn remove_files(prefix: &str, root: &Path) {
+    remove_folder(root);
+    remove_objects(prefix);
+}
+
+/// The lock goes last: whoever is killed in the middle of this leaves a run that the next one recognises.
+fn remove_objects(prefix: &str) {
     let carries_prefix = |entry: &DirEntry| entry.file_name().to_string_lossy().starts_with(prefix);
-    for entry in std::fs::read_dir(SHM).into_iter().flatten().flatten().filter(carries_prefix) {
+    let lock = lock_path(prefix);
+    for entry in entries(Path::new(SHM)).filter(carries_prefix).filter(|entry| entry.path() != lock) {
         let _ = std::fs::remove_file(entry.path());
     }
+    let _ = std::fs::remove_file(lock);
+}
+
+fn remove_folder(root: &Path) {
     for entry in std::fs::read_dir(root).into_iter().flatten().flatten() {
         let path = entry.path();
         if entry.file_type().is_ok_and(|kind| kind.is_dir()) {
             let _ = std::fs::remove_dir_all(path);
-        } else if entry.file_name() != LOCK {
+        } else {
             let _ = std::fs::remove_file(path);
         }
     }
-    let _ = std::fs::remove_file(root.join(LOCK));
     let _ = std::fs::remove_dir(root);
 }
 
@@ -185,8 +252,51 @@ mod tests {
         // Another run on this machine may be faster: only the result counts.
         cleanup_stale();
         assert!(!object.exists() && !abandoned.root.exists());
-        assert!(alive.root.join(LOCK).exists());
+        assert!(lock_path(&alive.prefix).exists() && alive.root.exists());
         drop(claim);
+    }
+
+    /// A participant of another program connects while the launcher is killed: its objects come after the last role.
+    #[test]
+    fn objects_without_a_lock_go_with_their_launcher() {
+        let mut ended = std::process::Command::new("true").spawn().unwrap();
+        ended.wait().unwrap();
+        let object = |pid: u32| Path::new(SHM).join(format!("hs{pid}-0123abcd_object"));
+        let (orphan, own) = (object(ended.id()), object(std::process::id()));
+        let folder = std::env::temp_dir().join(format!("hs{}-0123abcd", ended.id()));
+        std::fs::create_dir_all(folder.join("nodes")).unwrap();
+        for path in [&orphan, &own] {
+            std::fs::write(path, "x").unwrap();
+        }
+        cleanup_stale();
+        assert!(!orphan.exists() && !folder.exists());
+        assert!(own.exists(), "its launcher lives");
+        std::fs::remove_file(own).unwrap();
+    }
+
+    /// Cleaners of temporary folders do not know that a run goes on.
+    #[test]
+    fn a_run_whose_folder_was_removed_still_removes_its_objects() {
+        let config = LinkConfig::of_two(1, 1);
+        let object = Path::new(SHM).join(format!("{}object", config.prefix));
+        let claim = Claim::new(&config).unwrap();
+        std::fs::write(&object, "x").unwrap();
+        std::fs::remove_dir_all(&config.root).unwrap();
+        cleanup_stale();
+        assert!(object.exists(), "it goes on");
+        drop(claim);
+        assert!(!object.exists() && !lock_path(&config.prefix).exists());
+    }
+
+    #[test]
+    fn a_process_that_waits_to_be_asked_how_it_ended_does_not_live() {
+        let mut child = std::process::Command::new("true").spawn().unwrap();
+        let deadline = std::time::Instant::now() + std::time::Duration::from_secs(10);
+        while process_lives(child.id()) {
+            assert!(std::time::Instant::now() < deadline);
+        }
+        child.wait().unwrap();
+        assert!(process_lives(std::process::id()));
     }
 
     #[test]

@@ -40,6 +40,25 @@ pub enum LinkError {
         /// The stage that the receiver is at, as its number on the wire.
         stage: u32,
     },
+    /// A particle has a density or a mass that nothing has.
+    #[error(
+        "message of the {peer} at step {step}, stage {stage}: {field} is {value:e} for particle {particle}, expected a \
+         positive number"
+    )]
+    NotPositive {
+        /// Who sent it.
+        peer: Name,
+        /// The field.
+        field: &'static str,
+        /// The particle.
+        particle: u32,
+        /// The value.
+        value: f64,
+        /// The step that the receiver is at.
+        step: u64,
+        /// The stage that the receiver is at, as its number on the wire.
+        stage: u32,
+    },
     /// A peer ended or was killed while a message of it was due.
     #[error("the {peer} is gone: it ended without a last message")]
     PeerDied {
@@ -100,6 +119,17 @@ pub enum LinkError {
         needed: u64,
         /// Bytes that are free.
         available: u64,
+    },
+    /// Somebody has made room for messages that the run does not have.
+    #[error(
+        "the run's objects in /dev/shm have {bytes} bytes, {expected} were expected: a participant of another program \
+         makes room for more than its capacity"
+    )]
+    Oversized {
+        /// Length of all of them.
+        bytes: u64,
+        /// What the run needs.
+        expected: u64,
     },
     /// The caller's abort flag was set.
     #[error("aborted")]

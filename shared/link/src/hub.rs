@@ -1,7 +1,7 @@
 //! A process's place in the run: its node, its wake-up calls, and who else is there.
 
 use super::verdict::{OpenError, PortError, Verdict};
-use super::{LinkConfig, LinkError, Transport};
+use super::{LinkConfig, LinkError, Transport, claim::process_lives};
 use halfstep_wire::Name;
 use halfstep_wire::protocol::{PROTOCOL, SCHEMA};
 use iceoryx2::identifiers::UniqueNodeId;
@@ -55,9 +55,19 @@ impl<S: Transport> Watch<S> {
         self.nodes().iter().find(|(_, n)| *n == node).map(|(process, _)| *process)
     }
 
-    /// Whether a process that had come has ended.
-    pub(super) fn is_gone(&self, process: Name) -> bool {
-        matches!(self.state_of(process), Some(Ok(None | Some(NodeState::Dead(_)))))
+    /// Whether a process that had come has ended. `listed`: a channel of it still names it as its writer.
+    pub(super) fn is_gone(&self, process: Name, listed: bool) -> bool {
+        match self.state_of(process) {
+            None | Some(Ok(Some(NodeState::Alive(_)))) => false,
+            Some(Ok(Some(NodeState::Dead(_)))) => true,
+            // It has left, or somebody has removed the files that tell of it: the system knows.
+            Some(_) => !(S::SHARED_MEMORY && listed && self.is_running(process)),
+        }
+    }
+
+    fn is_running(&self, process: Name) -> bool {
+        let pid = self.node_of(process).and_then(|node| u32::try_from(node.pid::<S>().ok()?.value()).ok());
+        pid.is_some_and(process_lives)
     }
 
     /// Whether a process that had come has ended without leaving.
@@ -66,14 +76,17 @@ impl<S: Transport> Watch<S> {
     }
 
     fn state_of(&self, process: Name) -> Option<Result<Option<NodeState<S>>, NodeListFailure>> {
-        let node = self.nodes().iter().find(|(p, _)| *p == process).map(|(_, node)| *node);
-        node.map(|node| Node::<S>::state_of(&self.config, node))
+        self.node_of(process).map(|node| Node::<S>::state_of(&self.config, node))
+    }
+
+    fn node_of(&self, process: Name) -> Option<UniqueNodeId> {
+        self.nodes().iter().find(|(p, _)| *p == process).map(|(_, node)| *node)
     }
 
     /// The first of the other processes that has ended.
     fn first_gone(&self) -> Option<Name> {
         let known: Vec<Name> = self.nodes().iter().map(|(process, _)| *process).collect();
-        known.into_iter().find(|process| self.is_gone(*process))
+        known.into_iter().find(|process| self.is_gone(*process, true))
     }
 
     /// What a publisher does when a reader's queue is full, which lock-step does not let happen unless that reader has
@@ -291,11 +304,13 @@ impl<S: Transport> Hub<S> {
         }
     }
 
-    /// Sleeps until `receive` finds a message of `peer`, which runs in `process`.
+    /// Sleeps until `receive` finds a message of `peer`, which runs in `process` and is `listed` as the writer of its
+    /// channel as long as it has not left.
     pub(super) fn wait<T>(
         &mut self,
         peer: Name,
         process: Name,
+        listed: impl Fn() -> bool,
         mut receive: impl FnMut() -> Result<Option<T>, LinkError>,
     ) -> Result<T, LinkError> {
         let start = Instant::now();
@@ -308,7 +323,7 @@ impl<S: Transport> Hub<S> {
                 return Ok(message);
             }
             if std::mem::take(&mut self.suspicious) || looked.elapsed() >= TICK {
-                if self.watch.is_gone(process) {
+                if self.watch.is_gone(process, listed()) {
                     // What it sent before it ended is still readable.
                     return receive()?.ok_or(LinkError::PeerDied { peer });
                 }

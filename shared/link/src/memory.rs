@@ -47,12 +47,21 @@ pub(super) fn check_room<S: Transport>(config: &LinkConfig, process: Name) -> Re
     if needed > available { Err(LinkError::SharedMemoryFull { needed, available }) } else { Ok(()) }
 }
 
+/// Participants of other programs may leave the number of samples to the transport, which makes up to eleven.
+const OTHERS: u64 = 4;
+/// Bookkeeping that does not grow with the messages: of two processes it is 3 MB.
+const BOOKKEEPING: u64 = 64 << 20;
+
 /// Reserves every page of the run's objects that exist by now.
+///
+/// # Errors
+/// There is no room, or they are far larger than the run's messages: whoever made them so shall not have the memory.
 pub(super) fn reserve<S: Transport>(config: &LinkConfig) -> Result<(), LinkError> {
     if !S::SHARED_MEMORY {
         return Ok(());
     }
     let shm = Path::new(SHM);
+    let mut objects = Vec::new();
     for entry in std::fs::read_dir(shm).map_err(|e| LinkError::io(shm, &e))?.flatten() {
         if !entry.file_name().to_string_lossy().starts_with(&config.prefix) {
             continue;
@@ -62,9 +71,14 @@ pub(super) fn reserve<S: Transport>(config: &LinkConfig) -> Result<(), LinkError
             continue;
         };
         let Ok(length) = file.metadata().map(|m| m.len()) else { continue };
-        if length == 0 {
-            continue;
-        }
+        objects.push((file, length));
+    }
+    let bytes: u64 = objects.iter().map(|(_, length)| *length).sum();
+    let expected = config.shared_memory_bytes();
+    if bytes > OTHERS * expected + BOOKKEEPING {
+        return Err(LinkError::Oversized { bytes, expected });
+    }
+    for (file, length) in objects.into_iter().filter(|(_, length)| *length > 0) {
         // SAFETY: the descriptor is open for writing during the call; no memory is passed.
         let error = unsafe { libc::posix_fallocate(file.as_raw_fd(), 0, length as libc::off_t) };
         if error == libc::ENOSPC {
@@ -84,5 +98,32 @@ fn free_bytes() -> Result<u64, LinkError> {
         }
         let info = info.assume_init();
         Ok(info.f_bavail * info.f_frsize)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Claim, Processes};
+    use std::os::unix::fs::MetadataExt;
+
+    /// A participant of another program decides how large its objects are; the others do not pay for it.
+    #[test]
+    fn objects_that_are_too_large_are_not_reserved() {
+        let config = LinkConfig::of_two(100, 100);
+        let _claim = Claim::new(&config).unwrap();
+        let path = Path::new(SHM).join(format!("{}object", config.prefix));
+        let object = std::fs::File::create(&path).unwrap();
+        object.set_len(1 << 20).unwrap();
+        reserve::<Processes>(&config).unwrap();
+        assert_eq!(object.metadata().unwrap().blocks() * 512, 1 << 20);
+        object.set_len(4 << 30).unwrap();
+        match reserve::<Processes>(&config) {
+            Err(LinkError::Oversized { bytes, expected }) => {
+                assert!(bytes >= 4 << 30 && expected == config.shared_memory_bytes());
+            }
+            other => panic!("{other:?}"),
+        }
+        assert!(object.metadata().unwrap().blocks() * 512 < 2 << 20);
     }
 }

@@ -1,6 +1,7 @@
 //! `probes.csv`: what is measured while the run goes on, one row an instant.
 
 use super::OutputError;
+use super::series::is_at;
 use std::fs::File;
 use std::io::{Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -57,9 +58,13 @@ impl ProbeLog {
     /// Bytes written so far, with the guarantee that they outlive a crash of the machine.
     ///
     /// # Errors
-    /// The disk refuses.
+    /// The disk refuses, or somebody has removed the file.
     pub fn synchronise(&self) -> Result<u64, OutputError> {
         let file = self.writer.get_ref();
+        if !is_at(file, &self.path) {
+            let reason = "it was removed or replaced while the run went on: its rows are lost";
+            return Err(OutputError::malformed(&self.path, reason));
+        }
         file.sync_data().map_err(OutputError::io("synchronise", &self.path))?;
         Ok(file.metadata().map_err(OutputError::io("read", &self.path))?.len())
     }

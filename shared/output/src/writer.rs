@@ -32,17 +32,14 @@ impl FrameWriter {
         let folder = series::frames_folder(dir);
         std::fs::create_dir_all(&folder).map_err(OutputError::io("create", &folder))?;
         let index = folder.join(series::index_name(stem));
-        let listed = match index.try_exists().map_err(OutputError::io("read", &index))? {
-            true => series::Series::read(&index)?,
-            false => series::Series::default(),
-        };
+        let index = series::Index::open(index)?;
         let (written, free) = sync_channel(IN_FLIGHT);
         for _ in 0..IN_FLIGHT {
             // The receiver is right here and there is room for all of them.
             let _ = written.send(Frame::default());
         }
         let safe = Arc::new(AtomicU32::new(0));
-        let job = Job { folder: folder.clone(), stem: stem.into(), index, listed, safe: safe.clone() };
+        let job = Job { folder: folder.clone(), stem: stem.into(), index, safe: safe.clone() };
         let work = move |frames: Receiver<_>| job.run(&frames, &written);
         let filled = Background::start(&folder, stem, "frames", IN_FLIGHT, work)?;
         Ok(Self { filled, free, safe })
@@ -90,8 +87,7 @@ impl FrameSink for FrameWriter {
 struct Job {
     folder: PathBuf,
     stem: String,
-    index: PathBuf,
-    listed: series::Series,
+    index: series::Index,
     safe: Arc<AtomicU32>,
 }
 
@@ -104,8 +100,7 @@ impl Job {
         while let Ok((number, frame)) = to_write.recv() {
             let name = series::frame_name(&self.stem, number);
             vtkhdf::write(&self.folder.join(&name), &frame)?;
-            self.listed.announce(name, frame.time);
-            self.listed.write(&self.index)?;
+            self.index.announce(name, frame.time)?;
             self.safe.store(number + 1, Ordering::Release);
             // Nobody waits for the memory once the last frame is submitted.
             let _ = written.send(frame);

@@ -9,11 +9,17 @@ use std::sync::Arc;
 
 /// Everything that is wrong with a scene.
 #[derive(Clone, Debug, thiserror::Error)]
-#[error("{} has {} error{}", path.display(), problems.len(), if problems.len() == 1 { "" } else { "s" })]
+#[error(
+    "{} has {}{} error{}",
+    path.display(),
+    if problems.len() < MAX_PROBLEMS { "" } else { "at least " },
+    problems.len(),
+    if problems.len() == 1 { "" } else { "s" }
+)]
 pub struct SceneErrors {
     /// The scene's file.
     pub path: PathBuf,
-    /// The errors, by their place; never empty.
+    /// The errors, by their place; never empty, and no more than the first hundred.
     pub problems: Vec<SceneError>,
 }
 
@@ -95,7 +101,7 @@ impl Diagnostic for SceneError {
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let origin = self.origin?;
+        let origin = self.origin.filter(|_| self.source.is_some())?;
         let label = LabeledSpan::new(None, origin.start, origin.end - origin.start);
         Some(Box::new(std::iter::once(label)))
     }
@@ -115,6 +121,27 @@ impl SceneErrors {
         };
         Self { path: path.to_path_buf(), problems: vec![problem] }
     }
+}
+
+/// Errors that are told; the first ones, in the order in which a scene is read.
+const MAX_PROBLEMS: usize = 100;
+/// Bytes of a line of a source that are shown, and of a key or an override that are named.
+const MAX_SHOWN: usize = 1000;
+
+/// The beginning of a long text.
+fn beginning(text: &str) -> String {
+    match text.char_indices().nth(MAX_SHOWN) {
+        None => text.to_owned(),
+        Some((end, _)) => format!("{} ...", &text[..end]),
+    }
+}
+
+/// What is shown of a source for an error: its lines, the one before and the one after.
+fn around(text: &str, origin: Origin) -> Option<&str> {
+    let (before, after) = (text.get(..origin.start)?, text.get(origin.end..)?);
+    let start = before.rmatch_indices('\n').nth(1).map_or(0, |(end, _)| end + 1);
+    let end = after.match_indices('\n').nth(1).map_or(after.len(), |(end, _)| end);
+    text.get(start..origin.end + end)
 }
 
 /// Collects errors while a scene is read.
@@ -168,26 +195,32 @@ impl Report {
 
     fn note(&self, key: &str, origin: Origin, value: Option<String>, reason: String) -> Note<'_> {
         let (source, named) = &self.sources[origin.source];
+        let (text, mut problems) = (&source.text, self.problems.borrow_mut());
+        // Of more errors than anybody reads the first ones are told. Each costs the way to its line.
+        if problems.len() >= MAX_PROBLEMS {
+            return Note { report: self, noted: false };
+        }
+        let before = text.get(..origin.start).unwrap_or_default();
         let place = if source.is_override {
-            Place::Override(source.name.clone())
+            Place::Override(beginning(&source.name))
         } else {
-            let before = &source.text.get(..origin.start).unwrap_or_default();
             Place::File {
                 path: PathBuf::from(&source.name),
                 line: before.matches('\n').count() + 1,
                 column: before.chars().rev().take_while(|c| *c != '\n').count() + 1,
             }
         };
-        self.problems.borrow_mut().push(SceneError {
+        let is_short = around(text, origin).is_some_and(|shown| shown.len() <= 3 * MAX_SHOWN);
+        problems.push(SceneError {
             place,
-            key: key.to_owned(),
+            key: beginning(key),
             value,
-            reason,
+            reason: beginning(&reason),
             help: None,
-            source: Some(named.clone()),
+            source: is_short.then(|| named.clone()),
             origin: Some(origin),
         });
-        Note { report: self }
+        Note { report: self, noted: true }
     }
 
     /// Whether something was written in an override.
@@ -219,6 +252,11 @@ impl Report {
         self.problems.borrow().is_empty()
     }
 
+    /// Whether more errors would not be told.
+    pub(super) fn is_full(&self) -> bool {
+        self.problems.borrow().len() >= MAX_PROBLEMS
+    }
+
     /// The errors, the file's first and in its order.
     pub(super) fn into_errors(self, path: &Path) -> SceneErrors {
         let mut problems = self.problems.into_inner();
@@ -230,11 +268,16 @@ impl Report {
 /// The error just noted.
 pub(super) struct Note<'r> {
     report: &'r Report,
+    /// It is among those that are told.
+    noted: bool,
 }
 
 impl Note<'_> {
     /// Adds advice.
     pub(super) fn help(self, help: impl Into<String>) {
+        if !self.noted {
+            return;
+        }
         if let Some(last) = self.report.problems.borrow_mut().last_mut() {
             last.help = Some(help.into());
         }

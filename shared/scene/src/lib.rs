@@ -24,6 +24,7 @@ mod dimension;
 mod document;
 mod effect;
 mod error;
+mod file;
 pub mod geometry;
 mod load;
 mod metric;

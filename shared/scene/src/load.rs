@@ -3,7 +3,7 @@
 use super::check::Check;
 use super::document::{self, SourceText};
 use super::error::{Report, SceneErrors};
-use super::{EffectName, Scene, Switch, overrides, read, resources};
+use super::{EffectName, Scene, Switch, file, overrides, read, resources};
 use std::path::Path;
 
 /// Reads a scene's file, applies the overrides (`key=value`, as after `--set`) and checks everything.
@@ -19,9 +19,9 @@ pub fn load(path: &Path, overrides: &[String]) -> Result<Scene, SceneErrors> {
 /// # Errors
 /// Everything that is wrong with the scene at once, each with its place.
 pub fn load_with(path: &Path, overrides: &[String], own_effects: &[&str]) -> Result<Scene, SceneErrors> {
-    match std::fs::read_to_string(path) {
+    match file::read(path) {
         Ok(text) => parse_with(&text, path, overrides, own_effects),
-        Err(error) => Err(SceneErrors::whole(path, format!("cannot be read: {error}"))),
+        Err(reason) => Err(SceneErrors::whole(path, reason)),
     }
 }
 

@@ -4,6 +4,9 @@ use super::document::{Entry, Node, Origin, SourceText, Value, item_index, parse_
 use super::error::{Report, listed, nearest};
 use std::collections::BTreeMap;
 
+/// Parts of a key: tables within tables within which no scene has anything.
+const MAX_PARTS: usize = 16;
+
 /// The source of an override.
 pub(super) fn source(text: &str) -> SourceText {
     let name = format!("--set {text}");
@@ -24,6 +27,12 @@ pub(super) fn apply(root: &mut Node, text: &str, source: usize, report: &Report)
     let key_origin = Origin { source, start: before, end: before + key.len() };
     let value_origin = Origin { source, start: value_start, end: value_start + value.len() };
     let parts: Vec<&str> = key.split('.').map(str::trim).collect();
+    if parts.len() > MAX_PARTS {
+        let reason =
+            format!("is no override: its key has {} parts, at most {MAX_PARTS} mean anything", parts.len());
+        report.place("", key_origin, reason);
+        return;
+    }
     if parts.iter().any(|part| part.is_empty()) {
         report.place("", key_origin, "is no override: a part of its key is empty");
         return;

@@ -175,12 +175,10 @@ fn columns<'n>(section: &Section<'n>) -> Option<[&'n str; 2]> {
 }
 
 /// Two columns of a file with comments (`#`) and a line of titles; rows without the value are left out.
-fn read_csv(file: &Path, time: &str, value: &str) -> Result<Vec<[f64; 2]>, String> {
-    let mut reader = csv::ReaderBuilder::new()
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .from_path(file)
-        .map_err(|e| e.to_string())?;
+fn read_csv(path: &Path, time: &str, value: &str) -> Result<Vec<[f64; 2]>, String> {
+    let text = file::read(path)?;
+    let mut reader =
+        csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(text.as_bytes());
     let titles = reader.headers().map_err(|e| e.to_string())?.clone();
     let index = |title: &str| {
         titles.iter().position(|t| t == title).ok_or_else(|| {

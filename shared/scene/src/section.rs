@@ -351,6 +351,9 @@ impl<'a> Section<'a> {
         let Some(table) = self.node.table().filter(|_| self.present) else { return };
         let asked = self.asked.borrow();
         for (key, entry) in table.iter().filter(|(key, _)| !asked.contains(&key.as_str())) {
+            if self.report.is_full() {
+                return;
+            }
             let note = self.report.place(&self.path_of(key), entry.key, "unknown key");
             let mut known = asked.clone();
             known.sort_unstable();

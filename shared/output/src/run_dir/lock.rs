@@ -2,10 +2,10 @@
 //! unlocks it when the owner ends, however that is; what is left of a killed run locks nothing.
 
 use crate::OutputError;
+use crate::series::is_at;
 use std::fs::{File, TryLockError};
 use std::io::{Read, Write};
 use std::os::fd::{AsFd, BorrowedFd};
-use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
@@ -71,14 +71,6 @@ impl Drop for Lock {
     fn drop(&mut self) {
         // The file stays locked until it is closed, after this.
         let _ = std::fs::remove_file(&self.path);
-    }
-}
-
-fn is_at(file: &File, path: &Path) -> bool {
-    let identity = |metadata: std::fs::Metadata| (metadata.dev(), metadata.ino());
-    match (file.metadata(), std::fs::metadata(path)) {
-        (Ok(own), Ok(there)) => identity(own) == identity(there),
-        _ => false,
     }
 }
 

@@ -7,7 +7,7 @@ use super::raw::{RawCoupler, RawPhase, identified, identified_force};
 use halfstep_link::{CouplerLink, CouplerPort, Expect, LinkError, Transport};
 use halfstep_wire::Name;
 use halfstep_wire::half_step::Stage::{First, Second};
-use halfstep_wire::protocol::{ForceHeader, ForceRecord, StateHeader, StateRecord, order};
+use halfstep_wire::protocol::{ForceHeader, ForceRecord, StateHeader, StateRecord, order, status};
 use std::thread::scope;
 
 type StateFault = (&'static str, fn(&mut StateHeader, &mut Vec<StateRecord>));
@@ -19,6 +19,7 @@ const STATES: &[StateFault] = &[
     ("protocol", |header, _| header.protocol += 1),
     ("schema", |header, _| header.schema ^= 1),
     ("status", |header, _| header.status = 4),
+    ("status", |header, _| header.status = status::FINISHED),
     ("step", |header, _| header.step += 1),
     ("step", |header, _| header.step = 0),
     ("stage", |header, _| header.stage = 0),
@@ -48,6 +49,8 @@ const STATES: &[StateFault] = &[
     ("density", |_, records| records[7].density = f64::NEG_INFINITY),
     ("pressure", |_, records| records[7].pressure = f64::NAN),
     ("mass", |_, records| records[7].mass = f64::NAN),
+    ("density", |_, records| records[7].density = 0.0),
+    ("mass", |_, records| records[7].mass = -8.0),
     ("deviatoric_stress", |_, records| records[7].deviatoric_stress[5] = f64::NAN),
 ];
 
@@ -90,6 +93,11 @@ fn is_about(error: &LinkError, sender: Name, wrong: &str) -> bool {
             *peer == sender
                 && *field == wrong
                 && !value.is_finite()
+                && (*step, *stage) == (STEP, Second.number())
+        }
+        LinkError::NotPositive { peer, field, particle, value, step, stage } => {
+            (*peer, *field, *particle) == (sender, wrong, play::state(sender, STEP, Second, 7).id)
+                && *value <= 0.0
                 && (*step, *stage) == (STEP, Second.number())
         }
         _ => false,

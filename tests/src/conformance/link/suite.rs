@@ -318,6 +318,8 @@ pub fn several_solids<S: Transport>() {
     let record = |place: usize, step: u64| StateRecord {
         id: place as u32,
         position: [place as f64, step as f64, 0.0],
+        density: 1.0,
+        mass: 1.0,
         ..StateRecord::default()
     };
     let serve = |process: Name| {
