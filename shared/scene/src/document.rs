@@ -1,5 +1,6 @@
 //! A TOML document in which every key and value knows where it was written: in the file or in an override.
 
+use super::brackets;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use toml::Spanned;
@@ -67,6 +68,11 @@ pub(super) type Syntax = (Origin, String);
 pub(super) fn parse(text: &str, source: usize) -> Result<Node, Vec<Syntax>> {
     let (table, errors) = DeTable::parse_recoverable(text);
     if !errors.is_empty() {
+        // All that follows an open bracket are errors that do not name it.
+        if let Some(start) = brackets::unclosed(text) {
+            let origin = Origin { source, start, end: start + 1 };
+            return Err(vec![(origin, "this bracket is not closed".into())]);
+        }
         return Err(errors.iter().map(|e| syntax(e, text, source, 0)).collect());
     }
     let origin = Origin { source, start: 0, end: 0 };

@@ -16,6 +16,7 @@
 
 mod bodies;
 pub mod bounds;
+mod brackets;
 mod check;
 mod check_metric;
 mod check_probe;
