@@ -46,7 +46,6 @@ fn every_shipped_scene_means_what_it_says() {
 #[test]
 fn a_clamp_in_a_wall_that_moves() {
     let moving = TANK
-        .replace("open", "open")
         .replace("phase = \"wall\"", "phase = \"wall\"\nmotion = { amplitude = [0.01, 0.0], period = 1.0 }");
     let found = plain(&[
         &moving,
