@@ -55,6 +55,36 @@ fn walls_show_the_hydrostatic_pressure() {
 }
 
 #[test]
+fn a_wall_that_pushes_shows_more_pressure_and_one_that_pulls_less() {
+    // x = A sin(w t) with A = 1e-6 m and A w² = 5 m/s²: at three quarters of a period the tank is where it was, at
+    // rest, and has the acceleration 5 m/s² to the right.
+    let period = std::f64::consts::TAU / (5.0_f64 / 1e-6).sqrt();
+    let motion = format!("shape.tank.motion={{amplitude=[1e-6,0.0],period={period}}}");
+    let shown = |overrides: &[&str]| {
+        let mut fluid = Fluid::<2>::new(&tank(overrides), Isa::detect()).unwrap();
+        fluid.set_time(0.75 * period);
+        fluid.publish(&[], &mut Vec::new());
+        fluid.own_sums();
+        let walls = fluid.walls.as_ref().unwrap();
+        let at = |x: f64| {
+            let near = |s: &usize| {
+                (walls.shown.position[0][*s] - x).abs() < 1e-5
+                    && (walls.shown.position[1][*s] - 0.055).abs() < 1e-9
+            };
+            walls.shown.sources[(0..walls.slots()).find(near).expect("a wall particle")].pressure
+        };
+        [at(-0.005), at(0.205)]
+    };
+    let (still, pushed) = (shown(&[]), shown(&[&motion]));
+    let [left, right] = [pushed[0] - still[0], pushed[1] - still[1]];
+    // p_w = sum (p_f + rho (g - a) . (x_w - x_f)) W / sum W: rho a times the mean distance of the water across, which
+    // lies between its first column's, dx, and 2h.
+    let (least, most) = (1000.0 * 5.0 * 0.01, 1000.0 * 5.0 * 2.0 * 1.5 * 0.01);
+    assert!(least < left && left < 0.7 * most, "{left} Pa between {least} and {most}");
+    assert!((left + right).abs() < 2e-3 * left, "{left} {right}");
+}
+
+#[test]
 fn walls_mirror_the_normal_velocity() {
     let scene = tank(&["shape.water.velocity=[0.3,-0.2]"]);
     let mut fluid = Fluid::<2>::new(&scene, Isa::detect()).unwrap();
