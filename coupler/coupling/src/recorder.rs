@@ -260,7 +260,8 @@ impl Recorder {
         let first = *self.first_momentum.get_or_insert(momentum);
         // Scale: all mass at the speed of the largest kinetic energy seen.
         self.momentum_scale = self.momentum_scale.max((2.0 * kinetic * mass).sqrt());
-        if self.isolated && self.momentum_scale > 0.0 {
+        // What leaves takes its momentum along.
+        if self.isolated && self.removed == 0 && self.momentum_scale > 0.0 {
             let drift = (0..3).map(|d| (momentum[d] - first[d]).abs()).fold(0.0, f64::max);
             self.momentum_drift = self.momentum_drift.max(drift / self.momentum_scale);
         }

@@ -1,0 +1,78 @@
+//! Total momentum of fluid and solid together, measured on the particles themselves: what one phase applies is what the
+//! other one feels.
+
+use halfstep::{RunReport, Simulation, scene};
+use std::path::Path;
+
+/// A drop that hits the middle of a free plate and one that hits its end, without gravity, walls and clamps.
+const FREE: &str = r#"
+    resolution = 0.005
+    end_time = 0.02
+    gravity = [0.0, 0.0]
+    [fluid]
+    density = 1000.0
+    sound_speed = 60.0
+    [solid]
+    density = 1200.0
+    youngs_modulus = 1e6
+    poissons_ratio = 0.3
+    [[shape]]
+    name = "plate"
+    phase = "solid"
+    box = { min = [0.0, 0.0], max = [0.02, 0.12] }
+    [[shape]]
+    name = "drop"
+    phase = "fluid"
+    disc = { center = [-0.03, 0.06], radius = 0.02 }
+    velocity = [5.0, 1.0]
+    [[shape]]
+    name = "second"
+    phase = "fluid"
+    disc = { center = [0.055, 0.11], radius = 0.02 }
+    velocity = [-3.0, 0.0]
+"#;
+
+fn run(overrides: &[&str]) -> RunReport {
+    let overrides: Vec<String> = overrides.iter().map(|&o| o.into()).collect();
+    let scene = scene::parse(FREE, Path::new("free.toml"), &overrides).unwrap_or_else(|e| panic!("{e:?}"));
+    Simulation::new(scene).run().expect("a run")
+}
+
+#[test]
+fn a_free_impact_keeps_the_total_momentum() {
+    for overrides in [
+        &[][..],
+        &["effects.thin-plate-screen=off"],
+        &["interface.cross_viscosity_far=1.0"],
+        &["numerics.max_sub_steps=1"],
+        &["shape.plate.spacing=0.0025"],
+        &["solid.model=hypoelastic"],
+        &["solid.model=hypoelastic", "interface.treatment=phase-blind"],
+    ] {
+        let report = run(overrides);
+        let drift = report.audit.momentum_drift.expect("nothing outside acts");
+        println!("{overrides:?}: {drift:e}, closest {:?} dx", report.audit.min_gap);
+        assert!(
+            report.audit.min_gap.is_some_and(|gap| gap < 1.2),
+            "{overrides:?}: they touch: {:?}",
+            report.audit
+        );
+        assert!(drift < 1e-12, "{overrides:?}: {drift:e}");
+    }
+}
+
+#[test]
+fn particles_that_leave_are_no_drift() {
+    // The second drop flies on through the border at 0.06 m.
+    let away = [
+        "shape.second.velocity=[3.0, 0.0]",
+        "numerics.domain={ min = [-0.2, -0.2], max = [0.08, 0.3] }",
+        "end_time=0.01",
+    ];
+    let report = run(&away);
+    assert!(report.particles.removed > 0, "{:?}", report.particles);
+    assert!(report.audit.momentum_drift.is_some_and(|drift| drift < 1e-12), "{:?}", report.audit);
+    let lost = report.particles.removed;
+    let said = format!("{lost} of {} fluid particles left the domain", report.particles.fluid);
+    assert!(report.warnings.contains(&said), "{:?}", report.warnings);
+}
