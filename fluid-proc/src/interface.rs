@@ -50,7 +50,7 @@ impl<const D: usize> Coupling<D> {
         self.epoch
     }
 
-    /// Smallest distance between the phases, m.
+    /// Smallest distance between the phases over the mean of their spacings.
     pub fn gap(&self) -> f64 {
         self.gap
     }
@@ -164,7 +164,7 @@ impl<const D: usize> Coupling<D> {
                 let slot = slots[record] as usize;
                 sums[slot / LANES].add(slot % LANES, acceleration, density_rate);
             });
-            self.gap = self.gap.min(interface.smallest_distance());
+            self.gap = self.gap.min(interface.smallest_distance() / interface.parameters.spacing);
         }
         Ok(())
     }

@@ -95,7 +95,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
             kinetic_energy: 0.5 * mass * energy,
             mass: mass * self.columns.particles as f64,
             density_error: error,
-            gap: self.coupling.as_ref().map_or(f64::INFINITY, |c| c.gap()) / self.resolution,
+            gap: self.coupling.as_ref().map_or(f64::INFINITY, |c| c.gap()),
             stored_energy: mass * stored,
         }
     }

@@ -29,17 +29,22 @@ pub(crate) struct Sleep {
 }
 
 impl Sleep {
-    pub(crate) fn new<const D: usize>(scene: &Scene, solid: &Solid, particles: Particles<'_, D>) -> Self {
+    pub(crate) fn new<const D: usize>(
+        scene: &Scene,
+        solid: &Solid,
+        spacing: f64,
+        particles: Particles<'_, D>,
+    ) -> Self {
         let mut sides = [(f64::INFINITY, f64::NEG_INFINITY); D];
         for reference in particles.reference {
             for (side, &x) in sides.iter_mut().zip(reference) {
                 *side = (side.0.min(x), side.1.max(x));
             }
         }
-        let lengths = sides.map(|(low, high)| high - low + scene.resolution);
+        let lengths = sides.map(|(low, high)| high - low + spacing);
         let longest = lengths.iter().copied().fold(0.0, f64::max);
         let shortest = lengths.iter().copied().fold(f64::INFINITY, f64::min);
-        let tolerance = TOLERANCE * scene.resolution;
+        let tolerance = TOLERANCE * spacing;
         let gravity = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
         let fall = if gravity > 0.0 { (8.0 * tolerance / gravity).sqrt() } else { 0.0 };
         Self {
@@ -140,7 +145,7 @@ mod tests {
         let scene = scene();
         let solid = scene.solids[0].clone();
         let model = Hypoelastic::<2>::new(&scene, 0, Isa::detect()).unwrap();
-        let mut sleep = Sleep::new(&scene, &solid, model.particles());
+        let mut sleep = Sleep::new(&scene, &solid, scene.resolution, model.particles());
         let window = 0.5 * slowest_period(&solid, 0.08, 0.01);
         let [first, second] = HalfStep::begin(0, 0.0).lasting(0.6 * window).both();
         let mut load = Load::<2>::none(model.particles().len());

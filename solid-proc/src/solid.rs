@@ -80,7 +80,9 @@ impl<const D: usize> Solid<D> {
             .collect();
         let material = scene.solids.get(solid);
         let sleep = takes_part(scene, solid, EffectName::SleepingSolid)
-            .then(|| material.map(|material| Sleep::new(scene, material, particles)))
+            .then(|| {
+                material.map(|material| Sleep::new(scene, material, scene.solid_spacing(solid), particles))
+            })
             .flatten();
         let name = material.and_then(|solid| solid.name.parse().ok()).unwrap_or(Name::SOLID);
         Self {

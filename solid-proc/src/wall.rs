@@ -3,7 +3,7 @@
 //! solid to it, so only pressures above zero act, and only walls that the scene lets the solid touch are here.
 //!
 //! The pressure at a surface is nearly zero, so that alone a wall would carry a body by its damping only, and a body at
-//! rest would creep into it. Below the spacing dx, at which two surfaces meet, particles repel each other as those of
+//! rest would creep into it. Below the spacing dx (the mean of the two), at which two surfaces meet, particles repel each other as those of
 //! different bodies do: F = k (dx - r) x / r with k = (K + 4 G / 3) / 2 dx^(D-2).
 
 use crate::columns::{Vectors, vectors};
@@ -135,8 +135,8 @@ pub(crate) struct Touching<'a, const D: usize> {
     pub(crate) density: &'a [f64],
     /// Pa.
     pub(crate) pressure: &'a [f64],
-    /// Of each particle, kg (2D: kg/m).
-    pub(crate) mass: f64,
+    /// What a wall particle's cell holds of the solid's material, kg (2D: kg/m).
+    pub(crate) wall_mass: f64,
     /// kg/m³.
     pub(crate) reference_density: f64,
     /// Pa.
@@ -145,7 +145,7 @@ pub(crate) struct Touching<'a, const D: usize> {
     pub(crate) linear: f64,
     /// B of the artificial viscosity.
     pub(crate) quadratic: f64,
-    /// dx, m.
+    /// Mean of the spacings of solid and walls, m.
     pub(crate) spacing: f64,
     /// k over a particle's mass, 1/s²: see [`repulsion`].
     pub(crate) repulsion: f64,
@@ -224,7 +224,7 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for Push<'_, K, D> {
         let r = distance(r2, self.solid.spacing);
         let overlap = (Lane::splat(self.solid.spacing) - r).max(Lane::ZERO);
         let coefficient =
-            Lane::splat(-self.solid.mass) * f * term + Lane::splat(self.solid.repulsion) * overlap / r;
+            Lane::splat(-self.solid.wall_mass) * f * term + Lane::splat(self.solid.repulsion) * overlap / r;
         for d in 0..D {
             sum.0[d] = A::mul_add(coefficient, dx[d], sum.0[d]);
         }

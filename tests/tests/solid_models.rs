@@ -7,16 +7,27 @@ use halfstep_solid::total_lagrangian::TotalLagrangian;
 use halfstep_sph::lane::Isa;
 use halfstep_tests::conformance::solid::{self, Make};
 
+/// The same scene with the solids' spacing as their own and all else twice as coarse.
+fn finer_than_the_rest(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    for shape in scene.shapes.iter_mut().filter(|shape| shape.solid.is_some()) {
+        shape.spacing = Some(scene.resolution);
+    }
+    scene.resolution *= 2.0;
+    scene
+}
+
 /// One test for each case of the suite.
 macro_rules! conformance {
-    ($name:ident, $model:ident, $keys:literal, [$($case:ident),*]) => {
+    ($name:ident, $model:ident, $keys:literal, $scene:expr, [$($case:ident),*]) => {
         mod $name {
             use super::*;
 
             const MODEL: Make = Make { build, keys: $keys };
 
-            fn build(scene: &Scene, isa: Isa) -> Option<Box<dyn SolidModel<2>>> {
-                Some(Box::new($model::<2>::new(scene, 0, isa)?))
+            fn build(scene_of_suite: &Scene, isa: Isa) -> Option<Box<dyn SolidModel<2>>> {
+                let scene: fn(&Scene) -> Scene = $scene;
+                Some(Box::new($model::<2>::new(&scene(scene_of_suite), 0, isa)?))
             }
 
             $(
@@ -28,7 +39,7 @@ macro_rules! conformance {
         }
     };
     ($($name:ident: $model:ident, $keys:literal;)*) => {
-        $(conformance!($name, $model, $keys, [
+        $(conformance!($name, $model, $keys, Scene::clone, [
             identity, interface_set, rest, uniform_force, stage_0_is_forgotten, sub_steps, clamps, conservation,
             bodies_collide, wall_contact, bounds, threads, interruption
         ]);)*
@@ -40,4 +51,20 @@ conformance! {
     total_lagrangian: TotalLagrangian, "model = \"total-lagrangian\"";
     // With the neighbours of the other model.
     wide_total_lagrangian: TotalLagrangian, "model = \"total-lagrangian\"\nsmoothing_ratio = 1.33";
+}
+
+// All but `interface_set`, which counts particles within reach of the fluid's kernel, and `wall_contact`, whose wall
+// has the body's spacing.
+macro_rules! finer {
+    ($($name:ident: $model:ident, $keys:literal;)*) => {
+        $(conformance!($name, $model, $keys, finer_than_the_rest, [
+            identity, rest, uniform_force, stage_0_is_forgotten, sub_steps, clamps, conservation, bodies_collide,
+            bounds, threads, interruption
+        ]);)*
+    };
+}
+
+finer! {
+    fine_hypoelastic: Hypoelastic, "model = \"hypoelastic\"";
+    fine_total_lagrangian: TotalLagrangian, "model = \"total-lagrangian\"";
 }

@@ -29,6 +29,13 @@ fn describe_in<const D: usize>(scene: &Scene, isa: Isa) -> String {
     };
     line("scene", format!("{} ({})", scene.name, scene.path.display()));
     line("particles", format!("{} fluid, {} solid, {} wall", counts.fluid, counts.solid, counts.wall));
+    for (k, solid) in scene.solids.iter().enumerate() {
+        let spacing = scene.solid_spacing(k);
+        if spacing != scene.resolution {
+            let text = format!("{:.4e} m, of the fluid and walls {:.4e} m", spacing, scene.resolution);
+            line(&format!("{} spacing", solid.name), text);
+        }
+    }
     let mut limit = f64::INFINITY;
     let mut solid_limits = Vec::new();
     let mut built = Vec::new();

@@ -27,7 +27,8 @@ pub(crate) fn participants<const D: usize>(
     let solids = layout.solid_counts(scene);
     let name = |text: &str| text.parse::<Name>().map_err(|e| RunError::System(e.to_string()));
     let mut participants = Vec::new();
-    let mut all_solids = 0;
+    // Particles of all solids, counted in cells of the fluid's.
+    let mut all_solids = 0.0;
     for (place, participant) in scene.participants().into_iter().enumerate() {
         let own = name(&participant.name)?;
         let is_foreign = foreign.contains(&own);
@@ -36,7 +37,10 @@ pub(crate) fn participants<const D: usize>(
             _ if is_foreign => solids[place - 1].max(4096),
             _ => solids[place - 1],
         };
-        all_solids += capacity;
+        if place != FLUID {
+            let cells = (scene.solid_spacing(place - 1) / scene.resolution).powi(D as i32);
+            all_solids += capacity as f64 * if is_foreign { 1.0 } else { cells };
+        }
         participants.push(Participant {
             name: own,
             process: if is_foreign { own } else { name(&participant.process)? },
@@ -57,7 +61,7 @@ pub(crate) fn participants<const D: usize>(
         )));
     }
     // A ribbon of about four layers on each side of the solids' surfaces, and room for compression.
-    let ribbon = (24 * all_solids).max(4096).min(layout.counts().fluid);
+    let ribbon = ((24.0 * all_solids) as u64).max(4096).min(layout.counts().fluid);
     let capacity = scene.numerics.interface_capacity.map_or(ribbon, u64::from);
     participants[FLUID].capacity = capacity.max(1) as u32;
     Ok(participants)

@@ -148,9 +148,11 @@ pub fn settings(path: &Path, base: &[String], vary: &[Vary], full: bool) -> Resu
     Ok(settings)
 }
 
-/// The thinnest extent of a shape that moves, m.
+/// The thinnest extent of a shape that moves, m: of those whose spacing is the scene's, where there are any.
 pub fn thinnest(scene: &Scene) -> f64 {
-    let moving = scene.shapes.iter().filter(|s| s.phase != Phase::Wall);
+    let moving = || scene.shapes.iter().filter(|s| s.phase != Phase::Wall);
+    let spaced = moving().any(|s| s.spacing.is_none());
+    let moving = moving().filter(|s| !spaced || s.spacing.is_none());
     let extents = moving.flat_map(|s| match &s.geometry {
         Geometry::Box(b) | Geometry::Tank { cavity: b, .. } => {
             (0..scene.dimension).map(|a| b.max[a] - b.min[a]).collect()

@@ -68,8 +68,10 @@ pub struct Parameters<const D: usize> {
     pub gravity: [f64; D],
     /// The solid never pulls at the fluid.
     pub non_negative_pressure: bool,
-    /// Particle spacing, m.
+    /// Particle spacing of the fluid, m.
     pub resolution: f64,
+    /// How far apart particles of the two are where fluid and solid touch: the mean of their spacings, m.
+    pub spacing: f64,
     /// The plates whose faces are kept apart.
     pub thin_plates: Vec<Plate<D>>,
     /// Kayaki's C between particles near each other.
@@ -107,6 +109,7 @@ impl<const D: usize> Parameters<D> {
             gravity: std::array::from_fn(|d| scene.gravity[d]),
             non_negative_pressure: non_negative_pressure(scene).on,
             resolution: scene.resolution,
+            spacing: scene.interface_spacing(index),
             thin_plates: thin_plate::screened(scene, index),
             cross_viscosity: scene.interface.cross_viscosity,
             cross_viscosity_far: scene.interface.cross_viscosity_far,

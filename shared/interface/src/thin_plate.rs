@@ -1,6 +1,6 @@
 //! Where a solid is so thin that fluid on both of its faces is within reach of the same solid particles.
 //!
-//! Of a plate with N rows of particles across, the nearest fluid on either face stands (N + 1) dx apart. Below 4h there
+//! Of a plate as thick as N spacings dx of the fluid, the nearest fluid on either face stands (N + 1) dx apart. Below 4h there
 //! are solid particles that see both; below 2h the fluid particles see each other.
 
 use halfstep_scene::geometry::Plate;
@@ -13,7 +13,7 @@ const TOLERANCE: f64 = 1e-9;
 fn thinner<const D: usize>(scene: &Scene, support: f64, of: impl Fn(&Shape) -> bool) -> Vec<Plate<D>> {
     let reach = support * scene.smoothing_ratio * (1.0 - TOLERANCE);
     let plates = scene.shapes.iter().filter(|shape| of(shape)).filter_map(|shape| Plate::of(scene, shape));
-    plates.filter(|plate| plate.rows + 1.0 < reach).collect()
+    plates.filter(|plate| plate.thickness + 1.0 < reach).collect()
 }
 
 /// Thin plates show the fluid on each face a pressure of its own where the solid is a moving wall.

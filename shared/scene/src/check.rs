@@ -5,7 +5,7 @@ use super::error::{Report, listed, nearest};
 use super::*;
 use crate::dispatch;
 use crate::geometry::Plate;
-use crate::geometry::fewest_rows;
+use crate::geometry::least_thickness;
 
 /// Frames, rows and steps that no run can be meant to have.
 const MAX_FRAMES: f64 = 1e5;
@@ -45,7 +45,7 @@ impl Check<'_> {
     }
 
     /// The key of the shape of that index: by index, since names may be taken twice.
-    fn shape_key(&self, index: usize) -> String {
+    pub(super) fn shape_key(&self, index: usize) -> String {
         let shape = &self.scene.shapes[index];
         let first = self.scene.shapes.iter().position(|s| s.name == shape.name);
         if first == Some(index) && !shape.name.is_empty() {
@@ -104,7 +104,6 @@ impl Check<'_> {
 
     /// Every shape holds at least one particle.
     fn sizes(&self) {
-        let dx = self.scene.resolution;
         if self.report.has_any(&["resolution", "dimension"]) {
             return;
         }
@@ -126,13 +125,23 @@ impl Check<'_> {
                 Some(model) if rows > 1 => format!("{rows} particles of the {} model need", model.name()),
                 _ => "one particle needs".to_owned(),
             };
-            let least = dx * (f64::from(rows) + f64::from(u8::from(nodal)));
+            let least = self.scene.spacing(shape) * (f64::from(rows) + f64::from(u8::from(nodal)));
             let convention = if nodal { " in the nodal lattice" } else { "" };
             if thickness < least * (1.0 - 1e-9) {
                 let place = format!("{key}.{kind}");
                 let corners = [format!("{place}.min"), format!("{place}.max")];
                 let model = format!("{}.model", self.solid_key(shape.solid.unwrap_or(0)));
-                let others = [&corners[0], &corners[1], "resolution", "numerics.lattice", &model, "preset"];
+                let own = [format!("{key}.spacing"), format!("{key}.across")];
+                let others = [
+                    &corners[0],
+                    &corners[1],
+                    &own[0],
+                    &own[1],
+                    "resolution",
+                    "numerics.lattice",
+                    &model,
+                    "preset",
+                ];
                 // In single precision: without the last digits that a difference leaves.
                 let thickness = thickness as f32;
                 let reason = format!("is {thickness} m thin, and {needed} {least} m{convention}");
@@ -146,12 +155,17 @@ impl Check<'_> {
         if self.report.has_any(&["resolution", "dimension", "smoothing_ratio", "interface", "effects"]) {
             return;
         }
-        let Some(fewest) = fewest_rows(self.scene) else { return };
+        let Some(least) = least_thickness(self.scene) else { return };
         for (index, shape) in self.scene.shapes.iter().enumerate() {
             let key = self.shape_key(index);
-            let rows =
-                dispatch!(self.scene.dimension, D => Plate::<D>::of(self.scene, shape).map(|p| p.rows));
-            let Some(rows) = rows.flatten().filter(|rows| *rows < fewest) else { continue };
+            let plate = dispatch!(self.scene.dimension, D => {
+                Plate::<D>::of(self.scene, shape).map(|plate| (plate.rows, plate.thickness))
+            });
+            let Some((rows, thickness)) =
+                plate.flatten().filter(|(_, thickness)| thickness * (1.0 + 1e-9) < least)
+            else {
+                continue;
+            };
             if self.report.has(&key) {
                 continue;
             }
@@ -163,10 +177,16 @@ impl Check<'_> {
                 ["resolution", "smoothing_ratio", "numerics.lattice", "interface.treatment", "preset"];
             let corners = [format!("{place}.min"), format!("{place}.max")];
             let others: Vec<&str> = corners.iter().map(String::as_str).chain(others).collect();
-            let rows = rows.round();
+            let has = match shape.spacing {
+                None => format!("has {} of at least {least} particles across", rows.round()),
+                Some(_) => {
+                    let thickness = thickness as f32;
+                    format!("is {thickness} of at least {least} spacings of the fluid thick")
+                }
+            };
             let reason = format!(
-                "has {rows} of at least {fewest} particles across: fluid on one face reaches the other through it \
-                 (2h) and leaks; effects.thin-plate-screen = \"off\" lets it pass"
+                "{has}: fluid on one face reaches the other through it (2h) and leaks; effects.thin-plate-screen = \
+                 \"off\" lets it pass"
             );
             self.report.among(self.root, &place, &others, reason);
         }

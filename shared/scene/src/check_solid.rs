@@ -16,6 +16,42 @@ impl Check<'_> {
             }
         }
         self.solid_time_step();
+        self.spacings();
+    }
+
+    /// The key that says a shape's own spacing.
+    fn spacing_key(&self, shape: usize) -> String {
+        let key = self.shape_key(shape);
+        let across = format!("{key}.across");
+        if self.root.child_at(&across).is_some() { across } else { format!("{key}.spacing") }
+    }
+
+    /// One solid has one spacing, and none that the fluid would slip through.
+    fn spacings(&self) {
+        if self.report.has_any(&["resolution", "shape", "solid"]) {
+            return;
+        }
+        let scene = self.scene;
+        for (index, shape) in scene.shapes.iter().enumerate() {
+            let (Some(solid), Some(spacing)) = (shape.solid, shape.spacing) else { continue };
+            let key = self.spacing_key(index);
+            let first = scene.shapes.iter().position(|s| s.solid == Some(solid)).unwrap_or(index);
+            let other = scene.solid_spacing(solid);
+            let differs = (spacing - other).abs() > 1e-9 * other;
+            let too_wide = scene.fluid.is_some() && spacing > scene.resolution * (1.0 + 1e-9);
+            // In single precision: without the last digits that a division leaves.
+            let (spacing, other) = (spacing as f32, other as f32);
+            if differs {
+                let name = &scene.shapes[first].name;
+                let why =
+                    format!("`{name}`, of the same solid, has {other} m, and one solid has one spacing");
+                self.report.among(self.root, &key, &[], format!("makes {spacing} m, but {why}"));
+            } else if too_wide {
+                let (dx, why) = (scene.resolution, "the fluid would slip between the solid's particles");
+                let reason = format!("makes {spacing} m, and must be at most the resolution, {dx} m: {why}");
+                self.report.among(self.root, &key, &["resolution"], reason);
+            }
+        }
     }
 
     /// The key of the solid of that index: by index where its name is taken twice.
@@ -67,6 +103,12 @@ impl Check<'_> {
             let model = format!("{of_solid}.model");
             let reason = format!("cannot be phase-blind with {model} = \"{}\": {why}", name.name());
             self.report.among(self.root, key, &[&model, "preset"], reason);
+        }
+        let own = |shape: &Shape| shape.spacing.is_some_and(|spacing| spacing != self.scene.resolution);
+        if let Some(shape) = self.scene.shapes.iter().position(own) {
+            let why = "its sums do not ask what a neighbour is, so all have one smoothing length";
+            let reason = format!("must be that of the resolution with phase-blind: {why}");
+            self.report.among(self.root, &self.spacing_key(shape), &PHASE_BLIND_BY, reason);
         }
         if matches!(solid.sub_steps, SubSteps::Fixed(n) if n != 1) {
             let why = "a particle close to the interface hangs on a spring as stiff as the solid";

@@ -1,11 +1,12 @@
 //! Where the particles of a scene are at first.
 //!
-//! Every shape carries its own lattice of spacing dx. A box's lattice starts at its lowest corner and has
+//! Every shape carries its own lattice of spacing dx, the scene's or its solid's own. A box's lattice starts at its lowest corner and has
 //! round(extent / dx) cells along each axis; a disc's or ring's is symmetric about its centre. [`Lattice`] says whether
 //! particles sit at the cells' centres or at their corners.
 //!
 //! Where shapes overlap, the solid wins over the wall, the wall over the fluid, and in one phase the shape that comes
-//! first in the file. The loser has no particle inside the winner nor closer than dx / 2 to one of its particles.
+//! first in the file. The loser has no particle inside the winner nor closer than dx / 2 (the mean
+//! where spacings differ) to one of its particles.
 
 mod nearest;
 mod occupied;
@@ -18,7 +19,7 @@ use crate::{Block, CantileverMode, Geometry, Lattice, Phase, Scene, Shape, dispa
 pub use nearest::nearest;
 use occupied::Occupied;
 pub use plate::Plate;
-pub(crate) use plate::fewest_rows;
+pub(crate) use plate::least_thickness;
 use points::Spacing;
 
 /// Relative tolerance of every comparison of lengths, in spacings.
@@ -127,12 +128,13 @@ impl Counts {
 pub fn layout<const D: usize>(scene: &Scene) -> Layout<D> {
     assert_eq!(D, scene.dimension, "layout of another dimension than the scene's");
     let mut layout = Layout { fluid: Vec::new(), solid: Vec::new(), wall: Vec::new() };
-    let mut occupied = Occupied::new(scene.resolution);
+    let widest = scene.shapes.iter().map(|shape| scene.spacing(shape)).fold(scene.resolution, f64::max);
+    let mut occupied = Occupied::new(widest);
     for phase in [Phase::Solid, Phase::Wall, Phase::Fluid] {
         for (index, shape) in scene.shapes.iter().enumerate().filter(|(_, s)| s.phase == phase) {
             let spacing = Spacing::of(scene, shape);
             let mut kept = points::of_shape::<D>(&shape.geometry, spacing);
-            kept.retain(|p| occupied.is_free(&p.position));
+            kept.retain(|p| occupied.is_free(&p.position, spacing.dx));
             occupied.add(&shape.geometry, spacing, phase, kept.iter().map(|p| p.position));
             let velocity = truncated(shape.velocity);
             match phase {
@@ -325,7 +327,7 @@ fn truncated<const D: usize>(vector: [f64; 3]) -> [f64; D] {
 impl Spacing {
     fn of(scene: &Scene, shape: &Shape) -> Self {
         Self {
-            dx: scene.resolution,
+            dx: scene.spacing(shape),
             nodal: scene.numerics.lattice == Lattice::Nodal,
             wall: shape.phase == Phase::Wall,
             support: 2.0 * scene.smoothing_ratio,

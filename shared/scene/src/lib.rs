@@ -41,6 +41,7 @@ mod resources;
 mod section;
 mod solid;
 mod solid_json;
+mod spacing;
 mod velocity_field;
 
 pub use effect::{Decision, Derived, EffectName, Switch};
@@ -74,7 +75,7 @@ pub struct Scene {
     pub preset: Option<Preset>,
     /// Number of space dimensions.
     pub dimension: usize,
-    /// Particle spacing dx, m.
+    /// Particle spacing dx of the fluid, of walls and of solids that have no spacing of their own, m.
     pub resolution: f64,
     /// Smoothing length over spacing, h / dx, of the fluid and the interface.
     pub smoothing_ratio: f64,
@@ -221,6 +222,9 @@ pub struct Shape {
     pub solid: Option<usize>,
     /// Where it is.
     pub geometry: Geometry,
+    /// Solid only: particle spacing, m; `None`: the scene's resolution.
+    #[serde(default)]
+    pub spacing: Option<f64>,
     /// Initial velocity, m/s (a wall: the constant velocity of its surface).
     pub velocity: [f64; 3],
     /// Initial velocity field of a vibrating cantilever, added to `velocity`.

@@ -49,11 +49,14 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report) -> Draft {
     };
     let solids = read_solid::solids(&top, defaults.with_treatment(interface.treatment), &numerics);
     let names: Vec<&str> = solids.iter().map(|s| s.name.as_str()).collect();
-    let shapes: Vec<Shape> =
-        top.tables("shape").into_iter().map(|s| read_shape::shape(s, dimension, &names)).collect();
+    let shapes: Vec<Shape> = top
+        .tables("shape")
+        .into_iter()
+        .map(|s| read_shape::shape(s, dimension, &names, numerics.lattice))
+        .collect();
     let probe = |p| read_probe::probe(p, dimension, &names, &shapes);
     let probes = top.tables("probe").into_iter().filter_map(probe).collect();
-    let scene = Scene {
+    let mut scene = Scene {
         name: stem,
         // A path that is no Unicode could not be written to JSON.
         path: path.to_string_lossy().into_owned().into(),
@@ -81,6 +84,7 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report) -> Draft {
         effects: effects(&top, &defaults),
         numerics,
     };
+    scene.share_spacings();
     top.finish();
     Draft { scene, sound_speed_auto, linear_auto }
 }

@@ -19,13 +19,18 @@ const SIDES: [(&str, TankSide); 6] = [
 
 const GEOMETRIES: [&str; 4] = ["box", "disc", "ring", "tank"];
 
-pub(super) fn shape(section: Section<'_>, dimension: usize, solids: &[&str]) -> Shape {
+/// Most particles across a shape.
+const MAX_ACROSS: u32 = 100_000;
+
+pub(super) fn shape(section: Section<'_>, dimension: usize, solids: &[&str], lattice: Lattice) -> Shape {
     let phase = section.choice("phase", None, &PHASES);
+    let geometry = geometry(&section, dimension, phase);
     let shape = Shape {
         name: name(&section),
         phase: phase.unwrap_or(Phase::Wall),
         solid: which_solid(&section, solids).filter(|_| phase == Some(Phase::Solid)),
-        geometry: geometry(&section, dimension, phase),
+        spacing: spacing(&section, &geometry, dimension, lattice).filter(|_| phase == Some(Phase::Solid)),
+        geometry,
         velocity: section.vector("velocity", dimension, Some([0.0; 3])),
         cantilever_mode: cantilever_mode(&section),
         velocity_field: velocity_field(&section, dimension),
@@ -41,6 +46,8 @@ pub(super) fn shape(section: Section<'_>, dimension: usize, solids: &[&str]) -> 
         ("cantilever_mode", Phase::Solid, "a solid"),
         ("clamp", Phase::Solid, "a solid"),
         ("solid", Phase::Solid, "a solid"),
+        ("spacing", Phase::Solid, "a solid"),
+        ("across", Phase::Solid, "a solid"),
         ("velocity_field", Phase::Fluid, "a fluid"),
         ("motion", Phase::Wall, "a wall"),
         ("contact", Phase::Wall, "a wall"),
@@ -61,6 +68,19 @@ pub(super) fn shape(section: Section<'_>, dimension: usize, solids: &[&str]) -> 
     }
     section.finish();
     shape
+}
+
+/// A solid's own spacing: `spacing`, m, or `across`, the number of particles across its thinnest side.
+fn spacing(section: &Section<'_>, geometry: &Geometry, dimension: usize, lattice: Lattice) -> Option<f64> {
+    let across = section.node("across");
+    if let Some(node) = section.node("spacing") {
+        if across.is_some() {
+            section.whole("has both `spacing` and `across`: each says how far apart its particles are");
+        }
+        return section.as_number("spacing", node, Range::positive());
+    }
+    let across = section.as_integer("across", across?, 1, MAX_ACROSS)?;
+    Some(spacing::with_across(geometry, dimension, lattice, across)).filter(|spacing| spacing.is_finite())
 }
 
 /// Index of the solid that a shape or a probe names; where it names none, of the only one.

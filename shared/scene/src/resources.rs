@@ -50,9 +50,9 @@ pub(super) fn check_reach(scene: &Scene, root: &Node, report: &Report) {
     for shape in &scene.shapes {
         let bounds = geometry::bounding_box(shape, scene);
         let far = bounds.min.iter().chain(&bounds.max).fold(0.0_f64, |far, x| far.max(x.abs()));
-        if far > MAX_SPACINGS * scene.resolution {
+        let limit = MAX_SPACINGS * scene.spacing(shape);
+        if far > limit {
             let key = format!("shape.{}", shape.name);
-            let limit = MAX_SPACINGS * scene.resolution;
             let reason = format!("reaches {far:e} m from the origin; at this resolution at most {limit:e} m");
             report.place(&key, root.origin_of(&key), reason);
         }

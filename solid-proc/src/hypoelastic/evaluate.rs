@@ -72,7 +72,7 @@ impl<const D: usize> Hypoelastic<D> {
         let artificial = std::mem::take(&mut self.artificial);
         let correction = self.artificial_stress.map(|stress| ArtificialStress {
             tensors: &artificial,
-            inverse_w0: 1.0 / kernel.at(self.resolution),
+            inverse_w0: 1.0 / kernel.at(self.spacing),
             exponent: stress.exponent.round() as u32,
         });
         match (correction, self.renormalised) {
@@ -82,21 +82,26 @@ impl<const D: usize> Hypoelastic<D> {
             (Some(c), true) => self.pass(kernel, c, Renormalised),
         }
         self.artificial = artificial;
+    }
+
+    fn touch_walls(&mut self) {
         if let Some(walls) = &mut self.walls {
             let solid = Touching {
                 position: &self.now.position,
                 velocity: &self.now.velocity,
                 density: &self.now.density,
                 pressure: &self.pressure,
-                mass: self.mass,
+                wall_mass: self.wall_mass,
                 reference_density: self.material.density,
                 bulk_modulus: self.material.bulk_modulus(),
                 linear: self.material.artificial_viscosity.linear * self.material.sound_speed(),
                 quadratic: self.material.artificial_viscosity.quadratic,
-                spacing: self.resolution,
-                repulsion: repulsion(self.material.pressure_wave_speed(), self.resolution),
+                spacing: self.wall_spacing,
+                repulsion: repulsion(self.material.pressure_wave_speed(), self.spacing),
             };
-            walls.act(self.isa, kernel, self.gravity, solid);
+            with_kernel!(self.kernel, self.wall_smoothing_length, D, |kernel| {
+                walls.act(self.isa, kernel, self.gravity, solid);
+            });
             self.pair_evaluations += walls.pairs() as u64;
         }
     }
@@ -145,6 +150,7 @@ impl<const D: usize> Hypoelastic<D> {
         }
         self.show_clamps_as_walls();
         with_kernel!(self.kernel, self.smoothing_length, D, |kernel| self.sums(kernel));
+        self.touch_walls();
         let g = self.material.shear_modulus();
         for slot in 0..self.id.len() {
             let (sum, k) = (&self.sums[slot / LANES], slot % LANES);

@@ -32,7 +32,14 @@ pub struct Hypoelastic<const D: usize> {
     pub(super) isa: Isa,
     pub(super) smoothing_length: f64,
     skin: f64,
-    pub(super) resolution: f64,
+    /// The walls' particles' smoothing length toward the solid, m.
+    pub(super) wall_smoothing_length: f64,
+    /// Mean of the solid's spacing and the walls', m.
+    pub(super) wall_spacing: f64,
+    /// What a wall particle's cell holds of the solid's material, kg (2D: kg/m).
+    pub(super) wall_mass: f64,
+    /// dx of its own, m.
+    pub(super) spacing: f64,
     pub(super) gravity: [f64; D],
     domain: ([f64; D], [f64; D]),
     pub(super) renormalised: bool,
@@ -72,16 +79,19 @@ impl<const D: usize> Hypoelastic<D> {
     pub fn new(scene: &Scene, solid: usize, isa: Isa) -> Option<Self> {
         let material = scene.solids.get(solid)?.clone();
         let layout = geometry::layout::<D>(scene).with_solid(scene, solid);
-        let h = material.smoothing_ratio * scene.resolution;
+        let dx = scene.solid_spacing(solid);
+        let h = material.smoothing_ratio * dx;
+        // Walls have the scene's spacing, which is no finer.
+        let wall_smoothing_length = material.smoothing_ratio * scene.resolution.max(dx);
         let n = layout.solid.len();
         let ModelKeys::Hypoelastic(keys) = &material.model else { return None };
         let artificial_stress =
             takes_part(scene, solid, EffectName::ArtificialStress).then_some(keys.artificial_stress);
         let walls = takes_part(scene, solid, EffectName::WallContact)
-            .then(|| Walls::new(&layout.wall, (2.0 + SKIN) * h))
+            .then(|| Walls::new(&layout.wall, (2.0 + SKIN) * wall_smoothing_length))
             .flatten();
         let domain = geometry::domain(scene);
-        let mass = material.density * scene.resolution.powi(D as i32);
+        let mass = material.density * dx.powi(D as i32);
         let now = State::new(&layout.solid, material.density);
         let mut model = Self {
             bounds: Bounds::of_solid(scene, solid)?,
@@ -89,7 +99,10 @@ impl<const D: usize> Hypoelastic<D> {
             isa,
             smoothing_length: h,
             skin: SKIN * h,
-            resolution: scene.resolution,
+            wall_smoothing_length,
+            wall_spacing: scene.interface_spacing(solid),
+            wall_mass: material.density * scene.resolution.powi(D as i32),
+            spacing: dx,
             gravity: std::array::from_fn(|d| scene.gravity[d]),
             domain: (std::array::from_fn(|d| domain.min[d]), std::array::from_fn(|d| domain.max[d])),
             renormalised: takes_part(scene, solid, EffectName::RenormalisedGradient),
@@ -99,11 +112,7 @@ impl<const D: usize> Hypoelastic<D> {
             outer: Vec::new(),
             mass,
             material,
-            interface_set: surface_set(
-                &layout.solid,
-                2.0 * scene.smoothing_ratio * scene.resolution,
-                scene.resolution,
-            ),
+            interface_set: surface_set(&layout.solid, 2.0 * scene.smoothing_ratio * scene.resolution, dx),
             shown_velocity: ShownVelocity::new(layout.solid.iter().map(|p| p.velocity)),
             points: layout.solid,
             id: (0..n as u32).collect(),
@@ -131,7 +140,7 @@ impl<const D: usize> Hypoelastic<D> {
 
     /// The rows as they were at the last sort.
     pub(super) fn sort_rows_at_reference(&mut self) -> Result<(), StateError> {
-        let (height, domain) = (2.0 * self.resolution, self.domain);
+        let (height, domain) = (2.0 * self.spacing, self.domain);
         order::sort_again(&mut self.rows, &self.reference, &self.id, height, domain, "the solid's rows")
     }
 
@@ -148,13 +157,14 @@ impl<const D: usize> Hypoelastic<D> {
         self.neighbours.build(&self.reference, &self.reference, &self.rows, reach);
         fit(&mut self.sums, self.neighbours.clusters(), SolidSum::default());
         if let Some(walls) = &mut self.walls {
+            let reach = 2.0 * self.wall_smoothing_length + self.skin;
             walls.relist(&self.reference, &self.rows, reach);
         }
     }
 
     pub(super) fn sort(&mut self) {
         // Rows two spacings high: four neighbours in a row are a square.
-        self.rows.sort(&self.now.position, &self.id, 2.0 * self.resolution, self.domain.0, self.domain.1);
+        self.rows.sort(&self.now.position, &self.id, 2.0 * self.spacing, self.domain.0, self.domain.1);
         self.now.permute(&mut self.rows);
         self.at_n.permute(&mut self.rows);
         self.step_start.permute(&mut self.rows);
@@ -267,7 +277,7 @@ impl<const D: usize> SolidModel<D> for Hypoelastic<D> {
 
     fn sub_step_limit(&self) -> f64 {
         // Measured on this scheme: stable to 1.1 dx / c_P, unstable from 1.15; the scene's solid_cfl keeps clear of it.
-        self.courant * self.resolution / self.material.pressure_wave_speed()
+        self.courant * self.spacing / self.material.pressure_wave_speed()
     }
 
     fn advance(&mut self, half_step: &HalfStep, sub_steps: u32, load: &Load<D>) -> Result<(), OutOfBounds> {

@@ -38,12 +38,17 @@ pub(super) struct Contact<const D: usize> {
     sums: Vec<Repulsion<D>>,
     several: bool,
     walls: Option<Walls<D>>,
+    /// dx of the solid, m.
     spacing: f64,
+    /// Mean of that and the walls', m.
+    wall_spacing: f64,
     smoothing_length: f64,
     domain: ([f64; D], [f64; D]),
     gravity: [f64; D],
     stiffness: f64,
     mass: f64,
+    /// What a wall particle's cell holds of the solid's material, kg (2D: kg/m).
+    wall_mass: f64,
 }
 
 /// State of a particle, for [`Contact::act`].
@@ -63,6 +68,7 @@ impl<const D: usize> Contact<D> {
         layout: &Layout<D>,
         body: &[u32],
     ) -> Option<Self> {
+        let dx = scene.solid_spacing(solid);
         let h = scene.smoothing_ratio * scene.resolution;
         let walls = takes_part(scene, solid, EffectName::WallContact)
             .then(|| Walls::new(&layout.wall, (2.0 + SKIN) * h))
@@ -72,7 +78,7 @@ impl<const D: usize> Contact<D> {
             (None, false) => return None,
             // The pressure at a wall comes from what is behind the surface, too.
             (Some(_), _) => (0..layout.solid.len() as u32).collect(),
-            (None, true) => surface_set(&layout.solid, 0.1 * scene.resolution, scene.resolution),
+            (None, true) => surface_set(&layout.solid, 0.1 * dx, dx),
         };
         let column = |of: &dyn Fn(&SolidPoint<D>) -> f64| -> Vec<f64> {
             id.iter().map(|&p| of(&layout.solid[p as usize])).collect()
@@ -92,12 +98,14 @@ impl<const D: usize> Contact<D> {
             sums: Vec::new(),
             several,
             walls,
-            spacing: scene.resolution,
+            spacing: dx,
+            wall_spacing: scene.interface_spacing(solid),
             smoothing_length: h,
             domain: (std::array::from_fn(|d| domain.min[d]), std::array::from_fn(|d| domain.max[d])),
             gravity: std::array::from_fn(|d| scene.gravity[d]),
-            stiffness: 0.5 * modulus * scene.resolution.powi(D as i32 - 2),
-            mass: material.density * scene.resolution.powi(D as i32),
+            stiffness: 0.5 * modulus * dx.powi(D as i32 - 2),
+            wall_mass: material.density * scene.resolution.powi(D as i32),
+            mass: material.density * dx.powi(D as i32),
             id,
         };
         contact.sort();
@@ -231,13 +239,13 @@ impl<const D: usize> Contact<D> {
                 velocity: &self.velocity,
                 density: &self.density,
                 pressure: &self.pressure,
-                mass: self.mass,
+                wall_mass: self.wall_mass,
                 reference_density: solid.density,
                 bulk_modulus: solid.bulk_modulus(),
                 // The wall begins to push a body by stopping it: a solid without viscosity would not be stopped.
                 linear: viscosity.linear.max(1.0) * solid.sound_speed(),
                 quadratic: viscosity.quadratic,
-                spacing: self.spacing,
+                spacing: self.wall_spacing,
                 repulsion: repulsion(solid.pressure_wave_speed(), self.spacing),
             };
             walls.act(isa, kernel, self.gravity, touching);

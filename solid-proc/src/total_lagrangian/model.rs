@@ -55,7 +55,8 @@ pub struct TotalLagrangian<const D: usize> {
     pub(super) kernel: KernelName,
     pub(super) isa: Isa,
     pub(super) smoothing_length: f64,
-    resolution: f64,
+    /// dx of its own, m.
+    spacing: f64,
     gravity: [f64; D],
     courant: f64,
     /// V0 of a particle.
@@ -107,7 +108,7 @@ impl<const D: usize> TotalLagrangian<D> {
         let ModelKeys::TotalLagrangian(keys) = &material.model else { return None };
         let layout = geometry::layout::<D>(scene).with_solid(scene, solid);
         let points = &layout.solid;
-        let dx = scene.resolution;
+        let dx = scene.solid_spacing(solid);
         let h = material.smoothing_ratio * dx;
         let reach = 2.0 * h;
 
@@ -155,7 +156,7 @@ impl<const D: usize> TotalLagrangian<D> {
             kernel: scene.numerics.kernel,
             isa,
             smoothing_length: h,
-            resolution: dx,
+            spacing: dx,
             gravity: std::array::from_fn(|d| scene.gravity[d]),
             courant: scene.numerics.solid_cfl,
             volume: dx.powi(D as i32),
@@ -163,7 +164,7 @@ impl<const D: usize> TotalLagrangian<D> {
             mass,
             hourglass_modulus: alpha * material.shear_modulus(),
             rigid_clamps,
-            interface_set: surface_set(points, 2.0 * scene.smoothing_ratio * dx, dx),
+            interface_set: surface_set(points, 2.0 * scene.smoothing_ratio * scene.resolution, dx),
             at_n: now.clone(),
             shown_velocity: ShownVelocity::new(layout.solid.iter().map(|p| p.velocity)),
             load: vectors(slots),
@@ -312,7 +313,7 @@ impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {
         // Measured with h = 0.75 dx for nu from 0 to 0.49 and alpha from 0 to 10: stable to 0.94 of dx over this speed.
         let hourglass = self.hourglass_modulus / self.material.density;
         let speed = (self.material.pressure_wave_speed().powi(2) + hourglass).sqrt();
-        self.courant * self.resolution / speed
+        self.courant * self.spacing / speed
     }
 
     fn advance(&mut self, half_step: &HalfStep, sub_steps: u32, load: &Load<D>) -> Result<(), OutOfBounds> {

@@ -47,14 +47,13 @@ pub fn draw_contact(scene: &Scene, dir: &Path) -> Result<Option<PathBuf>, Output
     let scales = ColourScales::of(&instants);
     let place = layout(instants.len(), view.size(), HEAD, FOOT, scene.resolution);
     let mut sheet = Sheet::new(place.width, place.height);
-    // Large discs touch; small ones overlap so that no background shines through.
-    let spacing = scene.resolution * place.scale;
-    let overlap = 1.42 - 0.38 * ((spacing - 8.0) / 8.0).clamp(0.0, 1.0);
-    let radius = (0.5 * spacing * overlap).max(0.75);
+    let of_solids = (0..scene.solids.len()).map(|solid| scene.solid_spacing(solid)).fold(0.0, f64::max);
     for (instant, &panel) in instants.iter().zip(&place.panels) {
         for (phase, scale) in
             [(frame::WALL, None), (frame::FLUID, Some(Scale::Fluid)), (frame::SOLID, Some(Scale::Solid))]
         {
+            let spacing = if phase == frame::SOLID { of_solids } else { scene.resolution };
+            let radius = radius(spacing * place.scale);
             for (frame, k) in instant.phase(phase).filter(|(frame, k)| view.shows(frame.points[*k])) {
                 let color = scale.map_or(WALL, |scale| scales.color(scale, frame, k));
                 sheet.disc(panel, view.pixel(frame.points[k], panel, place.scale), radius, color);
@@ -82,6 +81,13 @@ pub fn draw_contact(scene: &Scene, dir: &Path) -> Result<Option<PathBuf>, Output
     sheet.overlay(&canvas);
     sheet.save(&path)?;
     Ok(Some(path))
+}
+
+/// Radius of a particle's disc for a spacing, both in pixels: large discs touch; small ones overlap so that no
+/// background shines through.
+fn radius(spacing: f64) -> f64 {
+    let overlap = 1.42 - 0.38 * ((spacing - 8.0) / 8.0).clamp(0.0, 1.0);
+    (0.5 * spacing * overlap).max(0.75)
 }
 
 /// Up to [`MOST`] instants evenly over the announced frames, the first and the last among them.

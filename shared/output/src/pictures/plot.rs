@@ -66,13 +66,14 @@ pub fn draw_plot(scene: &Scene, dir: &Path) -> Result<PathBuf, OutputError> {
 
 /// The picture's heading: the scene and its resolution.
 pub(crate) fn title(scene: &Scene) -> String {
-    let (factor, unit) = units::shown("m", scene.resolution);
-    format!(
-        "{} · {}D · particle spacing {} {unit}",
-        scene.name,
-        scene.dimension,
-        units::number(scene.resolution * factor)
-    )
+    let length = |metres: f64| {
+        let (factor, unit) = units::shown("m", metres);
+        format!("{} {unit}", units::number(metres * factor))
+    };
+    let own = (0..scene.solids.len()).filter(|&solid| scene.solid_spacing(solid) != scene.resolution);
+    let own: String =
+        own.map(|k| format!(", {} {}", scene.solids[k].name, length(scene.solid_spacing(k)))).collect();
+    format!("{} · {}D · particle spacing {}{own}", scene.name, scene.dimension, length(scene.resolution))
 }
 
 fn font(size: u32) -> TextStyle<'static> {

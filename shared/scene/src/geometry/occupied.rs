@@ -7,11 +7,15 @@ use std::collections::HashMap;
 use std::hash::BuildHasherDefault;
 use xxhash_rust::xxh3::Xxh3Default;
 
-/// The shapes placed so far, and their particles in cells of side dx.
+/// A particle's position and its spacing, m.
+type Placed<const D: usize> = ([f64; D], f64);
+
+/// The shapes placed so far, and their particles, each with its spacing, in cells of side dx.
 pub(super) struct Occupied<'s, const D: usize> {
+    /// No smaller than any spacing, m.
     dx: f64,
     taken: Vec<(&'s Geometry, Spacing, Phase)>,
-    cells: HashMap<[i64; D], Vec<[f64; D]>, BuildHasherDefault<Xxh3Default>>,
+    cells: HashMap<[i64; D], Vec<Placed<D>>, BuildHasherDefault<Xxh3Default>>,
 }
 
 impl<'s, const D: usize> Occupied<'s, D> {
@@ -28,13 +32,13 @@ impl<'s, const D: usize> Occupied<'s, D> {
         positions: impl Iterator<Item = [f64; D]>,
     ) {
         for position in positions {
-            self.cells.entry(self.cell(&position)).or_default().push(position);
+            self.cells.entry(self.cell(&position)).or_default().push((position, spacing.dx));
         }
         self.taken.push((geometry, spacing, phase));
     }
 
-    /// Whether no shape holds this place and no particle is closer than dx / 2.
-    pub(super) fn is_free(&self, position: &[f64; D]) -> bool {
+    /// Whether no shape holds this place and no particle is closer than half the mean of its spacing and `own`, m.
+    pub(super) fn is_free(&self, position: &[f64; D], own: f64) -> bool {
         if self.taken.is_empty() {
             return true;
         }
@@ -43,19 +47,19 @@ impl<'s, const D: usize> Occupied<'s, D> {
             let margin = if *phase == Phase::Wall && spacing.nodal { TOLERANCE } else { -TOLERANCE };
             contains(g, *spacing, position, margin * self.dx)
         });
-        !inside && !self.has_neighbour(position)
+        !inside && !self.has_neighbour(position, own)
     }
 
-    fn has_neighbour(&self, position: &[f64; D]) -> bool {
-        let limit = (0.5 - TOLERANCE) * self.dx;
+    fn has_neighbour(&self, position: &[f64; D], own: f64) -> bool {
         let home = self.cell(position);
         // A neighbour within dx / 2 is in one of the 3^D cells around.
         (0..3_usize.pow(D as u32)).any(|code| {
             let cell = std::array::from_fn(|a| home[a] + (code / 3_usize.pow(a as u32) % 3) as i64 - 1);
             self.cells.get(&cell).is_some_and(|points| {
-                points
-                    .iter()
-                    .any(|p| (0..D).map(|a| (p[a] - position[a]).powi(2)).sum::<f64>() < limit * limit)
+                points.iter().any(|(p, spacing)| {
+                    let limit = (0.5 - TOLERANCE) * 0.5 * (own + spacing);
+                    (0..D).map(|a| (p[a] - position[a]).powi(2)).sum::<f64>() < limit * limit
+                })
             })
         })
     }

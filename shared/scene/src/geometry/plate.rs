@@ -10,6 +10,8 @@ pub struct Plate<const D: usize> {
     pub name: String,
     /// Rows of particles across; a ring's walls may hold a fraction more.
     pub rows: f64,
+    /// Its thickness over the scene's resolution: `rows` where the plate has no spacing of its own.
+    pub thickness: f64,
     kind: Kind<D>,
     /// Half the spacing, m: how far a particle may stand beyond the shape's surface.
     margin: f64,
@@ -48,7 +50,8 @@ impl<const D: usize> Plate<D> {
             }
             _ => return None,
         };
-        Some(Self { name: shape.name.clone(), rows, kind, margin: 0.5 * spacing.dx })
+        let thickness = rows * (spacing.dx / scene.resolution);
+        Some(Self { name: shape.name.clone(), rows, thickness, kind, margin: 0.5 * spacing.dx })
     }
 
     /// Whether a particle that begins there belongs to it.
@@ -86,9 +89,9 @@ fn length<const D: usize>(x: &[f64; D]) -> f64 {
 /// Relative tolerance of lengths.
 const TOLERANCE: f64 = 1e-9;
 
-/// Fewest rows of particles that a plate needs as the fluid's moving wall; with fewer it does not hold water. `None`
-/// where that is not asked for.
-pub(crate) fn fewest_rows(scene: &Scene) -> Option<f64> {
+/// Least thickness of a plate as the fluid's moving wall, in spacings of the fluid: a thinner one does not hold water.
+/// `None` where that is not asked for.
+pub(crate) fn least_thickness(scene: &Scene) -> Option<f64> {
     let asked = scene.fluid.is_some()
         && !scene.solids.is_empty()
         && scene.interface.treatment == Treatment::MovingWall

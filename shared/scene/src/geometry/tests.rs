@@ -65,6 +65,7 @@ fn scene(shapes: Vec<Shape>) -> Scene {
 
 fn shape(phase: Phase, geometry: Geometry) -> Shape {
     Shape {
+        spacing: None,
         name: "shape".into(),
         phase,
         solid: (phase == Phase::Solid).then_some(0),
