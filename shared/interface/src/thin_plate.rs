@@ -1,7 +1,7 @@
 //! Where a solid is so thin that fluid on both of its faces is within reach of the same solid particles.
 //!
-//! Of a plate as thick as N spacings dx of the fluid, the nearest fluid on either face stands (N + 1) dx apart. Below 4h there
-//! are solid particles that see both; below 2h the fluid particles see each other.
+//! Of a plate as thick as N spacings dx of the fluid, the nearest fluid on either face stands (N + 1) dx apart. Below
+//! 4h there are solid particles that see both; below 2h the fluid particles see each other.
 
 use halfstep_scene::geometry::Plate;
 use halfstep_scene::{Decision, Derived, EffectName, Scene, Shape, Treatment, dispatch};

@@ -1,12 +1,12 @@
 //! Where the particles of a scene are at first.
 //!
-//! Every shape carries its own lattice of spacing dx, the scene's or its solid's own. A box's lattice starts at its lowest corner and has
-//! round(extent / dx) cells along each axis; a disc's or ring's is symmetric about its centre. [`Lattice`] says whether
-//! particles sit at the cells' centres or at their corners.
+//! Every shape carries its own lattice of spacing dx, the scene's or its solid's own. A box's lattice starts at its
+//! lowest corner and has round(extent / dx) cells along each axis; a disc's or ring's is symmetric about its centre.
+//! [`Lattice`] says whether particles sit at the cells' centres or at their corners.
 //!
 //! Where shapes overlap, the solid wins over the wall, the wall over the fluid, and in one phase the shape that comes
-//! first in the file. The loser has no particle inside the winner nor closer than dx / 2 (the mean
-//! where spacings differ) to one of its particles.
+//! first in the file. The loser has no particle inside the winner nor closer than dx / 2 (the mean where spacings
+//! differ) to one of its particles.
 
 mod nearest;
 mod occupied;
