@@ -6,10 +6,10 @@
 export PATH := $(PATH):$(HOME)/.cargo/bin
 BIN := $(or $(CARGO_TARGET_DIR),target)/release/halfstep
 
-# Builds, and runs the elastic gate coarse enough to watch: three particles across the plate.
+# Builds, and runs the elastic gate coarse enough to watch: two water particles a plate's thickness, five across it.
 gate: setup
 	cargo build --release -p halfstep-cli
-	$(BIN) run scenes/elastic-gate.toml --set resolution=0.00166666666666666667 --out out/elastic-gate --force
+	$(BIN) run scenes/elastic-gate.toml --set resolution=0.0025 --set shape.plate.across=5 --out out/elastic-gate --force
 	@echo "The gate's tip beside the experiment: $(CURDIR)/out/elastic-gate/plot.png"
 
 # The whole test suite.

@@ -5,7 +5,8 @@ use crate::sleep::TOLERANCE;
 use halfstep_scene::{Decision, Derived, EffectName, Scene, Shape, SolidModelName};
 
 /// Effects that every model has.
-const COMMON: [EffectName; 2] = [EffectName::WallContact, EffectName::SleepingSolid];
+const COMMON: [EffectName; 3] =
+    [EffectName::WallContact, EffectName::SleepingSolid, EffectName::SideFriction];
 
 /// What a scene decides about each of the effects of its solids: an effect takes part where one of them has it.
 pub fn decide(scene: &Scene) -> Vec<Decision> {
@@ -54,12 +55,19 @@ fn derive(scene: &Scene, k: usize, effect: EffectName) -> Derived {
         }
     }
     match effect {
+        EffectName::SideFriction if solid.side_friction == 0.0 => {
+            Derived::Impossible("solid.side_friction is zero".into())
+        }
+        EffectName::SideFriction => Derived::On(format!("{} N/m³ against the velocity", solid.side_friction)),
         EffectName::SleepingSolid if scene.fluid.is_none() => {
             Derived::Impossible("no fluid that could wake it".into())
         }
         EffectName::SleepingSolid if !shapes(scene, k).all(begins_at_rest) => Derived::Impossible(
             "a solid that is not clamped, or that starts with a velocity, moves by itself".into(),
         ),
+        EffectName::SleepingSolid if scene.shapes.iter().any(|s| s.contact && s.motion.is_some()) => {
+            Derived::Impossible("a wall that it may touch moves".into())
+        }
         EffectName::SleepingSolid => Derived::On(format!(
             "until fluid reaches it, while it has moved by less than {} % of the spacing for half its slowest period",
             100.0 * TOLERANCE

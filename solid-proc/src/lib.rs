@@ -25,6 +25,7 @@ pub mod hypoelastic;
 pub mod model;
 mod models;
 mod shown_velocity;
+mod side_friction;
 mod sleep;
 pub mod solid;
 mod sub_steps;

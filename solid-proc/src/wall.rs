@@ -1,5 +1,5 @@
-//! Rigid walls toward the solid (Kayaki section 4.1, after Adami): velocity zero always, pressure extrapolated from the
-//! solid around, density rho_w = rho_s0 (1 + p_w / K), no deviatoric stress. A wall that could pull would glue the
+//! Rigid walls toward the solid (Kayaki section 4.1, after Adami): velocity as prescribed, pressure extrapolated from
+//! the solid around, density rho_w = rho_s0 (1 + p_w / K), no deviatoric stress. A wall that could pull would glue the
 //! solid to it, so only pressures above zero act, and only walls that the scene lets the solid touch are here.
 //!
 //! The pressure at a surface is nearly zero, so that alone a wall would carry a body by its damping only, and a body at
@@ -8,21 +8,25 @@
 
 use crate::columns::{Vectors, vectors};
 use halfstep_scene::geometry::WallPoint;
+use halfstep_scene::{Motion, Placement, Scene};
 use halfstep_sph::artificial_viscosity::damping;
 use halfstep_sph::columns::{bounds, fit};
 use halfstep_sph::extrapolation::{Extrapolation, ExtrapolationSum};
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::{Arch, Isa, LANES, Lane};
-use halfstep_sph::neighbours::{ClusterList, Rows};
+use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_sph::pair::{self, PairLaw, distance, dot};
 
 /// Wall particles that the solid may touch.
 pub(crate) struct Walls<const D: usize> {
     id: Vec<u32>,
     position: Vectors<D>,
+    velocity: Vectors<D>,
     pressure: Vec<f64>,
     density: Vec<f64>,
     rows: Rows<D>,
+    height: f64,
+    moving: Option<Moving<D>>,
     /// Walls' solid neighbours.
     sources: ClusterList,
     /// The solid's wall neighbours.
@@ -31,9 +35,53 @@ pub(crate) struct Walls<const D: usize> {
     forces: Vec<WallForce<D>>,
 }
 
+/// Walls that move by prescription: columns by number of the wall particle.
+struct Moving<const D: usize> {
+    /// By shape.
+    motions: Vec<Option<Motion>>,
+    /// Displacement of each shape when the lists were made, m.
+    listed: Vec<[f64; 3]>,
+    /// When the lists were made, s.
+    listed_at: f64,
+    /// Now, s.
+    time: f64,
+    shape: Vec<u32>,
+    /// Place in the scene, m.
+    initial: Vec<[f64; D]>,
+}
+
+impl<const D: usize> Moving<D> {
+    fn new(points: &[&WallPoint<D>], scene: &Scene) -> Option<Self> {
+        let motion = |shape: u32| scene.shapes[shape as usize].motion;
+        points.iter().find(|p| motion(p.shape).is_some())?;
+        Some(Self {
+            motions: scene.shapes.iter().map(|shape| shape.motion).collect(),
+            listed: vec![[0.0; 3]; scene.shapes.len()],
+            listed_at: 0.0,
+            time: 0.0,
+            shape: points.iter().map(|p| p.shape).collect(),
+            initial: points.iter().map(|p| p.position).collect(),
+        })
+    }
+
+    /// Where a shape's surface is now, and how fast.
+    fn of(&self, shape: usize) -> Placement {
+        self.motions[shape].map_or_else(Placement::default, |motion| motion.at(self.time))
+    }
+
+    /// Largest displacement since the lists were made, m.
+    fn displacement(&self) -> f64 {
+        let of = |(shape, listed): (usize, &[f64; 3])| {
+            let now = self.of(shape).displacement;
+            (0..3).map(|d| (now[d] - listed[d]).powi(2)).sum::<f64>()
+        };
+        self.listed.iter().enumerate().map(of).fold(0.0, f64::max).sqrt()
+    }
+}
+
 impl<const D: usize> Walls<D> {
     /// `None` where the solid may touch no wall.
-    pub(crate) fn new(points: &[WallPoint<D>], height: f64) -> Option<Self> {
+    pub(crate) fn new(scene: &Scene, points: &[WallPoint<D>], height: f64) -> Option<Self> {
         let points: Vec<_> = points.iter().filter(|p| p.contact).collect();
         if points.is_empty() {
             return None;
@@ -42,9 +90,12 @@ impl<const D: usize> Walls<D> {
         let mut walls = Self {
             id: (0..n as u32).collect(),
             position: vectors(n),
+            velocity: vectors(n),
             pressure: Vec::new(),
             density: Vec::new(),
             rows: Rows::default(),
+            height,
+            moving: Moving::new(&points, scene),
             sources: ClusterList::default(),
             neighbours: ClusterList::default(),
             sums: Vec::new(),
@@ -55,19 +106,69 @@ impl<const D: usize> Walls<D> {
                 walls.position[d][i] = p.position[d];
             }
         }
-        let (low, high) = bounds(&walls.position);
-        walls.rows.sort(&walls.position, &walls.id, height, low, high);
-        for d in 0..D {
-            walls.rows.permute(&mut walls.position[d]);
-        }
-        walls.rows.permute_ids(&mut walls.id);
-        walls.pressure = vec![0.0; walls.rows.slots()];
-        walls.density = vec![0.0; walls.rows.slots()];
+        walls.sort();
         Some(walls)
+    }
+
+    fn sort(&mut self) {
+        let (low, high) = bounds(&self.position);
+        self.rows.sort(&self.position, &self.id, self.height, low, high);
+        for d in 0..D {
+            self.rows.permute(&mut self.position[d]);
+            fit(&mut self.velocity[d], self.rows.slots(), 0.0);
+        }
+        self.rows.permute_ids(&mut self.id);
+        fit(&mut self.pressure, self.rows.slots(), 0.0);
+        fit(&mut self.density, self.rows.slots(), 0.0);
+    }
+
+    /// Brings the walls that move to where they are at a time, s.
+    pub(crate) fn set_time(&mut self, time: f64) {
+        let Some(moving) = &mut self.moving else { return };
+        moving.time = time;
+        let placements: Vec<Placement> = (0..moving.motions.len()).map(|shape| moving.of(shape)).collect();
+        let mut last = 0;
+        for (slot, &id) in self.id.iter().enumerate() {
+            // A padding slot repeats the particle before it.
+            last = if id == PADDING { last } else { id as usize };
+            let now = &placements[moving.shape[last] as usize];
+            for d in 0..D {
+                self.position[d][slot] = moving.initial[last][d] + now.displacement[d];
+                self.velocity[d][slot] = now.velocity[d];
+            }
+        }
+    }
+
+    /// Largest displacement since the lists were made, m.
+    pub(crate) fn displacement(&self) -> f64 {
+        self.moving.as_ref().map_or(0.0, Moving::displacement)
+    }
+
+    /// When the lists of walls that move were made, s.
+    pub(crate) fn listed_at(&mut self) -> Option<&mut f64> {
+        self.moving.as_mut().map(|moving| &mut moving.listed_at)
+    }
+
+    /// Brings the walls that move to where they were when the lists were made.
+    pub(crate) fn return_to_lists(&mut self) {
+        if let Some(time) = self.listed_at().copied() {
+            self.set_time(time);
+        }
     }
 
     /// Lists who is near whom, to `reach`. The solid is sorted by `rows`.
     pub(crate) fn relist(&mut self, solid: &Vectors<D>, rows: &Rows<D>, reach: f64) {
+        if let Some(moving) = &mut self.moving {
+            moving.listed_at = moving.time;
+            moving.listed = (0..moving.motions.len()).map(|shape| moving.of(shape).displacement).collect();
+            let n = moving.shape.len();
+            self.id = (0..n as u32).collect();
+            self.position.iter_mut().for_each(|column| column.resize(n, 0.0));
+            self.velocity.iter_mut().for_each(|column| column.resize(n, 0.0));
+            self.set_time(self.moving.as_ref().map_or(0.0, |moving| moving.time));
+            self.sort();
+            self.set_time(self.moving.as_ref().map_or(0.0, |moving| moving.time));
+        }
         self.neighbours.build(solid, &self.position, &self.rows, reach);
         self.sources.build(&self.position, solid, rows, reach);
         fit(&mut self.sums, self.sources.clusters(), ExtrapolationSum::default());
@@ -101,6 +202,7 @@ impl<const D: usize> Walls<D> {
             kernel,
             solid,
             position: &self.position,
+            velocity: &self.velocity,
             pressure: &self.pressure,
             density: &self.density,
         };
@@ -172,6 +274,8 @@ struct Push<'a, K, const D: usize> {
     solid: Touching<'a, D>,
     /// Of the wall particles, m.
     position: &'a Vectors<D>,
+    /// Of the wall particles, m/s.
+    velocity: &'a Vectors<D>,
     /// Of the wall particles, Pa.
     pressure: &'a [f64],
     /// Of the wall particles, kg/m³.
@@ -210,7 +314,8 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for Push<'_, K, D> {
     fn add<A: Arch>(&self, i: &Target<D>, j: usize, dx: [Lane; D], r2: Lane, sum: &mut WallForce<D>) {
         let h = self.kernel.smoothing_length();
         let f = self.kernel.gradient_over_r::<A>(distance(r2, h));
-        let approach = dot::<D, A>(i.velocity, dx);
+        let dv = std::array::from_fn(|d| i.velocity[d] - Lane::splat(self.velocity[d][j]));
+        let approach = dot::<D, A>(dv, dx);
         let rho = self.density[j];
         let pi = damping::<A>(
             h,

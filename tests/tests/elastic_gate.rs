@@ -132,6 +132,28 @@ fn the_phase_blind_gate_opens() {
     assert!((0.5..12.5).contains(&x.at(0.02)), "{}", x.at(0.02));
 }
 
+/// Root mean square of x over the experiment's points in a window, mm.
+fn rms_to_experiment(run: &Finished, from: f64, to: f64) -> f64 {
+    let experiment = Curve::reference("elastic-gate", "experiment.csv", "x [mm]").between(from, to);
+    tip(run, "x").rms_to(&experiment)
+}
+
+/// Fitted until 0.2 s (0.8 mm at 2.5 mm, 0.9 mm at 1.67 mm), predicted after that (1.6 mm).
+#[test]
+#[ignore = "a minute: the fitted plate with water at 2.5 and 1.67 mm"]
+fn a_fitted_plate_meets_the_experiment_where_it_was_not_fitted() {
+    for resolution in [0.0025, 0.005 / 3.0] {
+        let run = scene("elastic-gate-rubber").set("resolution", resolution).threads(2).run();
+        sound(&run);
+        let (time, peak) = state("fitted gate", &run);
+        let [fitted, predicted] =
+            [(0.0, 0.21), (0.21, 0.37)].map(|(from, to)| rms_to_experiment(&run, from, to));
+        println!("fitted points {fitted:.2} mm, predicted points {predicted:.2} mm");
+        assert!(fitted < 1.0 && predicted < 1.8, "{fitted} {predicted}");
+        assert!((peak - 46.4).abs() < 1.5 && (0.14..0.16).contains(&time), "{peak} mm at {time} s");
+    }
+}
+
 #[test]
 #[ignore = "minutes: full resolution"]
 fn the_gate_at_5_across() {

@@ -7,6 +7,7 @@
 
 use halfstep_tests::finite_elements::Block;
 use halfstep_tests::{Finished, scene};
+use nalgebra::Complex;
 
 /// Period of thin-plate theory, s.
 const PERIOD: f64 = 0.2541;
@@ -94,4 +95,43 @@ fn the_period_converges() {
 fn the_total_lagrangian_period_converges() {
     let [ten, twenty] = [10, 20].map(error_to_elasticity);
     assert!(twenty.abs() < 0.6 * ten.abs(), "{twenty} after {ten}");
+}
+
+/// Complex modulus of bending in plane strain, E' = 4 G* (3 K + G*) / (3 K + 4 G*), as tan delta: of a plate whose arm
+/// [g, tau] relaxes.
+fn tan_delta(g: f64, tau: f64, omega: f64) -> f64 {
+    let (nu, modulus) = (0.3975, 2e6);
+    let (shear, bulk) = (modulus / (2.0 * (1.0 + nu)), modulus / (3.0 * (1.0 - 2.0 * nu)));
+    let x = omega * tau;
+    let share = g / (1.0 + x * x);
+    let complex = Complex::new(shear * (1.0 + share * x * x), shear * share * x);
+    let bending = complex * 4.0 * (complex + 3.0 * bulk) / (complex * 4.0 + 3.0 * bulk);
+    bending.im / bending.re
+}
+
+/// For small damping amplitudes fall by pi tan delta a period. The resistance that gives particles the bending
+/// stiffness of their cells, 1 / n² of the whole with n across, does not relax.
+#[test]
+fn a_relaxing_plate_swings_out_by_its_loss_angle() {
+    let (g, tau, across) = (0.1, 0.04, 4);
+    let run = scene("oscillating-plate")
+        .set("resolution", 0.02 / f64::from(across))
+        .set("solid.prony", format!("[[{g},{tau}]]"))
+        .set("shape.plate.cantilever_mode.fraction", 0.002)
+        .until(0.75)
+        .run();
+    let tip = run.curve("tip.y");
+    // Turning points; the first has the arms' beginning in it.
+    let turns: Vec<(f64, f64)> = (1..tip.values.len() - 1)
+        .filter(|&k| (tip.values[k] - tip.values[k - 1]) * (tip.values[k + 1] - tip.values[k]) < 0.0)
+        .map(|k| (tip.times[k], tip.values[k]))
+        .collect();
+    assert!(turns.len() >= 6, "{turns:?}");
+    let (early, late) = (turns[1], turns[5]);
+    let period = 0.5 * (late.0 - early.0);
+    let decrement = 0.5 * (early.1 / late.1).ln();
+    let relaxing = 1.0 - 1.0 / f64::from(across * across);
+    let theory = std::f64::consts::PI * tan_delta(g, tau, 2.0 * std::f64::consts::PI / period) * relaxing;
+    println!("period {period:.4} s, log decrement {decrement:.4}, theory {theory:.4}");
+    assert!((decrement / theory - 1.0).abs() < 0.03, "{decrement} {theory}");
 }

@@ -59,6 +59,24 @@ macro_rules! conformance {
 conformance! {
     hypoelastic: Hypoelastic, "model = \"hypoelastic\"";
     total_lagrangian: TotalLagrangian, "model = \"total-lagrangian\"";
+    // With a memory.
+    relaxing_total_lagrangian: TotalLagrangian, "model = \"total-lagrangian\"\nprony = [[0.5, 0.01]]";
     // With the neighbours of the other model.
     wide_total_lagrangian: TotalLagrangian, "model = \"total-lagrangian\"\nsmoothing_ratio = 1.33";
+}
+
+// All but `interface_set`, which counts particles within reach of the fluid's kernel, and `wall_contact`, whose wall
+// has the body's spacing: `tests/tests/moving_stop.rs` has a finer body.
+macro_rules! finer {
+    ($($name:ident: $model:ident, $keys:literal;)*) => {
+        $(conformance!($name, $model, $keys, finer_than_the_rest, [
+            identity, rest, uniform_force, stage_0_is_forgotten, sub_steps, clamps, conservation, bodies_collide,
+            bounds, threads, interruption
+        ]);)*
+    };
+}
+
+finer! {
+    fine_hypoelastic: Hypoelastic, "model = \"hypoelastic\"";
+    fine_total_lagrangian: TotalLagrangian, "model = \"total-lagrangian\"";
 }

@@ -24,14 +24,14 @@ impl Scene {
         body.iter().any(|&k| !self.shapes[k].clamp.is_empty())
     }
 
-    /// What nothing holds would fall through walls: those that say nothing of `contact` and stand still can be touched
-    /// where a body has no clamp.
+    /// What nothing holds would fall through walls: those that say nothing of `contact` can be touched where a body has
+    /// no clamp.
     pub(crate) fn touch_free_bodies(&mut self, said: &[bool]) {
         if self.bodies().iter().all(|body| self.is_held(body)) {
             return;
         }
         for (shape, _) in self.shapes.iter_mut().zip(said).filter(|(_, said)| !**said) {
-            shape.contact = shape.phase == Phase::Wall && shape.motion.is_none();
+            shape.contact = shape.phase == Phase::Wall;
         }
     }
 

@@ -44,6 +44,10 @@ macro_rules! effect_names {
             WallContact "wall-contact",
             /// A solid that rests is not computed until fluid comes near.
             SleepingSolid "sleeping-solid",
+            /// Stress that relaxes in the total-Lagrangian solid.
+            Relaxation "relaxation",
+            /// Friction on the faces of a solid that two dimensions do not see.
+            SideFriction "side-friction",
         }
     };
 }

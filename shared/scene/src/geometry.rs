@@ -5,8 +5,8 @@
 //! [`Lattice`] says whether particles sit at the cells' centres or at their corners.
 //!
 //! Where shapes overlap, the solid wins over the wall, the wall over the fluid, and in one phase the shape that comes
-//! first in the file. The loser has no particle inside the winner nor closer than dx / 2 (the mean
-//! where spacings differ) to one of its particles.
+//! first in the file. The loser has no particle inside the winner nor closer than dx / 2 (the mean where spacings
+//! differ) to one of its particles.
 
 mod nearest;
 mod occupied;

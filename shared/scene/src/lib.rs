@@ -58,7 +58,7 @@ pub use participant::Participant;
 pub use probe::{Probe, ProbeKind, Reference};
 pub use resources::{BYTES_PER_PARTICLE, expected_speed, memory_available, memory_needed};
 pub use solid::{
-    ArtificialStress, HypoelasticKeys, Material, ModelKeys, Solid, SolidModelName, SubSteps,
+    ArtificialStress, HypoelasticKeys, Material, ModelKeys, Plane, Solid, SolidModelName, SubSteps,
     TotalLagrangianKeys,
 };
 pub use velocity_field::VelocityField;

@@ -63,9 +63,6 @@ pub(super) fn shape(section: Section<'_>, dimension: usize, solids: &[&str], lat
     if phase == Some(Phase::Solid) {
         needs_solid(&section, solids, "a solid shape");
     }
-    if let (Some(node), true) = (section.node("motion"), shape.contact) {
-        section.wrong("motion", node, "a wall that the solid may touch (contact = true) cannot move yet");
-    }
     section.finish();
     shape
 }

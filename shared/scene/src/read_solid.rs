@@ -11,6 +11,9 @@ const LONGEST_NAME: usize = 24;
 /// Names that a solid must not have: those of other participants, and the word for a process of one's own.
 const RESERVED: [&str; 4] = ["fluid", "coupler", "wall", OWN];
 const OWN: &str = "own";
+/// The lower end of the range is no friction.
+const FRICTION: Range =
+    Range::at_least(0.0).up_to(1e12).why("it is a force per volume, N/m3, against the velocity");
 
 /// The solids of a scene: the one of `[solid]`, or those of `[[solid]]`.
 pub(super) fn solids(top: &Section<'_>, defaults: Defaults, numerics: &Numerics) -> Vec<Solid> {
@@ -91,6 +94,7 @@ fn solid(section: Section<'_>, name: String, defaults: Defaults, numerics: &Nume
         ),
         artificial_viscosity: viscosity(&section, defaults.solid_viscosity),
         model: model.read(&section, &defaults),
+        side_friction: section.number("side_friction", Some(0.0), FRICTION),
         sub_steps: sub_steps(&section, numerics.max_sub_steps),
     };
     let others = SolidModelName::ALL.iter().filter(|(_, other)| *other != model);

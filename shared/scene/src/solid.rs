@@ -6,7 +6,7 @@ mod total_lagrangian;
 
 pub use hypoelastic::{ArtificialStress, HypoelasticKeys};
 pub use models::{ModelKeys, SolidModelName};
-pub use total_lagrangian::{Material, TotalLagrangianKeys};
+pub use total_lagrangian::{Material, Plane, TotalLagrangianKeys};
 
 use super::ArtificialViscosity;
 use serde::{Deserialize, Serialize};
@@ -33,6 +33,9 @@ pub struct Solid {
     pub smoothing_ratio: f64,
     /// Artificial viscosity inside the solid.
     pub artificial_viscosity: ArtificialViscosity,
+    /// Friction on the faces that two dimensions do not see, as a force per volume against the velocity, N/m³.
+    #[serde(default)]
+    pub side_friction: f64,
     /// Solid sub-steps per fluid step.
     pub sub_steps: SubSteps,
 }
@@ -49,13 +52,22 @@ impl Solid {
     pub fn shear_modulus(&self) -> f64 {
         self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio))
     }
+    /// Shear modulus of a sudden strain, Pa: with what relaxes later.
+    pub fn instantaneous_shear_modulus(&self) -> f64 {
+        let stiffening = match &self.model {
+            ModelKeys::TotalLagrangian(keys) => keys.stiffening(),
+            ModelKeys::Hypoelastic(_) => 1.0,
+        };
+        self.shear_modulus() * stiffening
+    }
     /// Speed of the bulk wave c_s = sqrt(K / rho), m/s (Gray 2001): the sound speed of the artificial viscosity.
     pub fn sound_speed(&self) -> f64 {
         (self.bulk_modulus() / self.density).sqrt()
     }
-    /// Speed of the pressure wave c_P = sqrt((K + 4 G / 3) / rho), m/s: the one that limits the time step.
+    /// Speed of the pressure wave c_P = sqrt((K + 4 G / 3) / rho), m/s: the one that limits the time step. G is that of
+    /// a sudden strain.
     pub fn pressure_wave_speed(&self) -> f64 {
-        ((self.bulk_modulus() + 4.0 / 3.0 * self.shear_modulus()) / self.density).sqrt()
+        ((self.bulk_modulus() + 4.0 / 3.0 * self.instantaneous_shear_modulus()) / self.density).sqrt()
     }
 }
 

@@ -7,6 +7,7 @@ use crate::columns::{Shown, vector};
 use crate::effects::takes_part;
 use crate::model::{Load, OutOfBounds, OuterRates, Particles, SolidModel};
 use crate::shown_velocity::ShownVelocity;
+use crate::side_friction;
 use crate::surface::surface_set;
 use crate::wall::Walls;
 use halfstep_role::role::Costs;
@@ -62,6 +63,8 @@ pub struct Hypoelastic<const D: usize> {
     pub(super) rates: Rates<D>,
     pub(super) shown_velocity: ShownVelocity<D>,
     courant: f64,
+    /// Deceleration by side friction, m/s².
+    side_friction: Option<f64>,
     pub(super) pressure: Vec<f64>,
     pub(super) sources: Vec<Source<D>>,
     pub(super) artificial: Vec<[[f64; D]; D]>,
@@ -88,8 +91,10 @@ impl<const D: usize> Hypoelastic<D> {
         let artificial_stress =
             takes_part(scene, solid, EffectName::ArtificialStress).then_some(keys.artificial_stress);
         let walls = takes_part(scene, solid, EffectName::WallContact)
-            .then(|| Walls::new(&layout.wall, (2.0 + SKIN) * wall_smoothing_length))
+            .then(|| Walls::new(scene, &layout.wall, (2.0 + SKIN) * wall_smoothing_length))
             .flatten();
+        let side_friction = takes_part(scene, solid, EffectName::SideFriction)
+            .then(|| material.side_friction / material.density);
         let domain = geometry::domain(scene);
         let mass = material.density * dx.powi(D as i32);
         let now = State::new(&layout.solid, material.density);
@@ -120,6 +125,7 @@ impl<const D: usize> Hypoelastic<D> {
             at_n: now.clone(),
             step_start: now.clone(),
             courant: scene.numerics.solid_cfl,
+            side_friction,
             reference: now.position.clone(),
             now,
             rates: Rates::new(),
@@ -184,7 +190,8 @@ impl<const D: usize> Hypoelastic<D> {
     }
 
     pub(super) fn moved_too_far(&self) -> bool {
-        moved_farther(&self.now.position, &self.reference, &self.id, 0.5 * self.skin)
+        let walls_moved = self.walls.as_ref().is_some_and(|walls| walls.displacement() > 0.5 * self.skin);
+        walls_moved || moved_farther(&self.now.position, &self.reference, &self.id, 0.5 * self.skin)
     }
 
     /// now = from + dt rates, for every advanced column; `from` is `at_n`.
@@ -202,23 +209,35 @@ impl<const D: usize> Hypoelastic<D> {
             }
         }
         axpy(&mut self.now.density, &self.at_n.density, &self.rates.density, dt);
+        if let Some(friction) = self.side_friction {
+            side_friction::slow(&mut self.now.velocity, dt * friction);
+        }
         self.apply_state_equation();
     }
 
-    /// One midpoint sub-step of the present state, whose copy at its start is `at_n`.
-    fn midpoint(&mut self, dt: f64, load: &Load<D>) {
+    /// Brings walls that move to where they are at a time, s.
+    fn move_walls(&mut self, time: f64) {
+        if let Some(walls) = &mut self.walls {
+            walls.set_time(time);
+        }
+    }
+
+    /// One midpoint sub-step of the present state at `time`, whose copy at its start is `at_n`.
+    fn midpoint(&mut self, dt: f64, time: f64, load: &Load<D>) {
+        self.move_walls(time);
         self.compute_rates(load);
         self.integrate(0.5 * dt);
+        self.move_walls(time + 0.5 * dt);
         self.compute_rates(load);
         self.integrate(dt);
     }
 
-    /// `count` midpoint sub-steps over `dt` from the present state.
-    fn sub_step(&mut self, count: u32, dt: f64, load: &Load<D>) {
+    /// `count` midpoint sub-steps over `dt` from the present state at `time`.
+    fn sub_step(&mut self, count: u32, dt: f64, time: f64, load: &Load<D>) {
         let each = dt / f64::from(count);
-        for _ in 0..count {
+        for k in 0..count {
             self.at_n.copy_from(&self.now);
-            self.midpoint(each, load);
+            self.midpoint(each, time + f64::from(k) * each, load);
         }
     }
 
@@ -290,15 +309,16 @@ impl<const D: usize> SolidModel<D> for Hypoelastic<D> {
             if first {
                 self.at_n.copy_from(&self.now);
             }
+            self.move_walls(half_step.before());
             self.compute_rates(load);
             self.integrate(half_step.span());
         } else if first {
             self.step_start.copy_from(&self.now);
-            self.sub_step(sub_steps / 2, half_step.span(), load);
+            self.sub_step(sub_steps / 2, half_step.span(), half_step.time, load);
         } else {
             self.now.copy_from(&self.step_start);
             self.apply_state_equation();
-            self.sub_step(sub_steps, half_step.span(), load);
+            self.sub_step(sub_steps, half_step.span(), half_step.time, load);
         }
         let (slot_of, now) = (&self.slot_of, &self.now);
         let place = |p: usize| vector(&now.position, slot_of[p]);

@@ -3,6 +3,7 @@
 
 use super::columns::{Source, State as Columns};
 use super::model::Hypoelastic;
+use crate::wall::Walls;
 use halfstep_sph::columns::fit;
 use halfstep_sph::lane::LANES;
 use halfstep_wire::order;
@@ -15,6 +16,9 @@ impl<const D: usize> State for Hypoelastic<D> {
         fields.part("shown_velocity", &mut self.shown_velocity)?;
         fields.vectors("position_at_sort", &mut self.reference)?;
         fields.count("pair_evaluations", &mut self.pair_evaluations)?;
+        if let Some(time) = self.walls.as_mut().and_then(Walls::listed_at) {
+            fields.real("walls_listed_at", time)?;
+        }
         let slots = self.id.len();
         fields.length("particles/density", slots, self.now.density.len())?;
         let columns = [&self.now.position, &self.now.velocity, &self.reference];
@@ -43,6 +47,9 @@ impl<const D: usize> State for Hypoelastic<D> {
             fit(&mut self.artificial, slots, [[0.0; D]; D]);
         }
         self.rates.resize(slots);
+        if let Some(walls) = &mut self.walls {
+            walls.return_to_lists();
+        }
         self.list();
         self.apply_state_equation();
         self.show_particles();

@@ -71,7 +71,7 @@ impl<const D: usize> Contact<D> {
         let dx = scene.solid_spacing(solid);
         let h = scene.smoothing_ratio * scene.resolution;
         let walls = takes_part(scene, solid, EffectName::WallContact)
-            .then(|| Walls::new(&layout.wall, (2.0 + SKIN) * h))
+            .then(|| Walls::new(scene, &layout.wall, (2.0 + SKIN) * h))
             .flatten();
         let several = body.iter().any(|&b| b != body[0]);
         let id = match (&walls, several) {
@@ -194,6 +194,9 @@ impl<const D: usize> Contact<D> {
     pub(super) fn list_at_sort(&mut self) -> Result<(), StateError> {
         let (height, domain) = (self.row_height(), self.domain);
         order::sort_again(&mut self.rows, &self.listed, &self.id, height, domain, "the rows of contacts")?;
+        if let Some(walls) = &mut self.walls {
+            walls.return_to_lists();
+        }
         self.list();
         Ok(())
     }
@@ -206,6 +209,13 @@ impl<const D: usize> Contact<D> {
     /// The walls, for leaving them out for a while.
     pub(super) fn walls(&mut self) -> &mut Option<Walls<D>> {
         &mut self.walls
+    }
+
+    /// Brings walls that move to where they are at a time, s.
+    pub(super) fn set_time(&mut self, time: f64) {
+        if let Some(walls) = &mut self.walls {
+            walls.set_time(time);
+        }
     }
 
     /// Takes over the present state.
@@ -221,7 +231,9 @@ impl<const D: usize> Contact<D> {
                 self.pressure[slot] = p.pressure;
             }
         }
-        if moved_farther(&self.position, &self.listed, &self.id, 0.5 * SKIN * self.smoothing_length) {
+        let margin = 0.5 * SKIN * self.smoothing_length;
+        let walls_moved = self.walls.as_ref().is_some_and(|walls| walls.displacement() > margin);
+        if walls_moved || moved_farther(&self.position, &self.listed, &self.id, margin) {
             self.sort();
         }
     }

@@ -2,17 +2,39 @@
 
 use crate::effects::is_clamped;
 use crate::models::OwnEffects;
-use halfstep_scene::{Derived, EffectName, Scene};
+use halfstep_scene::{Derived, EffectName, ModelKeys, Scene};
 
 pub(crate) const EFFECTS: OwnEffects = OwnEffects {
-    list: &[(EffectName::ClampFace, "only the total-Lagrangian solid corrects its clamps")],
+    list: &[
+        (EffectName::ClampFace, "only the total-Lagrangian solid corrects its clamps"),
+        (
+            EffectName::Relaxation,
+            "only the total-Lagrangian solid has a strain that Maxwell arms could follow",
+        ),
+    ],
     derive,
 };
 
-fn derive(scene: &Scene, solid: usize, _: EffectName) -> Derived {
-    if is_clamped(scene, solid) {
-        Derived::On("clamps hold at their boxes' faces".into())
-    } else {
-        Derived::Impossible("nothing is clamped".into())
+fn derive(scene: &Scene, solid: usize, effect: EffectName) -> Derived {
+    match effect {
+        EffectName::Relaxation => relaxation(scene, solid),
+        _ if is_clamped(scene, solid) => Derived::On("clamps hold at their boxes' faces".into()),
+        _ => Derived::Impossible("nothing is clamped".into()),
+    }
+}
+
+fn relaxation(scene: &Scene, solid: usize) -> Derived {
+    let prony = match scene.solids.get(solid).map(|solid| &solid.model) {
+        Some(ModelKeys::TotalLagrangian(keys)) => keys.prony.as_slice(),
+        _ => &[],
+    };
+    match prony {
+        [] => Derived::Impossible("solid.prony has no arm".into()),
+        arms => Derived::On(format!(
+            "solid.prony: {} Maxwell arm{}, a sudden strain meets {} times the shear modulus",
+            arms.len(),
+            if arms.len() > 1 { "s" } else { "" },
+            1.0 + arms.iter().map(|[g, _]| g).sum::<f64>()
+        )),
     }
 }

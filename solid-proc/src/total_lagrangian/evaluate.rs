@@ -1,9 +1,10 @@
 //! Inner acceleration of a state: deformation gradient, stress, momentum, contacts.
 
 use super::contact::{Contact, Present};
-use super::material::Matrix;
+use super::material::{Cauchy, Matrix};
 use super::model::TotalLagrangian;
 use super::pass::{Damping, Deformation, DeformationSum, Moment, MomentSum, Momentum, Viscous};
+use super::relaxation::{Arms, Relaxation};
 use halfstep_role::role::{Costs, fastest};
 use halfstep_scene::bounds::Excess;
 use halfstep_scene::{ArtificialViscosity, EffectName};
@@ -58,7 +59,7 @@ impl<const D: usize> TotalLagrangian<D> {
 
     /// F of every particle from the sums of the first pass, and the second pass' brackets. Of the first evaluation
     /// in which volumes leave their bounds, the one farthest out is kept in `failure`.
-    fn stresses(&mut self) {
+    fn stresses<R: Relaxation<D>>(&mut self, mut relaxation: R) {
         let mut worst: Option<(u32, Excess)> = None;
         for slot in 0..self.id.len() {
             if self.id[slot] == PADDING {
@@ -67,13 +68,16 @@ impl<const D: usize> TotalLagrangian<D> {
             let correction = self.correction[slot];
             let h = at(&self.deformations[slot / LANES].gradient, slot % LANES) * correction;
             let f = Matrix::identity() + h;
-            let j = tensor::determinant(&f);
+            let j = self.law.volume_ratio(&f);
             if let Some(excess) = self.bounds.excess(j, 0.0)
                 && worst.is_none_or(|(_, other)| excess.ratio > other.ratio)
             {
                 worst = Some((self.id[slot], excess));
             }
-            let p = self.law.first_piola_kirchhoff(&f, j);
+            let mut p = self.law.first_piola_kirchhoff(&f, j);
+            if R::ACTS {
+                p += f * relaxation.advance(slot, &f);
+            }
             let bracket = p * correction - h * self.hourglass[slot];
             self.gradient[slot] = f;
             self.volume_ratio[slot] = j;
@@ -86,10 +90,24 @@ impl<const D: usize> TotalLagrangian<D> {
         self.failure = self.failure.or(worst);
     }
 
-    /// Acceleration of the present state by everything but loads and gravity.
-    pub(super) fn evaluate(&mut self) {
+    /// Cauchy stress at a slot.
+    pub(super) fn cauchy(&self, slot: usize) -> Cauchy<D> {
+        let (f, j) = (&self.gradient[slot], self.volume_ratio[slot]);
+        self.now.memory.added_to(self.law.cauchy(f, j), slot, f, j)
+    }
+
+    /// Acceleration of the present state, `elapsed` (s) after the one before, by everything but loads and gravity.
+    pub(super) fn evaluate(&mut self, elapsed: f64) {
         self.deformation();
-        self.stresses();
+        if self.arms.is_empty() {
+            self.stresses(());
+        } else {
+            let mut memory = std::mem::take(&mut self.now.memory);
+            let arms = std::mem::take(&mut self.arms);
+            let shear_modulus = self.material.shear_modulus();
+            self.stresses(Arms::over(elapsed, &arms, shear_modulus, &mut memory));
+            (self.now.memory, self.arms) = (memory, arms);
+        }
         let mut sums = std::mem::take(&mut self.sums);
         let viscosity = self.material.artificial_viscosity;
         let damped = viscosity.linear > 0.0 || viscosity.quadratic > 0.0;
@@ -126,7 +144,7 @@ impl<const D: usize> TotalLagrangian<D> {
                 position: self.position_at(slot),
                 velocity: std::array::from_fn(|d| self.now.velocity[d][slot]),
                 density: self.material.density / j,
-                pressure: self.law.cauchy(&self.gradient[slot], j).pressure,
+                pressure: self.cauchy(slot).pressure,
             }
         });
         let material = &self.material;
@@ -147,7 +165,7 @@ impl<const D: usize> TotalLagrangian<D> {
     /// gain are factors of the passes: there is nothing to leave out.
     pub(super) fn costs_of_effects(&mut self) -> Costs {
         let (before, state) = (self.pair_evaluations, self.now.clone());
-        let evaluation = |model: &mut Self| fastest(|| model.evaluate());
+        let evaluation = |model: &mut Self| fastest(|| model.evaluate(0.0));
         let mut costs = Costs::default();
         let whole = evaluation(self);
         let mut note = |effect: EffectName, without: f64| {
@@ -171,6 +189,11 @@ impl<const D: usize> TotalLagrangian<D> {
             note(EffectName::ArtificialViscosity, evaluation(self));
         }
         self.material.artificial_viscosity = viscosity;
+        let arms = std::mem::take(&mut self.arms);
+        if !arms.is_empty() {
+            note(EffectName::Relaxation, evaluation(self));
+            self.arms = arms;
+        }
         self.now.copy_from(&state);
         self.pair_evaluations = before;
         costs
@@ -185,7 +208,10 @@ impl<const D: usize> TotalLagrangian<D> {
                 let slot = slot as usize;
                 let f = &self.gradient[slot];
                 let strained = self.volume * self.law.energy(f, self.volume_ratio[slot]);
-                strained + 0.5 * self.hourglass[slot] * self.volume * self.error_square(slot)
+                let relaxing = self.now.memory.energy(slot, &self.arms, self.material.shear_modulus());
+                strained
+                    + self.volume * relaxing
+                    + 0.5 * self.hourglass[slot] * self.volume * self.error_square(slot)
             })
             .sum();
         inner + self.contact.as_ref().map_or(0.0, Contact::energy)

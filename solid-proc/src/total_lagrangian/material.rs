@@ -1,13 +1,16 @@
 //! Hyperelastic laws: energy psi per reference volume and first Piola-Kirchhoff stress P = d psi / d F.
 //!
-//! F deformation gradient, J = det F, lambda and mu Lame's constants. In 2D: plane strain, F_zz = 1.
+//! F deformation gradient, J = det F, lambda and mu Lame's constants. In 2D: plane strain, F_zz = 1, or plane stress,
+//! where F_zz is such that no stress acts across the plane.
 //!
 //!   St. Venant-Kirchhoff:  E = (F^T F - I) / 2,  S = lambda tr(E) I + 2 mu E,  P = F S,
 //!                          psi = lambda/2 tr(E)² + mu E : E                              (Holzapfel 2000, eq. 6.151)
+//!                          plane stress: lambda* = 2 lambda mu / (lambda + 2 mu) for lambda in the plane
 //!   neo-Hooke:             P = mu (F - F^-T) + lambda ln J F^-T,
 //!                          psi = mu/2 (tr(F^T F) - 3 - 2 ln J) + lambda/2 (ln J)²   (Bonet and Wood 2008, eq. 6.27)
+//!                          plane stress: mu (F_zz² - 1) + lambda ln J = 0
 
-use halfstep_scene::{Material, Solid};
+use halfstep_scene::{Material, Plane, Solid};
 use halfstep_sph::tensor;
 use nalgebra::SMatrix;
 
@@ -18,6 +21,8 @@ pub(super) type Matrix<const D: usize> = SMatrix<f64, D, D>;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Law {
     material: Material,
+    /// In three dimensions: strain.
+    plane: Plane,
     /// Pa.
     lambda: f64,
     /// Pa.
@@ -32,20 +37,64 @@ pub(super) struct Cauchy<const D: usize> {
 }
 
 impl Law {
-    pub(super) fn new(solid: &Solid, material: Material) -> Self {
+    pub(super) fn new(solid: &Solid, material: Material, plane: Plane) -> Self {
         let mu = solid.shear_modulus();
-        Self { material, lambda: solid.bulk_modulus() - 2.0 / 3.0 * mu, mu }
+        Self { material, plane, lambda: solid.bulk_modulus() - 2.0 / 3.0 * mu, mu }
     }
 
-    /// First Piola-Kirchhoff stress, Pa.
+    /// J, with what happens across the plane.
+    pub(super) fn volume_ratio<const D: usize>(&self, f: &Matrix<D>) -> f64 {
+        let in_plane = tensor::determinant(f);
+        match self.plane {
+            Plane::Strain => in_plane,
+            Plane::Stress => in_plane * self.across(f, in_plane).sqrt(),
+        }
+    }
+
+    /// F_zz² of plane stress.
+    fn across<const D: usize>(&self, f: &Matrix<D>, in_plane: f64) -> f64 {
+        match self.material {
+            Material::StVenantKirchhoff => {
+                1.0 - 2.0 * self.lambda / (self.lambda + 2.0 * self.mu) * green(f).trace()
+            }
+            Material::NeoHookean => {
+                // Newton for x = ln F_zz²: mu (exp x - 1) + lambda (ln det F + x / 2) = 0, which is convex and grows.
+                let log = libm::log(in_plane);
+                let mut x = -2.0 * self.lambda / (self.lambda + 2.0 * self.mu) * log;
+                for _ in 0..MOST_ITERATIONS {
+                    let value = self.mu * libm::expm1(x) + self.lambda * (log + 0.5 * x);
+                    let step = value / (self.mu * libm::exp(x) + 0.5 * self.lambda);
+                    x -= step;
+                    if step.abs() <= 1e-15 * (1.0 + x.abs()) {
+                        break;
+                    }
+                }
+                libm::exp(x)
+            }
+        }
+    }
+
+    /// lambda in the plane.
+    fn lambda_in_plane(&self) -> f64 {
+        match self.plane {
+            Plane::Strain => self.lambda,
+            Plane::Stress => 2.0 * self.lambda * self.mu / (self.lambda + 2.0 * self.mu),
+        }
+    }
+
+    /// First Piola-Kirchhoff stress, Pa; `j` is [`Self::volume_ratio`].
     pub(super) fn first_piola_kirchhoff<const D: usize>(&self, f: &Matrix<D>, j: f64) -> Matrix<D> {
         match self.material {
             Material::StVenantKirchhoff => {
                 let e = green(f);
-                f * (Matrix::identity() * (self.lambda * e.trace()) + e * (2.0 * self.mu))
+                f * (Matrix::identity() * (self.lambda_in_plane() * e.trace()) + e * (2.0 * self.mu))
             }
             Material::NeoHookean => {
-                let Some(inverse) = tensor::inverse(f, j) else { return Matrix::repeat(f64::NAN) };
+                let in_plane = match self.plane {
+                    Plane::Strain => j,
+                    Plane::Stress => tensor::determinant(f),
+                };
+                let Some(inverse) = tensor::inverse(f, in_plane) else { return Matrix::repeat(f64::NAN) };
                 f * self.mu + inverse.transpose() * (self.lambda * libm::log(j) - self.mu)
             }
         }
@@ -56,22 +105,26 @@ impl Law {
         match self.material {
             Material::StVenantKirchhoff => {
                 let e = green(f);
-                0.5 * self.lambda * e.trace().powi(2) + self.mu * e.component_mul(&e).sum()
+                0.5 * self.lambda_in_plane() * e.trace().powi(2) + self.mu * e.component_mul(&e).sum()
             }
             Material::NeoHookean => {
                 let log = libm::log(j);
+                let across = match self.plane {
+                    Plane::Strain => 0.0,
+                    Plane::Stress => (j / tensor::determinant(f)).powi(2) - 1.0,
+                };
                 // tr(F^T F) - D - 2 ln J by way of E, which is small where F is near a rotation.
-                0.5 * self.mu * (2.0 * green(f).trace() - 2.0 * log) + 0.5 * self.lambda * log * log
+                0.5 * self.mu * (2.0 * green(f).trace() + across - 2.0 * log) + 0.5 * self.lambda * log * log
             }
         }
     }
 
-    /// Cauchy stress P F^T / J as pressure and deviator; in 2D sigma_zz is that of plane strain.
+    /// Cauchy stress P F^T / J as pressure and deviator; in 2D sigma_zz is that of plane strain, or none.
     pub(super) fn cauchy<const D: usize>(&self, f: &Matrix<D>, j: f64) -> Cauchy<D> {
         let sigma = self.first_piola_kirchhoff(f, j) * f.transpose() / j;
-        let out_of_plane = match (D, self.material) {
-            (2, Material::StVenantKirchhoff) => self.lambda * green(f).trace() / j,
-            (2, Material::NeoHookean) => self.lambda * libm::log(j) / j,
+        let out_of_plane = match (D, self.plane, self.material) {
+            (2, Plane::Strain, Material::StVenantKirchhoff) => self.lambda * green(f).trace() / j,
+            (2, Plane::Strain, Material::NeoHookean) => self.lambda * libm::log(j) / j,
             _ => 0.0,
         };
         let pressure = -(sigma.trace() + out_of_plane) / 3.0;
@@ -79,8 +132,11 @@ impl Law {
     }
 }
 
+/// Most Newton steps; where strains are a few per cent, four are taken.
+const MOST_ITERATIONS: u32 = 50;
+
 /// Green's strain E.
-fn green<const D: usize>(f: &Matrix<D>) -> Matrix<D> {
+pub(super) fn green<const D: usize>(f: &Matrix<D>) -> Matrix<D> {
     (f.transpose() * f - Matrix::identity()) * 0.5
 }
 
@@ -91,7 +147,7 @@ mod tests {
 
     /// lambda = 2, mu = 1.
     fn law(material: Material) -> Law {
-        Law { material, lambda: 2.0, mu: 1.0 }
+        Law { material, plane: Plane::Strain, lambda: 2.0, mu: 1.0 }
     }
     const BOTH: [Material; 2] = [Material::StVenantKirchhoff, Material::NeoHookean];
 
@@ -119,6 +175,37 @@ mod tests {
         let cauchy = law.cauchy(&f, 2.0);
         assert!((cauchy.pressure + 0.5 + log).abs() < 1e-15);
         assert!((cauchy.deviator - Matrix2::new(1.0, 0.0, 0.0, -0.5)).norm() < 1e-15);
+    }
+
+    #[test]
+    fn plane_stress_is_three_dimensions_without_stress_across() {
+        let f = Matrix2::new(1.1, 0.2, -0.1, 0.85);
+        for material in BOTH {
+            let law = Law { plane: Plane::Stress, ..law(material) };
+            let j = law.volume_ratio(&f);
+            let across = j / f.determinant();
+            let full = Matrix3::new(1.1, 0.2, 0.0, -0.1, 0.85, 0.0, 0.0, 0.0, across);
+            let space = Law { plane: Plane::Strain, ..law };
+            let p = space.first_piola_kirchhoff(&full, full.determinant());
+            assert!(p[(2, 2)].abs() < 1e-14, "{material:?}: {p}");
+            let in_plane = law.first_piola_kirchhoff(&f, j);
+            assert!((in_plane - p.fixed_view::<2, 2>(0, 0)).norm() < 1e-14, "{material:?}: {in_plane} {p}");
+            assert!((law.energy(&f, j) - space.energy(&full, full.determinant())).abs() < 1e-14);
+            let pressure = space.cauchy(&full, full.determinant()).pressure;
+            assert!((law.cauchy(&f, j).pressure - pressure).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn a_strip_that_is_pulled_in_plane_stress_has_youngs_modulus() {
+        // lambda = 2, mu = 1: E = mu (3 lambda + 2 mu) / (lambda + mu) = 8/3, nu = 1/3.
+        let strain = 1e-7;
+        let f = Matrix2::new(1.0 + strain, 0.0, 0.0, 1.0 - strain / 3.0);
+        for material in BOTH {
+            let law = Law { plane: Plane::Stress, ..law(material) };
+            let p = law.first_piola_kirchhoff(&f, law.volume_ratio(&f));
+            assert!((p[(0, 0)] / strain - 8.0 / 3.0).abs() < 1e-6 && p[(1, 1)].abs() < 1e-6 * strain, "{p}");
+        }
     }
 
     #[test]

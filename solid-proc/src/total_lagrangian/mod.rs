@@ -11,6 +11,7 @@ mod hourglass;
 mod material;
 mod model;
 mod pass;
+mod relaxation;
 mod state;
 #[cfg(test)]
 mod tests;

@@ -9,15 +9,17 @@ use super::contact::Contact;
 use super::hourglass;
 use super::material::{Law, Matrix};
 use super::pass::{Acceleration, DeformationSum, Fixed, Matrices};
+use super::relaxation::{self, Arm, Memory};
 use crate::columns::{Shown, Vectors, vector, vectors};
 use crate::effects::takes_part;
 use crate::model::{Load, OutOfBounds, Particles, SolidModel};
 use crate::shown_velocity::ShownVelocity;
+use crate::side_friction;
 use crate::surface::surface_set;
 use halfstep_role::role::Costs;
 use halfstep_scene::bounds::Excess;
 use halfstep_scene::geometry::{self, SolidPoint};
-use halfstep_scene::{EffectName, KernelName, ModelKeys, Scene, Solid};
+use halfstep_scene::{EffectName, KernelName, ModelKeys, Plane, Scene, Solid};
 use halfstep_sph::lane::{Isa, LANES};
 use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_sph::pair::FixedPairs;
@@ -36,6 +38,8 @@ pub(super) struct State<const D: usize> {
     pub velocity: Vectors<D>,
     /// By all but loads and gravity, m/s².
     pub acceleration: Vectors<D>,
+    /// What Maxwell arms remember.
+    pub memory: Memory<D>,
 }
 
 impl<const D: usize> State<D> {
@@ -45,6 +49,7 @@ impl<const D: usize> State<D> {
             self.velocity[d].clone_from(&other.velocity[d]);
             self.acceleration[d].clone_from(&other.acceleration[d]);
         }
+        self.memory.copy_from(&other.memory);
     }
 }
 
@@ -52,6 +57,10 @@ impl<const D: usize> State<D> {
 pub struct TotalLagrangian<const D: usize> {
     pub(super) material: Solid,
     pub(super) law: Law,
+    /// Maxwell arms; none where stress does not relax.
+    pub(super) arms: Vec<Arm>,
+    /// Deceleration by side friction, m/s².
+    side_friction: Option<f64>,
     pub(super) kernel: KernelName,
     pub(super) isa: Isa,
     pub(super) smoothing_length: f64,
@@ -146,13 +155,23 @@ impl<const D: usize> TotalLagrangian<D> {
             with_kernel!(scene.numerics.kernel, h, D, |k| hourglass::from_bending(
                 k,
                 dx,
-                material.poissons_ratio
+                in_plane(material.poissons_ratio, keys.plane)
             ))
         });
         let mass = material.density * dx.powi(D as i32);
-        let now = State { displacement: vectors(slots), acceleration: vectors(slots), velocity };
+        let relaxes = takes_part(scene, solid, EffectName::Relaxation);
+        let arms = if relaxes { relaxation::arms(&keys.prony) } else { Vec::new() };
+        let now = State {
+            displacement: vectors(slots),
+            acceleration: vectors(slots),
+            velocity,
+            memory: Memory::new(slots, arms.len()),
+        };
         let mut model = Self {
-            law: Law::new(&material, keys.material),
+            law: Law::new(&material, keys.material, keys.plane),
+            arms,
+            side_friction: takes_part(scene, solid, EffectName::SideFriction)
+                .then(|| material.side_friction / material.density),
             kernel: scene.numerics.kernel,
             isa,
             smoothing_length: h,
@@ -188,7 +207,7 @@ impl<const D: usize> TotalLagrangian<D> {
             pair_evaluations: 0,
         };
         model.correct();
-        model.evaluate();
+        model.evaluate(0.0);
         model.show_particles();
         Some(model)
     }
@@ -215,6 +234,9 @@ impl<const D: usize> TotalLagrangian<D> {
                 *v += dt * (inner + load);
             }
         }
+        if let Some(friction) = self.side_friction {
+            side_friction::slow(&mut self.now.velocity, dt * friction);
+        }
     }
 
     fn drift(&mut self, dt: f64) {
@@ -225,13 +247,16 @@ impl<const D: usize> TotalLagrangian<D> {
         }
     }
 
-    /// `count` Verlet steps over `dt`.
-    fn sub_step(&mut self, count: u32, dt: f64) {
+    /// `count` Verlet steps over `dt` from `time` on, both s.
+    fn sub_step(&mut self, count: u32, dt: f64, time: f64) {
         let each = dt / f64::from(count);
-        for _ in 0..count {
+        for k in 1..=count {
+            if let Some(contact) = &mut self.contact {
+                contact.set_time(time + f64::from(k) * each);
+            }
             self.kick(0.5 * each);
             self.drift(each);
-            self.evaluate();
+            self.evaluate(each);
             self.kick(0.5 * each);
         }
     }
@@ -249,7 +274,7 @@ impl<const D: usize> TotalLagrangian<D> {
     pub(super) fn record(&self, particle: u32) -> StateRecord {
         let slot = self.slot_of[particle as usize] as usize;
         let j = self.volume_ratio[slot];
-        let cauchy = self.law.cauchy(&self.gradient[slot], j);
+        let cauchy = self.cauchy(slot);
         let mut r = StateRecord {
             id: particle,
             flags: u32::from(self.points[particle as usize].clamped),
@@ -269,6 +294,14 @@ impl<const D: usize> TotalLagrangian<D> {
             r.deviatoric_stress[2] = -cauchy.deviator.trace();
         }
         r
+    }
+}
+
+/// Poisson's ratio with which the formulas of plane strain hold for a plane.
+fn in_plane(poissons_ratio: f64, plane: Plane) -> f64 {
+    match plane {
+        Plane::Strain => poissons_ratio,
+        Plane::Stress => poissons_ratio / (1.0 + poissons_ratio),
     }
 }
 
@@ -324,11 +357,11 @@ impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {
                 self.at_n.copy_from(&self.now);
                 let (slot_of, from) = (&self.slot_of, &self.at_n.displacement);
                 self.shown_velocity.leave(|p| vector(from, slot_of[p]));
-                self.sub_step((sub_steps / 2).max(1), span);
+                self.sub_step((sub_steps / 2).max(1), span, half_step.time);
             }
             Stage::Second => {
                 self.now.copy_from(&self.at_n);
-                self.sub_step(sub_steps, span);
+                self.sub_step(sub_steps, span, half_step.time);
             }
         }
         let (slot_of, now) = (&self.slot_of, &self.now);

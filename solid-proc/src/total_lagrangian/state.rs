@@ -1,9 +1,10 @@
 //! What the total-Lagrangian solid keeps over an interruption at a state n: displacements, velocities and the inner
-//! acceleration, which the next sub-step begins with, and the order of contacts. The reference configuration and its
-//! pairs come from the scene, stresses and energies from the displacements.
+//! acceleration, which the next sub-step begins with, what Maxwell arms remember, and the order of contacts. The
+//! reference configuration and its pairs come from the scene, stresses and energies from the displacements.
 
 use super::contact::Contact;
 use super::model::{State as Columns, TotalLagrangian};
+use crate::wall::Walls;
 use halfstep_wire::state::{Fields, State, StateError};
 
 impl<const D: usize> State for TotalLagrangian<D> {
@@ -15,6 +16,9 @@ impl<const D: usize> State for TotalLagrangian<D> {
             return Err(StateError::contradiction("the solid's reference configuration is another one"));
         }
         fields.part("particles", &mut self.now)?;
+        if !self.arms.is_empty() {
+            fields.part("relaxation", &mut self.now.memory)?;
+        }
         fields.part("shown_velocity", &mut self.shown_velocity)?;
         fields.count("pair_evaluations", &mut self.pair_evaluations)?;
         let now = [&self.now.displacement, &self.now.velocity, &self.now.acceleration];
@@ -30,7 +34,7 @@ impl<const D: usize> State for TotalLagrangian<D> {
             contact.restored()?;
         }
         let (acceleration, evaluations) = (self.now.acceleration.clone(), self.pair_evaluations);
-        self.evaluate();
+        self.evaluate(0.0);
         // Damping took the velocities in the middle of the last sub-step.
         self.now.acceleration = acceleration;
         self.pair_evaluations = evaluations;
@@ -53,6 +57,9 @@ impl<const D: usize> State for Contact<D> {
         fields.numbers("id", &mut self.id)?;
         fields.vectors("position_at_sort", &mut self.listed)?;
         self.listed.iter().try_for_each(|x| fields.length("position_at_sort", self.id.len(), x.len()))?;
+        if let Some(time) = self.walls().as_mut().and_then(Walls::listed_at) {
+            fields.real("walls_listed_at", time)?;
+        }
         if fields.loading() {
             self.reorder(&body)?;
         }

@@ -7,15 +7,15 @@ use std::collections::HashMap;
 use std::hash::BuildHasherDefault;
 use xxhash_rust::xxh3::Xxh3Default;
 
-/// A particle's position and spacing, m.
-type Taken<const D: usize> = ([f64; D], f64);
+/// A particle's position and its spacing, m.
+type Placed<const D: usize> = ([f64; D], f64);
 
 /// The shapes placed so far, and their particles, each with its spacing, in cells of side dx.
 pub(super) struct Occupied<'s, const D: usize> {
     /// No smaller than any spacing, m.
     dx: f64,
     taken: Vec<(&'s Geometry, Spacing, Phase)>,
-    cells: HashMap<[i64; D], Vec<Taken<D>>, BuildHasherDefault<Xxh3Default>>,
+    cells: HashMap<[i64; D], Vec<Placed<D>>, BuildHasherDefault<Xxh3Default>>,
 }
 
 impl<'s, const D: usize> Occupied<'s, D> {

@@ -37,6 +37,7 @@ fn scene(shapes: Vec<Shape>) -> Scene {
             model: ModelKeys::Hypoelastic(HypoelasticKeys {
                 artificial_stress: ArtificialStress { strength: 0.3, exponent: 4.0 },
             }),
+            side_friction: 0.0,
             sub_steps: SubSteps::Auto,
         }],
         interface: Interface {

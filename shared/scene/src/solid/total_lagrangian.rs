@@ -2,6 +2,7 @@
 
 use super::models::Rules;
 use crate::ArtificialViscosity;
+use crate::document::{Node, Value};
 use crate::preset::Defaults;
 use crate::section::{Range, Section};
 use serde::{Deserialize, Serialize};
@@ -14,7 +15,27 @@ pub struct TotalLagrangianKeys {
     /// Coefficient alpha of the hourglass resistance; `None`: the one that gives particles the bending stiffness of
     /// their cells.
     pub hourglass: Option<f64>,
+    /// Maxwell arms [g, tau]: shear modulus over G, and relaxation time, s.
+    #[serde(default)]
+    pub prony: Vec<[f64; 2]>,
+    /// What happens across the plane of two dimensions.
+    #[serde(default)]
+    pub plane: Plane,
 }
+
+/// What two dimensions mean to a solid.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Plane {
+    /// It cannot strain across the plane.
+    #[default]
+    Strain,
+    /// Nothing holds it across the plane.
+    Stress,
+}
+
+/// Most Maxwell arms.
+const MAX_ARMS: usize = 16;
 
 /// The hyperelastic laws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -40,6 +61,8 @@ pub(super) const RULES: Rules = Rules {
     keys: &[
         ("material", "only the total-lagrangian model has a choice of materials"),
         ("hourglass", "only the total-lagrangian model resists hourglass modes"),
+        ("prony", "only the total-lagrangian model has a strain that Maxwell arms could follow; others know its rate"),
+        ("plane", "only the total-lagrangian model knows the strain across the plane"),
     ],
     // One row of particles has no deformation gradient across.
     rows: 2,
@@ -52,6 +75,7 @@ impl TotalLagrangianKeys {
         const MATERIALS: [(&str, Material); 2] =
             [("st-venant-kirchhoff", Material::StVenantKirchhoff), ("neo-hookean", Material::NeoHookean)];
         let stiffest = "beyond, it is stiffer than the material and limits the time step";
+        let (prony, plane) = (prony(section), plane(section));
         let material = section.choice("material", Some(Material::NeoHookean), &MATERIALS);
         Self {
             material: material.unwrap_or(Material::NeoHookean),
@@ -60,6 +84,49 @@ impl TotalLagrangianKeys {
                 None,
                 Range::at_least(0.0).up_to(10.0).why(stiffest),
             ),
+            prony,
+            plane,
         }
     }
+
+    /// Shear modulus of a sudden strain over the long-time one: 1 + sum g.
+    pub(crate) fn stiffening(&self) -> f64 {
+        1.0 + self.prony.iter().map(|[g, _]| g).sum::<f64>()
+    }
+}
+
+fn plane(section: &Section<'_>) -> Plane {
+    const PLANES: [(&str, Plane); 2] = [("strain", Plane::Strain), ("stress", Plane::Stress)];
+    let plane = section.choice("plane", Some(Plane::Strain), &PLANES).unwrap_or(Plane::Strain);
+    if let (Plane::Stress, Some(node), Some(_)) = (plane, section.node("plane"), section.node("prony")) {
+        let why = "what a plate does across its plane would depend on all that its arms remember";
+        section.wrong("plane", node, format!("cannot be \"stress\" with `prony`: {why}"));
+    }
+    plane
+}
+
+fn prony(section: &Section<'_>) -> Vec<[f64; 2]> {
+    const SHARE: Range =
+        Range::positive().up_to(100.0).why("g is the arm's shear modulus over the long-time one");
+    const TIME: Range = Range::at_least(1e-9).up_to(1e9).why("tau is the arm's relaxation time, s");
+    let Some(node) = section.node("prony") else { return Vec::new() };
+    let form = "must be an array of Maxwell arms, each [g, tau]: its shear modulus over G, and its time, s";
+    let Value::Array(items) = &node.value else {
+        section.wrong("prony", node, form);
+        return Vec::new();
+    };
+    if items.len() > MAX_ARMS {
+        section.wrong("prony", node, format!("has {} arms; at most {MAX_ARMS}", items.len()));
+    }
+    let arm = |item: &Node| match &item.value {
+        Value::Array(pair) if pair.len() == 2 => {
+            let share = section.as_number("prony", &pair[0], SHARE)?;
+            Some([share, section.as_number("prony", &pair[1], TIME)?])
+        }
+        _ => {
+            section.wrong("prony", item, form);
+            None
+        }
+    };
+    items.iter().filter_map(arm).collect()
 }
