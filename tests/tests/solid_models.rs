@@ -38,20 +38,21 @@ macro_rules! conformance {
             )*
         }
     };
+    (whole $name:ident $D:literal: $model:ident, $keys:literal) => {
+        conformance!($name $D: $model, $keys, Scene::clone; identity interface_set rest uniform_force
+            stage_0_is_forgotten sub_steps clamps conservation bodies_collide wall_contact bounds threads
+            interruption);
+    };
     ($($name:ident: $model:ident, $keys:literal;)*) => {
         $(mod $name {
             use super::*;
 
-            conformance!(plane 2: $model, $keys, Scene::clone; identity interface_set rest uniform_force
-                stage_0_is_forgotten sub_steps clamps conservation bodies_collide wall_contact bounds threads
-                interruption);
-            conformance!(space 3: $model, $keys, Scene::clone; identity interface_set rest uniform_force
-                stage_0_is_forgotten sub_steps clamps conservation bodies_collide wall_contact bounds threads
-                interruption);
-            // All but `interface_set`, which counts particles within reach of the fluid's kernel.
+            conformance!(whole plane 2: $model, $keys);
+            conformance!(whole space 3: $model, $keys);
+            // All but `interface_set`, which counts particles within reach of the fluid's kernel, and `wall_contact`,
+            // whose wall has the body's spacing: `tests/tests/moving_stop.rs` has a finer body.
             conformance!(finer_than_the_fluid 2: $model, $keys, finer_than_the_rest; identity rest uniform_force
-                stage_0_is_forgotten sub_steps clamps conservation bodies_collide wall_contact bounds threads
-                interruption);
+                stage_0_is_forgotten sub_steps clamps conservation bodies_collide bounds threads interruption);
         })*
     };
 }
@@ -59,24 +60,10 @@ macro_rules! conformance {
 conformance! {
     hypoelastic: Hypoelastic, "model = \"hypoelastic\"";
     total_lagrangian: TotalLagrangian, "model = \"total-lagrangian\"";
-    // With a memory.
-    relaxing_total_lagrangian: TotalLagrangian, "model = \"total-lagrangian\"\nprony = [[0.5, 0.01]]";
-    // With the neighbours of the other model.
-    wide_total_lagrangian: TotalLagrangian, "model = \"total-lagrangian\"\nsmoothing_ratio = 1.33";
 }
-
-// All but `interface_set`, which counts particles within reach of the fluid's kernel, and `wall_contact`, whose wall
-// has the body's spacing: `tests/tests/moving_stop.rs` has a finer body.
-macro_rules! finer {
-    ($($name:ident: $model:ident, $keys:literal;)*) => {
-        $(conformance!($name, $model, $keys, finer_than_the_rest, [
-            identity, rest, uniform_force, stage_0_is_forgotten, sub_steps, clamps, conservation, bodies_collide,
-            bounds, threads, interruption
-        ]);)*
-    };
-}
-
-finer! {
-    fine_hypoelastic: Hypoelastic, "model = \"hypoelastic\"";
-    fine_total_lagrangian: TotalLagrangian, "model = \"total-lagrangian\"";
-}
+// With a memory.
+conformance!(whole relaxing_total_lagrangian 2: TotalLagrangian,
+    "model = \"total-lagrangian\"\nprony = [[0.5, 0.01]]");
+// With the neighbours of the other model.
+conformance!(whole wide_total_lagrangian 2: TotalLagrangian,
+    "model = \"total-lagrangian\"\nsmoothing_ratio = 1.33");
