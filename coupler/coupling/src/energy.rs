@@ -10,7 +10,8 @@
 //! Dissipation makes growth negative. Above [`LIMIT`] or [`SOLID_LIMIT`] for [`PATIENCE`] states the run ends: a fast
 //! blow-up leaves the bounds of a particle before that, and a particle says more.
 //!
-//! The walls of a scene must be at rest for the fluid to be judged. A foreign solid's energy is not known. With the
+//! The walls of a scene must be at rest for the fluid to be judged, a solid's clamps for the solid. A foreign solid's
+//! energy is not known. With the
 //! phase-blind interface the fluid strains the solid as well, so both are judged as one.
 
 use halfstep_output::run_json::EnergyGrowth;
@@ -93,9 +94,18 @@ pub struct EnergyBalance {
     /// Both phases as one.
     joint: bool,
     walls_rest: bool,
+    /// Solids whose clamps move: what that takes or gives is not counted.
+    driven: Vec<String>,
     time: f64,
     /// Those that were judged, with phase and ledger.
     ledgers: Vec<(Name, Phase, Ledger)>,
+}
+
+/// Names of the solids with clamps that move.
+fn driven(scene: &Scene) -> Vec<String> {
+    let moves = |k: usize| scene.shapes.iter().any(|s| s.solid == Some(k) && !s.clamp_with.is_empty());
+    let solids = scene.solids.iter().enumerate().filter(|(k, _)| moves(*k));
+    solids.map(|(_, solid)| solid.name.clone()).collect()
 }
 
 impl EnergyBalance {
@@ -107,6 +117,7 @@ impl EnergyBalance {
             speed: flow_speed(scene),
             joint: scene.interface.treatment == Treatment::PhaseBlind,
             walls_rest: !scene.shapes.iter().any(|s| s.phase == Phase::Wall && moves(s)),
+            driven: driven(scene),
             time: 0.0,
             ledgers: Vec::new(),
         }
@@ -137,7 +148,11 @@ impl EnergyBalance {
         }
         let on_solids: f64 = accounts.iter().map(|account| account.work).sum();
         for Account { name, phase, audit, work } in accounts {
-            let Some(sums) = audit.filter(|_| *phase == Phase::Solid || self.walls_rest) else { continue };
+            let judged = match phase {
+                Phase::Solid => !self.driven.iter().any(|driven| driven == name.as_str()),
+                _ => self.walls_rest,
+            };
+            let Some(sums) = audit.filter(|_| judged) else { continue };
             let (limit, work) = match phase {
                 Phase::Solid => (SOLID_LIMIT, *work),
                 _ => (LIMIT, -on_solids),

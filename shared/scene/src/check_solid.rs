@@ -17,6 +17,7 @@ impl Check<'_> {
         }
         self.solid_time_step();
         self.spacings();
+        self.clamps();
     }
 
     /// The key that says a shape's own spacing.
@@ -50,6 +51,32 @@ impl Check<'_> {
                 let (dx, why) = (scene.resolution, "the fluid would slip between the solid's particles");
                 let reason = format!("makes {spacing} m, and must be at most the resolution, {dx} m: {why}");
                 self.report.among(self.root, &key, &["resolution"], reason);
+            }
+        }
+    }
+
+    /// A clamp moves with a wall that moves, of a model that can follow.
+    fn clamps(&self) {
+        for (index, shape) in self.scene.shapes.iter().enumerate() {
+            for (clamp, name) in shape.clamp_with.iter().enumerate() {
+                let Some(name) = name else { continue };
+                let key = format!("{}.clamp", self.shape_key(index));
+                let item = format!("{key}.{clamp}");
+                let key = if self.root.child_at(&item).is_some() { item } else { key };
+                let model = shape.solid.and_then(|k| self.model(k));
+                let wall = self.scene.shapes.iter().find(|wall| wall.name == *name);
+                let reason = match wall {
+                    _ if self.report.has_any(&["shape", "solid"]) => continue,
+                    Some(wall) if wall.phase == Phase::Wall && wall.motion.is_some() => match model {
+                        Some(SolidModelName::Hypoelastic) => {
+                            "only the total-lagrangian model has clamps that move".to_owned()
+                        }
+                        _ => continue,
+                    },
+                    Some(_) => format!("`{name}` is no wall with a `motion`"),
+                    None => "is no shape of the scene".to_owned(),
+                };
+                self.report.among(self.root, &format!("{key}.with"), &[], reason);
             }
         }
     }

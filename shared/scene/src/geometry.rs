@@ -15,7 +15,7 @@ mod points;
 #[cfg(test)]
 mod tests;
 
-use crate::{Block, CantileverMode, Geometry, Lattice, Phase, Scene, Shape, dispatch};
+use crate::{Block, CantileverMode, Geometry, Lattice, Motion, Phase, Scene, Shape, dispatch};
 pub use nearest::nearest;
 use occupied::Occupied;
 pub use plate::Plate;
@@ -240,6 +240,15 @@ pub(crate) fn distance(geometry: &Geometry, at: &[f64; 3]) -> f64 {
             (inner - r).max(r - outer).max(0.0)
         }
     }
+}
+
+/// How a clamp moves the particle of a solid: `None` where no clamp holds it, or the first that does stands still.
+pub fn clamp_motion<const D: usize>(scene: &Scene, point: &SolidPoint<D>) -> Option<Motion> {
+    let shape = scene.shapes.get(point.body as usize)?;
+    let tolerance = TOLERANCE * scene.spacing(shape);
+    let clamp = shape.clamp.iter().position(|block| holds(block, &point.position, tolerance))?;
+    let name = shape.clamp_with.get(clamp)?.as_ref()?;
+    scene.shapes.iter().find(|wall| wall.name == *name)?.motion
 }
 
 /// Whether each clamp of a solid shape holds one of its particles.

@@ -240,6 +240,9 @@ pub struct Shape {
     pub velocity_field: Option<VelocityField>,
     /// Solid only: particles inside this box keep zero velocity.
     pub clamp: Vec<Block>,
+    /// Solid only: the wall that each clamp moves with, by its name; empty where none moves.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub clamp_with: Vec<Option<String>>,
     /// Wall only: prescribed motion.
     #[serde(default)]
     pub motion: Option<Motion>,

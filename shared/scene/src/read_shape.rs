@@ -25,6 +25,7 @@ const MAX_ACROSS: u32 = 100_000;
 pub(super) fn shape(section: Section<'_>, dimension: usize, solids: &[&str], lattice: Lattice) -> Shape {
     let phase = section.choice("phase", None, &PHASES);
     let geometry = geometry(&section, dimension, phase);
+    let (clamp, clamp_with) = clamp(&section, dimension);
     let shape = Shape {
         name: name(&section),
         phase: phase.unwrap_or(Phase::Wall),
@@ -34,7 +35,8 @@ pub(super) fn shape(section: Section<'_>, dimension: usize, solids: &[&str], lat
         velocity: section.vector("velocity", dimension, Some([0.0; 3])),
         cantilever_mode: cantilever_mode(&section),
         velocity_field: velocity_field(&section, dimension),
-        clamp: clamp(&section, dimension),
+        clamp,
+        clamp_with,
         motion: motion(&section, dimension),
         contact: section.boolean("contact", false),
         free_slip: section.choice("slip", Some(true), &[("free", true), ("none", false)]).unwrap_or(true),
@@ -258,12 +260,22 @@ fn velocity_field(section: &Section<'_>, dimension: usize) -> Option<VelocityFie
     Some(field)
 }
 
-fn clamp(section: &Section<'_>, dimension: usize) -> Vec<Block> {
-    let Some(node) = section.node("clamp") else { return Vec::new() };
-    if node.table().is_some() {
-        return vec![section.section("clamp").whole_block(dimension)];
-    }
-    section.tables("clamp").into_iter().map(|table| table.whole_block(dimension)).collect()
+/// The clamps' boxes, and with which wall each moves.
+fn clamp(section: &Section<'_>, dimension: usize) -> (Vec<Block>, Vec<Option<String>>) {
+    let Some(node) = section.node("clamp") else { return Default::default() };
+    let tables = match node.table() {
+        Some(_) => vec![section.section("clamp")],
+        None => section.tables("clamp"),
+    };
+    let (clamps, with): (Vec<_>, Vec<_>) = tables
+        .into_iter()
+        .map(|table| {
+            let with = table.string("with").map(str::to_owned);
+            (table.whole_block(dimension), with)
+        })
+        .unzip();
+    let moves = with.iter().any(Option::is_some);
+    (clamps, if moves { with } else { Vec::new() })
 }
 
 impl Section<'_> {

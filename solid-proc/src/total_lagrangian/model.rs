@@ -19,7 +19,7 @@ use crate::surface::surface_set;
 use halfstep_role::role::Costs;
 use halfstep_scene::bounds::Excess;
 use halfstep_scene::geometry::{self, SolidPoint};
-use halfstep_scene::{EffectName, KernelName, ModelKeys, Plane, Scene, Solid};
+use halfstep_scene::{EffectName, KernelName, ModelKeys, Motion, Plane, Scene, Solid};
 use halfstep_sph::lane::{Isa, LANES};
 use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_sph::pair::FixedPairs;
@@ -59,6 +59,8 @@ pub struct TotalLagrangian<const D: usize> {
     pub(super) law: Law,
     /// Maxwell arms; none where stress does not relax.
     pub(super) arms: Vec<Arm>,
+    /// Slots that clamps move, and how.
+    driven: Vec<(usize, Motion)>,
     /// Deceleration by side friction, m/s².
     side_friction: Option<f64>,
     pub(super) kernel: KernelName,
@@ -170,6 +172,7 @@ impl<const D: usize> TotalLagrangian<D> {
         let mut model = Self {
             law: Law::new(&material, keys.material, keys.plane),
             arms,
+            driven: driven(scene, &layout.solid, &slot_of),
             side_friction: takes_part(scene, solid, EffectName::SideFriction)
                 .then(|| material.side_friction / material.density),
             kernel: scene.numerics.kernel,
@@ -207,6 +210,7 @@ impl<const D: usize> TotalLagrangian<D> {
             pair_evaluations: 0,
         };
         model.correct();
+        model.drive(0.0);
         model.evaluate(0.0);
         model.show_particles();
         Some(model)
@@ -247,6 +251,17 @@ impl<const D: usize> TotalLagrangian<D> {
         }
     }
 
+    /// Brings what clamps move to where they are at a time, s.
+    fn drive(&mut self, time: f64) {
+        for (slot, motion) in &self.driven {
+            let placement = motion.at(time);
+            for d in 0..D {
+                self.now.displacement[d][*slot] = placement.displacement[d];
+                self.now.velocity[d][*slot] = placement.velocity[d];
+            }
+        }
+    }
+
     /// `count` Verlet steps over `dt` from `time` on, both s.
     fn sub_step(&mut self, count: u32, dt: f64, time: f64) {
         let each = dt / f64::from(count);
@@ -256,6 +271,7 @@ impl<const D: usize> TotalLagrangian<D> {
             }
             self.kick(0.5 * each);
             self.drift(each);
+            self.drive(time + f64::from(k) * each);
             self.evaluate(each);
             self.kick(0.5 * each);
         }
@@ -295,6 +311,12 @@ impl<const D: usize> TotalLagrangian<D> {
         }
         r
     }
+}
+
+/// Slots of the particles that clamps move, and how.
+fn driven<const D: usize>(scene: &Scene, points: &[SolidPoint<D>], slot_of: &[u32]) -> Vec<(usize, Motion)> {
+    let clamped = points.iter().zip(slot_of).filter(|(point, _)| point.clamped);
+    clamped.filter_map(|(p, &slot)| Some((slot as usize, geometry::clamp_motion(scene, p)?))).collect()
 }
 
 /// Poisson's ratio with which the formulas of plane strain hold for a plane.

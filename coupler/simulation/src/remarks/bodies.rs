@@ -8,10 +8,13 @@ pub(super) fn clamps(scene: &Scene, all: &mut Vec<String>) {
     for shape in &scene.shapes {
         for wall in scene.shapes.iter().filter(moving) {
             let around = geometry::bounding_box(wall, scene);
-            if shape.clamp.iter().any(|clamp| meet(clamp, &around, scene)) {
+            let stays =
+                |k: usize| shape.clamp_with.get(k).is_none_or(|with| with.as_ref() != Some(&wall.name));
+            if (0..shape.clamp.len()).any(|k| stays(k) && meet(&shape.clamp[k], &around, scene)) {
                 all.push(format!(
-                    "the clamp of `{}` stands in `{}`, which moves: the clamp stays where it is",
-                    shape.name, wall.name
+                    "the clamp of `{}` stands in `{}`, which moves: the clamp stays where it is (`with = \"{}\"` at the \
+                     clamp takes it along)",
+                    shape.name, wall.name, wall.name
                 ));
             }
         }

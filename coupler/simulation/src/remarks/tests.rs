@@ -52,7 +52,13 @@ fn a_clamp_in_a_wall_that_moves() {
         WATER,
         &PLATE.replace("[0.2, 0.0], max = [0.22, 0.01]", "[0.2, -0.01], max = [0.22, 0.01]"),
     ]);
-    assert_eq!(found, ["the clamp of `plate` stands in `tank`, which moves: the clamp stays where it is"]);
+    assert_eq!(
+        found,
+        [
+            "the clamp of `plate` stands in `tank`, which moves: the clamp stays where it is (`with = \"tank\"` at the clamp \
+          takes it along)"
+        ]
+    );
 }
 
 #[test]

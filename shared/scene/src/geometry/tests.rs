@@ -75,6 +75,7 @@ fn shape(phase: Phase, geometry: Geometry) -> Shape {
         velocity: [0.0; 3],
         cantilever_mode: None,
         velocity_field: None,
+        clamp_with: Vec::new(),
         clamp: Vec::new(),
         motion: None,
         contact: false,
