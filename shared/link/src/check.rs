@@ -188,8 +188,8 @@ impl StateCheck {
         Self { run_id, peer: name, is_fluid: place == FLUID, capacity: capacity as usize, known }
     }
 
-    /// Whether this is the message that is due. A message that says that its sender failed is, at any time: it must only
-    /// be of this run.
+    /// Whether this is the message that is due. A message that says that its sender failed is, at any time: it must
+    /// only be of this run.
     pub(super) fn verify(
         &mut self,
         header: &StateHeader,

@@ -53,7 +53,7 @@ pub use metric::{Metric, MetricKind, MetricReference};
 pub use motion::{Motion, Placement};
 pub use participant::Participant;
 pub use probe::{Probe, ProbeKind, Reference};
-pub use resources::{BYTES_PER_PARTICLE, memory_available, memory_needed};
+pub use resources::{memory_available, memory_needed};
 pub use solid::{
     ArtificialStress, HypoelasticKeys, Material, ModelKeys, Solid, SolidModelName, SubSteps,
     TotalLagrangianKeys,
