@@ -16,6 +16,8 @@ use std::time::{Duration, Instant};
 const MARK: &str = "HALFSTEP_TORTURE";
 /// How long a disturbed run may go on after its last disturbance, s. Undisturbed ones take less than 4 s, alone.
 const HANG: f64 = 60.0;
+/// How long what is left of a run has, before the next one removes it, s.
+const TIDY: f64 = 2.0;
 /// How long the other processes of a run may live on after the launcher, s.
 const SURVIVAL: f64 = 10.0;
 
@@ -334,8 +336,9 @@ impl Trial<'_> {
         }
         // The last of a process are its open files and its locks.
         while !leftovers(launcher).is_empty() {
-            // Where all were killed at once nobody is left to tidy up: the next run does.
-            if victims.len() > 1 && signal == libc::SIGKILL {
+            // Where all were killed at once, or the launcher before it had roles, nobody is left to tidy up: the next
+            // run does. An external solid may make something in the second that it is given.
+            if signal == libc::SIGKILL && ended.elapsed().as_secs_f64() > TIDY {
                 halfstep_link::cleanup_stale();
             }
             if ended.elapsed().as_secs_f64() > SURVIVAL {
