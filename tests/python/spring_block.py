@@ -14,9 +14,8 @@ StateHead = wire("StateHeader.2", 224, run_id=("u8", 0), schema=("u8", 8), proto
                  abilities=("u4", 88), checkpoint_safe=("u4", 92))
 ForceHead = wire("ForceHeader.2", 88, order=("u4", 20), step=("u8", 24), stage=("u4", 32), dt=("f8", 56), next_time=("f8", 64),
                  checkpoint=("u8", 80))
-parent = os.getppid()
 env, stiffness = {k[9:]: v for k, v in os.environ.items() if k.startswith("HALFSTEP_")}, float(sys.argv[1])
-name, partners = env["NAME"], len({pair.split(":")[1] for pair in env["PROCESSES"].split(",")})  # of fluid and coupler
+name, parent, partners = env["NAME"], os.getppid(), len({pair.split(":")[1] for pair in env["PROCESSES"].split(",")})  # of fluid and coupler
 scene = json.load(open(env["SCENE"]))
 box = next(shape["geometry"]["box"] for shape in scene["shapes"] if shape["phase"] == "solid")
 dx, dimension, density = scene["resolution"], scene["dimension"], scene["solid"]["density"]
@@ -34,9 +33,7 @@ def channel(kind, readers, record, header):
     s = s.enable_safe_overflow(False).history_size(0).subscriber_max_buffer_size(2).subscriber_max_borrowed_samples(2)
     return s.max_publishers(1).max_subscribers(readers).max_nodes(readers + 1).open_or_create_with_attributes(same)
 def wait(condition):
-    while not (found := condition()):
-        listener.timed_wait(iox2.Duration.from_millis(5))
-        if os.getppid() != parent: sys.exit("who started this is gone")
+    while not (found := condition()): listener.timed_wait(iox2.Duration.from_millis(5)), os.getppid() == parent or sys.exit("left alone")
     return found
 events, forces = [event(name, 2), event("fluid", partners), event("coupler", partners)], channel("force", 1, Force, ForceHead)
 listener, inbox = events[0].listener_builder().create(), forces.subscriber_builder().create()

@@ -16,6 +16,8 @@ use std::time::{Duration, Instant};
 const MARK: &str = "HALFSTEP_TORTURE";
 /// How long a disturbed run may go on after its last disturbance, s. Undisturbed ones take less than 4 s, alone.
 const HANG: f64 = 60.0;
+/// How long what is left of a run has, before the next one removes it, s.
+const TIDY: f64 = 2.0;
 /// How long the other processes of a run may live on after the launcher, s.
 const SURVIVAL: f64 = 10.0;
 
@@ -253,7 +255,8 @@ impl Trial<'_> {
                     tally.resumed += usize::from(resumes);
                     return Ok(());
                 }
-                Some((RunStatus::Stopped, _)) if code != Some(130) => {
+                // Of one that was killed it may be the report of the round before.
+                Some((RunStatus::Stopped, _)) if code.is_some_and(|code| code != 130) => {
                     return Err(format!("stopped with exit status {code:?}"));
                 }
                 Some((RunStatus::Diverged, _)) => return Err("diverged".into()),
@@ -277,7 +280,7 @@ impl Trial<'_> {
             ("HUP", libc::SIGHUP),
         ];
         let launcher = running.pid();
-        std::thread::sleep(self.random.seconds(1.1 * seconds));
+        std::thread::sleep(self.random.seconds(seconds));
         let all = with_variable(MARK, mark);
         if all.is_empty() {
             return Ok(running.wait().code());
@@ -331,13 +334,17 @@ impl Trial<'_> {
             }
             std::thread::sleep(Duration::from_millis(2));
         }
-        // Where all were killed at once nobody is left to tidy up: the next run does.
-        if victims.len() > 1 && signal == libc::SIGKILL {
-            halfstep_link::cleanup_stale();
-        }
-        let objects = leftovers(launcher);
-        if !objects.is_empty() {
-            return Err(format!("left behind: {}", objects.join(", ")));
+        // The last of a process are its open files and its locks.
+        while !leftovers(launcher).is_empty() {
+            // Where all were killed at once, or the launcher before it had roles, nobody is left to tidy up: the next
+            // run does. An external solid may make something in the second that it is given.
+            if signal == libc::SIGKILL && ended.elapsed().as_secs_f64() > TIDY {
+                halfstep_link::cleanup_stale();
+            }
+            if ended.elapsed().as_secs_f64() > SURVIVAL {
+                return Err(format!("left behind: {}", leftovers(launcher).join(", ")));
+            }
+            std::thread::sleep(Duration::from_millis(5));
         }
         if outcome.stderr.contains("panicked") || outcome.log().contains("panicked") {
             return Err(format!("a panic: {} {}", outcome.stderr, outcome.log()));

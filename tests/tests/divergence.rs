@@ -1,7 +1,8 @@
 //! A run that becomes unstable says whose particle left which bound, and which key to change; its files can be read.
 
-use halfstep_output::Frame;
+use halfstep::Simulation;
 use halfstep_output::run_json::RunStatus;
+use halfstep_output::{Frame, RunReport};
 use halfstep_tests::{Outcome, RunBuilder, scene};
 
 /// The report's error of a run that must have diverged.
@@ -101,4 +102,39 @@ fn a_step_above_a_limit_is_taken_with_a_warning() {
     assert!(!run.outcome.stderr.contains("fluid's stability limit"), "{}", run.outcome.stderr);
     let auto = scene("elastic-gate").set("resolution", 0.0025).until(1e-4).run();
     assert_eq!(auto.outcome.stderr, "");
+}
+
+#[test]
+fn a_simulation_of_a_program_that_diverges_leaves_its_report() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = halfstep_tests::run::repository().join("scenes/colliding-rings.toml");
+    let scene = halfstep_scene::load(&path, &["time_step=1e-4".into(), "end_time=0.05".into()]).unwrap();
+    let dir = folder.path().join("run");
+    let error = Simulation::new(scene).folder(&dir).run().unwrap_err().to_string();
+    assert!(error.contains("diverged at step") && error.contains("hint: "), "{error}");
+    let report = RunReport::read(&dir.join("run.json")).unwrap();
+    assert_eq!((report.status, report.error), (Some(RunStatus::Diverged), Some(error)));
+    assert!(dir.join("plot.png").exists());
+}
+
+/// Rings whose fixed step is three times the limit: half of it is enough for their time in the run.
+#[test]
+fn a_diverged_run_goes_back_with_half_the_step() {
+    let rings = || {
+        let rings = scene("colliding-rings").set("resolution", 0.0015).set("time_step", 2e-5).until(0.004);
+        rings.argument("--on-divergence")
+    };
+    let without = rings().argument("retry").outcome();
+    assert!(without.stderr.contains("has nothing to go back to"), "{}", without.stderr);
+    diverged(&without);
+    let run = rings().argument("retry=2").set("output.checkpoint_interval", 0.001).run();
+    let [back] = run.report.resumed.as_slice() else { panic!("{:?}", run.report.resumed) };
+    assert!(back.time_step_factor == 0.5 && back.step == 50, "{back:?}");
+    assert!(back.because.as_ref().unwrap().contains("diverged at step"), "{back:?}");
+    let dt = run.report.dt;
+    // The last step meets the end.
+    assert!(dt.max == Some(2e-5) && (dt.min.unwrap() / 1e-5 - 1.0).abs() < 1e-9, "{dt:?}");
+    assert!(run.outcome.stderr.contains("attempt 1 of 2: on from step 50"), "{}", run.outcome.stderr);
+    let times = run.probes.times();
+    assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "no row is there twice");
 }

@@ -96,6 +96,24 @@ fn a_run_with_the_block_goes_on_after_an_interruption() {
     );
 }
 
+#[test]
+fn a_block_without_checkpoints_cannot_be_set_back() {
+    let script = std::fs::read_to_string(repository().join("tests/python/spring_block.py")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let forgetful = folder.path().join("forgetful_block.py");
+    assert!(script.contains("abilities=1"));
+    std::fs::write(&forgetful, script.replace("abilities=1", "abilities=0")).unwrap();
+    let line = format!("{} {} {STIFFNESS}", python(), forgetful.display());
+    let block = || scene("spring-block").until(0.01).argument("--on-divergence").argument("retry");
+    let outcome = block().argument("--solid").argument(line).outcome();
+    assert_eq!(outcome.code(), Some(2));
+    let error = outcome.report().error.unwrap();
+    assert_eq!(error, "--on-divergence retry needs checkpoints, and the solid writes none");
+    let by_hand = block().argument("--await-solid").outcome();
+    assert_eq!(by_hand.code(), Some(1));
+    assert!(by_hand.stderr.contains("cannot with a solid started by hand"), "{}", by_hand.stderr);
+}
+
 /// What cannot be is refused where it arrives, and named by its field and not by what the fluid makes of it.
 #[test]
 fn a_block_that_sends_nonsense_is_named() {

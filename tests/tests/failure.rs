@@ -16,7 +16,7 @@ fn under_way() -> Running {
     let running = scene("elastic-gate")
         .set("resolution", 0.0025)
         .set("output.frame_interval", 0.001)
-        .set("end_time", 60.0)
+        .set("end_time", 6.0)
         .start();
     // Each role writes at its own pace.
     for stem in ["fluid", "solid"] {
@@ -158,6 +158,60 @@ fn an_interrupted_run_is_stopped_and_complete() {
     assert!(outcome.dir.join("plot.png").exists());
 }
 
+/// What a crash of the machine would leave: rows and steps so far. A killed run can be drawn from it.
+#[test]
+fn a_run_that_goes_on_tells_how_far_it_is() {
+    let _machine = whole_machine();
+    let running = under_way();
+    let path = running.dir().join("run.json");
+    let report = || halfstep_output::RunReport::read(&path).unwrap();
+    eventually(20.0, "steps in run.json", || report().steps > 0);
+    assert!(report().status.is_none() && report().time > 0.0);
+    kill(running.pid(), libc::SIGKILL);
+    let outcome = running.wait();
+    assert!(!outcome.dir.join("plot.png").exists());
+    let plot =
+        |dir: &std::path::Path| std::process::Command::new(program()).arg("plot").arg(dir).output().unwrap();
+    let drawn = plot(&outcome.dir);
+    assert!(drawn.status.success(), "{}", String::from_utf8_lossy(&drawn.stderr));
+    assert!(outcome.dir.join("plot.png").exists() && outcome.dir.join("contact.png").exists());
+    assert_eq!(plot(&outcome.dir.join("frames")).status.code(), Some(1), "no run is there");
+}
+
+/// Rows that go to a file that nobody can find are no rows.
+#[test]
+fn a_run_whose_probes_are_removed_fails_and_says_so() {
+    let _machine = whole_machine();
+    let running = under_way();
+    std::fs::remove_file(running.dir().join("probes.csv")).unwrap();
+    let outcome = running.wait();
+    assert_eq!(outcome.code(), Some(2));
+    assert!(outcome.stderr.contains("probes.csv: it was removed or replaced"), "{}", outcome.stderr);
+    assert!(!outcome.stdout.contains("plot.png"), "it could not be drawn: {}", outcome.stdout);
+    assert_eq!(outcome.report().status, Some(RunStatus::Failed));
+}
+
+/// The one who cannot go on says why, and the run repeats it.
+#[test]
+fn the_cause_of_an_end_leads_the_message() {
+    let _machine = whole_machine();
+    let running = under_way();
+    let frames = running.dir().join("frames");
+    std::fs::rename(&frames, running.dir().join("aside")).unwrap();
+    std::fs::write(&frames, "in the way").unwrap();
+    let outcome = running.wait();
+    assert_eq!(outcome.code(), Some(2));
+    let error = outcome.report().error.unwrap();
+    assert!(error.contains("frames/") && error.contains("cannot "), "{error}");
+    assert!(error.contains("step ") && outcome.stderr.contains("log.txt"), "{}", outcome.stderr);
+    drop(outcome);
+    let line = "echo no such key >&2; exit 3";
+    let outcome = scene("spring-block").argument("--solid").argument(line).start().wait();
+    assert_eq!(outcome.code(), Some(2));
+    let error = "the solid process ended (exit status: 3) before the run had begun: no such key";
+    assert_eq!(outcome.report().error.as_deref(), Some(error));
+}
+
 /// As `timeout`, systemd or Slurm do: every process hears it.
 #[test]
 fn a_signal_to_all_processes_stops_the_run_in_order() {
@@ -219,6 +273,32 @@ fn nobody_has_to_read_what_a_run_says() {
     assert_eq!(status.unwrap().code(), Some(0));
     let refused = std::process::Command::new("sh").arg("-c").arg(line).status();
     assert_eq!(refused.unwrap().code(), Some(1), "a wrong scene, and no panic");
+}
+
+/// What the machine does not have is said before anything is done, an earlier run removed among it.
+#[test]
+fn a_run_that_cannot_be_held_is_refused_at_its_start() {
+    let folder = tempfile::tempdir().unwrap();
+    let dir = folder.path().join("run");
+    std::fs::create_dir(&dir).unwrap();
+    std::fs::write(dir.join("run.json"), "{}").unwrap();
+    let gate = || scene("elastic-gate").set("resolution", 0.0025).out(&dir).argument("--force");
+    let outcome = gate().set("resolution", 0.0002).set("output.frame_interval", 4.1e-6).outcome();
+    assert_eq!(outcome.code(), Some(1));
+    let expected = "97562 frames among it, and ";
+    assert!(outcome.stderr.contains(expected), "{}", outcome.stderr);
+    assert!(outcome.stderr.contains("raise output.frame_interval"), "{}", outcome.stderr);
+    let line = format!(
+        "ulimit -n 40; exec {} run {} --set resolution=0.0025 --force --out {} 2>&1",
+        program().display(),
+        repository().join("scenes/elastic-gate.toml").display(),
+        dir.display()
+    );
+    let output = std::process::Command::new("sh").arg("-c").arg(line).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("needs about 104 at once, "), "{said}");
+    assert_eq!(std::fs::read_to_string(dir.join("run.json")).unwrap(), "{}", "it was not touched");
 }
 
 #[test]

@@ -133,6 +133,36 @@ fn a_torn_generation_is_passed_over_and_a_changed_run_is_refused() {
     refused("has no whole checkpoint");
 }
 
+/// What lies before the checkpoint must be what the run has written: the end shall be that of one run.
+#[test]
+fn what_was_changed_since_the_checkpoint_is_noticed() {
+    let folder = tempfile::tempdir().unwrap();
+    let dir = folder.path().join("run");
+    let tank = |until: f64| {
+        let tank = scene("hydrostatic-tank").set("output.checkpoint_interval", 0.01);
+        tank.set("output.frame_interval", 0.005).set("output.probe_interval", 0.01).until(until)
+    };
+    tank(0.05).out(&dir).run();
+    let refused = |until: f64, expected: &str| {
+        let outcome = scene("hydrostatic-tank").resume(&dir).until(until).outcome();
+        assert_eq!(outcome.code(), Some(1));
+        assert!(outcome.stderr.contains(expected), "{}", outcome.stderr);
+    };
+    refused(0.045, "the run has reached 0.05 s, and --until 0.045 s would discard its end");
+    let (frame, probes) = (dir.join("frames/fluid_000002.hdf"), dir.join("probes.csv"));
+    let (kept, rows) = (std::fs::read(&frame).unwrap(), std::fs::read_to_string(&probes).unwrap());
+    std::fs::remove_file(&frame).unwrap();
+    refused(0.06, "fluid_000002.hdf: this frame was written before the checkpoint and is missing");
+    std::fs::write(&frame, kept).unwrap();
+    std::fs::write(&probes, rows.replacen("\n0.01", "\n0.02", 1)).unwrap();
+    refused(0.06, "its rows up to the checkpoint are not those that the run has written");
+    std::fs::write(&probes, rows).unwrap();
+    let resumed = scene("hydrostatic-tank").resume(&dir).until(0.06).run();
+    let whole = tank(0.06).run();
+    assert_eq!(resumed.state_hash(), whole.state_hash());
+    assert_eq!(files(&dir), files(whole.dir()));
+}
+
 /// Whatever is refused stays as it was, and can be resumed when it is mended.
 #[test]
 fn a_refused_resume_changes_nothing() {
@@ -168,7 +198,8 @@ fn a_refused_resume_changes_nothing() {
     std::fs::write(&victim, "mine").unwrap();
     let index = dir.join("frames/fluid.hdf.series");
     let text = std::fs::read_to_string(&index).unwrap();
-    std::fs::write(&index, text.replacen("fluid_000000.hdf", "../../victim.hdf", 1)).unwrap();
+    assert!(text.contains("fluid_000012.hdf"), "written after the checkpoint");
+    std::fs::write(&index, text.replacen("fluid_000012.hdf", "../../victim.hdf", 1)).unwrap();
     let refused = scene("hydrostatic-tank").resume(&dir).until(0.07).outcome();
     assert_eq!(refused.code(), Some(1), "{}", refused.stderr);
     assert!(refused.stderr.contains("is no frame of the fluid"), "{}", refused.stderr);

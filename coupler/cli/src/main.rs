@@ -8,6 +8,7 @@ use halfstep_coupling::say;
 use halfstep_coupling::supervise::StopFlags;
 use halfstep_output::checkpoint::{FOLDERS, MANIFEST};
 use halfstep_output::run_json::RunStatus;
+use halfstep_output::{draw_contact, draw_plot};
 use halfstep_scene::{self as scene, Scene};
 use halfstep_sph::lane::Isa;
 use halfstep_study::command::{StudyArguments, study};
@@ -40,6 +41,11 @@ enum Command {
     },
     /// Goes on with an interrupted run from its last checkpoint, to the same bits
     Resume(ResumeArguments),
+    /// Draws plot.png and contact.png of a run from what is on disk, also of one that goes on or was killed
+    Plot {
+        /// Folder of the run
+        dir: PathBuf,
+    },
     Study(StudyArguments),
     /// A role's process; started by `run`
     #[command(hide = true)]
@@ -107,6 +113,10 @@ struct HowArguments {
     /// How long a participant that is alive may be silent, s
     #[arg(long, value_name = "SECONDS", default_value_t = 600.0, value_parser = seconds, allow_negative_numbers = true)]
     patience: f64,
+    /// What to do when a run has diverged: `stop`, or `retry`, which goes back to the last checkpoint with half the
+    /// time step, at most 3 times or as often as `retry=N` says
+    #[arg(long, value_name = "stop|retry[=N]", default_value = "stop", value_parser = retries, hide_default_value = true)]
+    on_divergence: u32,
     /// How long to wait for a solid started by hand, s
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = seconds, allow_negative_numbers = true)]
     solid_wait: f64,
@@ -119,6 +129,18 @@ fn seconds(text: &str) -> Result<f64, String> {
         Ok(_) => Err("must be greater than 0 and at most 1e6 s".into()),
         Err(error) => Err(error.to_string()),
     }
+}
+
+/// How often a run that has diverged is retried.
+fn retries(text: &str) -> Result<u32, String> {
+    let number = match text {
+        "stop" => return Ok(0),
+        "retry" => return Ok(3),
+        _ => text.strip_prefix("retry=").and_then(|number| number.parse().ok()),
+    };
+    number
+        .filter(|n| (1..=20).contains(n))
+        .ok_or_else(|| "must be stop, retry, or retry=N with N from 1 to 20".into())
 }
 
 fn main() -> ExitCode {
@@ -148,6 +170,7 @@ fn main() -> ExitCode {
         },
         Command::Explain { scene, json } => explain_scene(&scene, json, isa),
         Command::Resume(arguments) => resume(&arguments, isa),
+        Command::Plot { dir } => plot(&dir),
         Command::Study(arguments) => study(arguments),
         Command::Role { name } => ExitCode::from(halfstep::serve_role(&name, isa)),
     }
@@ -228,6 +251,27 @@ fn resume(arguments: &ResumeArguments, isa: Isa) -> ExitCode {
     }
 }
 
+fn plot(dir: &Path) -> ExitCode {
+    let scene = match run::read_scene(dir) {
+        Ok(scene) => scene,
+        Err(error) => return usage(&error),
+    };
+    let pictures = [draw_plot(&scene, dir).map(Some), draw_contact(&scene, dir)];
+    let mut drawn = false;
+    for picture in pictures {
+        match picture {
+            Ok(Some(path)) => {
+                drawn = true;
+                say::tell(format_args!("{}", path.display()));
+            }
+            // There is no frame yet.
+            Ok(None) => {}
+            Err(error) => say::warn(format_args!("error: {error}")),
+        }
+    }
+    ExitCode::from(u8::from(!drawn))
+}
+
 /// Nothing was started.
 fn usage(error: &dyn std::fmt::Display) -> ExitCode {
     say::warn(format_args!("error: {error}"));
@@ -241,6 +285,12 @@ fn options(
     foreign: Vec<(Name, SolidSource)>,
     isa: Isa,
 ) -> Result<RunOptions, String> {
+    if how.on_divergence > 0 && foreign.iter().any(|(_, source)| *source == SolidSource::ByHand) {
+        return Err(
+            "--on-divergence retry starts all participants anew: it cannot with a solid started by hand"
+                .into(),
+        );
+    }
     let own = || std::env::current_exe().map_err(|e| format!("cannot find the own program: {e}"));
     let launcher = if how.in_process { None } else { Some(Launcher { program: own()? }) };
     Ok(RunOptions {
@@ -253,6 +303,7 @@ fn options(
         foreign,
         solid_wait: how.solid_wait,
         patience: how.patience,
+        retries: how.on_divergence,
         isa,
         ..RunOptions::new(out)
     })
@@ -268,8 +319,14 @@ fn tell(scene: &Scene, out: &Path, (report, error): run::Ended) -> ExitCode {
     }
     // What could be drawn: a run may have lost what its picture is made of.
     let picture = Some(out.join("plot.png")).filter(|picture| picture.exists());
+    let how = match report.status {
+        Some(RunStatus::Finished) => "finished",
+        Some(RunStatus::Stopped) => "stopped",
+        Some(RunStatus::Diverged) => "diverged",
+        _ => "failed",
+    };
     say::tell(format_args!(
-        "{}: {} steps to t = {} s in {:.1} s; see {}",
+        "{}: {how}, {} steps to t = {} s in {:.1} s; see {}",
         scene.name,
         report.steps,
         report.time,

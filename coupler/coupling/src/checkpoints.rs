@@ -30,6 +30,8 @@ pub struct Checkpoints {
     number: u64,
     /// What the manifest of a checkpoint that is not whole yet will say.
     pending: Option<Manifest>,
+    /// Number of frames that were ordered before it.
+    frames: u64,
     manifest: Manifest,
     participants: Vec<Name>,
 }
@@ -63,6 +65,7 @@ impl Checkpoints {
             last: now,
             number,
             pending: None,
+            frames: 0,
             manifest: Manifest {
                 version: env!("CARGO_PKG_VERSION").into(),
                 isa: isa.into(),
@@ -85,11 +88,13 @@ impl Checkpoints {
         stopped || by_interval || by_duration || worth && clock.is_about_to_clip(limits)
     }
 
-    /// Begins a checkpoint of the state at n with the coupler's part; returns its number.
+    /// Begins a checkpoint of the state at n, before which so many frames were ordered, with the coupler's part;
+    /// returns its number.
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn begin(&mut self, coupler: &Group, clock: &Clock) -> Result<u64, OutputError> {
+    pub fn begin(&mut self, coupler: &Group, clock: &Clock, frames: u64) -> Result<u64, OutputError> {
+        self.frames = frames;
         if let Some(interval) = self.interval {
             self.next = self.next.max(instants(clock.time(), interval)) + 1;
         }
@@ -105,14 +110,17 @@ impl Checkpoints {
         Ok(self.number)
     }
 
-    /// Completes the pending checkpoint where all participants have theirs on disk. `safe` are the numbers of their
-    /// last ones.
+    /// Completes the pending checkpoint where all participants have theirs on disk, and the frames before it. `safe`
+    /// are the numbers of their last ones and of the frames that are safe.
     ///
     /// # Errors
     /// The manifest cannot be written.
-    pub fn complete(&mut self, mut safe: impl Iterator<Item = u32>) -> Result<(), OutputError> {
-        let Some(manifest) = self.pending.take_if(|own| safe.all(|safe| u64::from(safe) >= own.number))
-        else {
+    pub fn complete(&mut self, mut safe: impl Iterator<Item = (u32, u32)>) -> Result<(), OutputError> {
+        let frames = self.frames;
+        let is_safe = |number: u64, (own, own_frames): (u32, u32)| {
+            u64::from(own) >= number && u64::from(own_frames) >= frames
+        };
+        let Some(manifest) = self.pending.take_if(|own| safe.all(|safe| is_safe(own.number, safe))) else {
             return Ok(());
         };
         let mut files: Vec<String> = self.participants.iter().map(|name| file_name(name.as_str())).collect();

@@ -5,7 +5,7 @@ use halfstep_wire::Name;
 use halfstep_wire::failure::{Diverged, Quantity};
 use halfstep_wire::half_step::{HalfStep, Stage};
 use halfstep_wire::protocol::order;
-use halfstep_wire::state::{Fields, State, StateError};
+use halfstep_wire::state::{Column, Fields, Group, State, StateError};
 
 /// Growth of the time step from one step to the next.
 const GROWTH: f64 = 1.1;
@@ -26,6 +26,8 @@ pub struct Clock {
     rows: Periodic,
     /// A step was shortened to meet the end: times are no longer those of a run with a later end.
     clipped: bool,
+    /// Part of the limits that is taken.
+    factor: f64,
 }
 
 /// Largest time step that a participant is stable with.
@@ -92,6 +94,14 @@ impl Tick {
     }
 }
 
+/// Name of the part in a saved clock.
+const FACTOR: &str = "factor";
+
+/// Lets a saved clock take this part of the limits, or of the scene's own time step.
+pub fn shorten(clock: &mut Group, factor: f64) {
+    clock.columns.insert(FACTOR.into(), Column::Reals(vec![factor]));
+}
+
 impl Clock {
     /// A clock at time zero.
     pub fn new(scene: &Scene) -> Self {
@@ -109,7 +119,13 @@ impl Clock {
             frames: Periodic { interval: scene.output.frame_interval, count: 0 },
             rows: Periodic { interval: scene.output.probe_interval, count: 0 },
             clipped: false,
+            factor: 1.0,
         }
+    }
+
+    /// Part of the limits, or of the scene's own time step, that is taken: less than 1 after a run that diverged.
+    pub fn factor(&self) -> f64 {
+        self.factor
     }
 
     /// Time of the state at n, s.
@@ -178,8 +194,11 @@ impl Clock {
         let limit =
             limits.iter().map(|l| l.dt).fold(f64::INFINITY, |a, b| if b.is_nan() || b < a { b } else { a });
         match self.fixed {
-            Some(dt) => dt,
-            None => self.last_dt.map_or(limit, |last| limit.min(GROWTH * last)),
+            Some(dt) => dt * self.factor,
+            None => {
+                let limit = limit * self.factor;
+                self.last_dt.map_or(limit, |last| limit.min(GROWTH * last))
+            }
         }
     }
 
@@ -201,7 +220,7 @@ impl Clock {
 
     /// Limits that the scene's own time step exceeds, in the order of the participants.
     pub fn exceeded(&self) -> impl Iterator<Item = Limit> + '_ {
-        let above = |l: &Limit| self.fixed.is_some_and(|dt| dt > l.dt * (1.0 + 1e-9));
+        let above = |l: &Limit| self.fixed.is_some_and(|dt| dt * self.factor > l.dt * (1.0 + 1e-9));
         self.limits.iter().copied().filter(above)
     }
 
@@ -220,6 +239,7 @@ impl State for Clock {
         fields.count("frames", &mut self.frames.count)?;
         fields.count("rows", &mut self.rows.count)?;
         fields.flag("clipped", &mut self.clipped)?;
+        fields.real(FACTOR, &mut self.factor)?;
         let names = self.warned.iter().map(Name::to_string).collect::<Vec<_>>();
         let mut warned = names.join(" ");
         fields.text("warned", &mut warned)?;
@@ -230,6 +250,7 @@ impl State for Clock {
 
     fn restored(&mut self) -> Result<(), StateError> {
         let sound = self.time.is_finite() && self.time >= 0.0 && self.last_dt.is_none_or(|dt| dt > 0.0);
+        let sound = sound && self.factor > 0.0 && self.factor <= 1.0;
         if sound { Ok(()) } else { Err(StateError::contradiction("the clock shows no time")) }
     }
 }
@@ -250,6 +271,7 @@ mod tests {
             frames: Periodic { interval: 0.25, count: 0 },
             rows: Periodic { interval: 0.1, count: 0 },
             clipped: false,
+            factor: 1.0,
         }
     }
 
@@ -293,6 +315,20 @@ mod tests {
             second.load(&first.save()).unwrap();
             let (rest, ..) = run(second, limit);
             assert_eq!(rest, whole[stop..]);
+        }
+    }
+
+    #[test]
+    fn a_saved_clock_may_go_on_with_a_part_of_the_step() {
+        for (fixed, limit, first) in [(Some(0.1), f64::NAN, 0.1), (None, 0.08, 0.08)] {
+            let mut saved = clock(1.0, fixed).save();
+            let mut shortened = clock(1.0, fixed);
+            shorten(&mut saved, 0.5);
+            shortened.load(&saved).unwrap();
+            let tick = shortened.tick(&[of_fluid(limit)], false).unwrap();
+            assert_eq!((tick.dt, shortened.factor()), (Some(0.5 * first), 0.5));
+            shorten(&mut saved, 0.0);
+            assert!(clock(1.0, fixed).load(&saved).is_err());
         }
     }
 

@@ -131,6 +131,10 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
         self.receive(&course.progress, &Expect::of(&self.half_step))?;
         if self.abilities.is_empty() {
             self.abilities = self.states.iter().map(|state| state.header().abilities).collect();
+            let unable = self.abilities.iter().position(|abilities| abilities & ability::CHECKPOINTS == 0);
+            if let Some(place) = unable.filter(|_| course.must_save) {
+                return Err(RunError::NoCheckpoints { participant: self.port.name(place) });
+            }
             match self.resumed {
                 true => self.check_resumed()?,
                 false => self.solids.begin(&self.states),
@@ -152,7 +156,9 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
         // Energy from nowhere ends the run in order, with its last state on disk.
         let tick = course.clock.tick(&limits, self.stopped || self.grown.is_some())?;
         let checkpoint = match (saved, &mut course.checkpoints, &self.grown) {
-            (Some(saved), Some(checkpoints), None) => Some(checkpoints.begin(&saved, &course.clock)?),
+            (Some(saved), Some(checkpoints), None) => {
+                Some(checkpoints.begin(&saved, &course.clock, self.frame)?)
+            }
             _ => None,
         };
         self.half_step = tick.half_step();
@@ -200,6 +206,7 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
     pub fn end(&mut self, course: &mut Course) -> Result<Outcome, RunError> {
         self.receive(&course.progress, &Expect::last(self.half_step.step))?;
         self.solids.finish()?;
+        // All frames of foreign solids are on disk.
         self.complete_checkpoint(course)?;
         self.checks += self.states.len() as u64;
         if let Some(diverged) = self.grown.take() {
@@ -212,7 +219,16 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
 
     fn complete_checkpoint(&self, course: &mut Course) -> Result<(), RunError> {
         let Some(checkpoints) = &mut course.checkpoints else { return Ok(()) };
-        Ok(checkpoints.complete(self.states.iter().map(|state| state.header().checkpoint_safe))?)
+        let safe = |(place, state): (usize, &P::State)| {
+            let header = state.header();
+            let frames = if self.solids.is_foreign(place) {
+                self.solids.frames_safe(place)
+            } else {
+                header.frames_safe
+            };
+            (header.checkpoint_safe, frames)
+        };
+        Ok(checkpoints.complete(self.states.iter().enumerate().map(safe))?)
     }
 
     /// The state of clock, recorder and coupler where a checkpoint is due and all participants can write theirs.

@@ -14,6 +14,8 @@ pub struct Course {
     pub recorder: Recorder,
     /// `None`: nothing is saved.
     pub checkpoints: Option<Checkpoints>,
+    /// The run shall not begin with a participant that writes no checkpoints.
+    pub must_save: bool,
     /// Set, it ends the run at the next state n.
     pub stop: Arc<AtomicBool>,
     /// For who watches the run.

@@ -102,6 +102,12 @@ pub enum RunError {
     /// A role in this process failed.
     #[error(transparent)]
     Role(RoleError),
+    /// A participant cannot be set back.
+    #[error("--on-divergence retry needs checkpoints, and the {participant} writes none")]
+    NoCheckpoints {
+        /// Which.
+        participant: Name,
+    },
     /// A checkpoint is not one of this run.
     #[error("cannot resume: {0}")]
     Resume(String),

@@ -111,8 +111,13 @@ impl ForeignSolid {
     ///
     /// # Errors
     /// A frame could not be written.
-    pub fn finish(self) -> Result<(), OutputError> {
-        self.writer.finish().map(|_| ())
+    pub fn finish(&mut self) -> Result<(), OutputError> {
+        self.writer.wait()
+    }
+
+    /// Number of frames that are on disk.
+    pub fn frames_safe(&self) -> u32 {
+        self.writer.safe()
     }
 }
 

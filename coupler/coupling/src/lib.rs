@@ -22,6 +22,7 @@ pub mod energy;
 pub mod error;
 pub mod foreign;
 pub mod local;
+pub mod no_room;
 pub mod recorder;
 pub mod reports;
 pub mod roles;

@@ -262,6 +262,11 @@ impl<const D: usize> LocalRun<D> {
         self.end()
     }
 
+    /// The time line and what is written down, to be ended where a step has failed.
+    pub fn course_mut(&mut self) -> &mut Course {
+        &mut self.course
+    }
+
     /// The time line and what is written down.
     pub fn course(&self) -> &Course {
         &self.course

@@ -5,6 +5,7 @@ use crate::energy::{self, Account, EnergyBalance};
 use crate::error::RunError;
 use crate::roles::measured_by;
 use crate::say;
+use halfstep_output::probes::Logged;
 use halfstep_output::{OutputError, ProbeLog, RunReport, run_json};
 use halfstep_scene::{Phase, Scene};
 use halfstep_wire::failure::Diverged;
@@ -43,8 +44,8 @@ impl<'a> Measured<'a> {
 /// Probe log, statistics and progress of a run.
 pub struct Recorder {
     log: Option<ProbeLog>,
-    /// Length of the log when it was last synchronised, bytes.
-    log_bytes: u64,
+    /// The log when it was last synchronised.
+    logged: Logged,
     /// What a crash of the machine leaves of the run's report: its file, and when it was written last.
     report: Option<(PathBuf, RunReport)>,
     renewed: Instant,
@@ -117,7 +118,7 @@ impl Recorder {
             isolated,
             balance: EnergyBalance::new(scene),
             earlier: 0.0,
-            log_bytes: 0,
+            logged: Logged::default(),
             report: None,
             renewed: now,
         }
@@ -160,8 +161,7 @@ impl Recorder {
     /// The checkpoint is none of this scene, or the log lacks rows.
     pub fn resume(mut self, scene: &Scene, log: Option<&Path>, state: &Group) -> Result<Self, RunError> {
         self.load(state)?;
-        self.log =
-            log.map(|path| ProbeLog::resume(path, &Self::columns(scene), self.log_bytes)).transpose()?;
+        self.log = log.map(|path| ProbeLog::resume(path, &Self::columns(scene), self.logged)).transpose()?;
         Ok(self)
     }
 
@@ -176,7 +176,7 @@ impl Recorder {
     /// The disk refuses.
     pub fn synchronise(&mut self) -> Result<(), OutputError> {
         if let Some(log) = &self.log {
-            self.log_bytes = log.synchronise()?;
+            self.logged = log.synchronise()?;
         }
         Ok(())
     }
@@ -268,7 +268,7 @@ impl Recorder {
     }
 
     /// Puts the statistics into the report.
-    pub fn finish(self, report: &mut RunReport) {
+    pub fn finish(&self, report: &mut RunReport) {
         self.bar.finish_and_clear();
         report.steps = self.steps;
         report.time = self.time;
@@ -303,7 +303,8 @@ impl State for Recorder {
         if fields.loading() {
             self.earlier = wall_seconds;
         }
-        fields.count("log_bytes", &mut self.log_bytes)?;
+        fields.count("log_bytes", &mut self.logged.bytes)?;
+        fields.count("log_hash", &mut self.logged.hash)?;
         fields.count("steps", &mut self.steps)?;
         fields.real("time", &mut self.time)?;
         fields.real("least_dt", &mut self.dt.0)?;

@@ -137,9 +137,15 @@ impl<const D: usize> Solids<D> {
         Some((side.foreign.as_mut()?, &side.forces))
     }
 
+    /// Number of frames of a foreign solid that are on disk.
+    pub(crate) fn frames_safe(&self, place: usize) -> u32 {
+        let side = place.checked_sub(self.first).map(|solid| &self.solids[solid]);
+        side.and_then(|side| side.foreign.as_ref()).map_or(u32::MAX, ForeignSolid::frames_safe)
+    }
+
     /// Waits until the frames of foreign solids are on disk.
     pub(crate) fn finish(&mut self) -> Result<(), RunError> {
-        let mut foreign = self.solids.iter_mut().filter_map(|side| side.foreign.take());
+        let mut foreign = self.solids.iter_mut().filter_map(|side| side.foreign.as_mut());
         Ok(foreign.try_for_each(ForeignSolid::finish)?)
     }
 

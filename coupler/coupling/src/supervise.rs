@@ -125,7 +125,7 @@ impl Children {
         self.start(participant.name, command, true)?;
         // The shell's death signal does not reach what the shell has started.
         let Some(child) = self.children.last_mut() else { return Ok(()) };
-        child.watchdog = Some(Watchdog::start(child.child.id(), &link.prefix).map_err(|source| {
+        child.watchdog = Some(Watchdog::start(child.child.id(), link).map_err(|source| {
             SuperviseError::Start { role: participant.name, command: "sh".into(), source }
         })?);
         Ok(())
@@ -280,13 +280,17 @@ fn bind_to_parent(parent: u32, foreign: bool) -> io::Result<()> {
 struct Watchdog(Child);
 
 impl Watchdog {
-    /// What it does, with the group and the prefix of the run's objects as arguments.
+    /// What it does, with the group, the prefix of the run's objects and its folder as arguments.
     const SCRIPT: &str = "trap '' HUP INT TERM; read -r _; kill -s TERM -- \"-$1\"; sleep 1; \
-                          kill -s KILL -- \"-$1\"; rm -f -- /dev/shm/\"$2\"*";
+                          kill -s KILL -- \"-$1\"; rm -f -- /dev/shm/\"$2\"*; rm -rf -- \"$3\"";
 
-    fn start(group: u32, prefix: &str) -> io::Result<Self> {
+    fn start(group: u32, link: &LinkConfig) -> io::Result<Self> {
+        let LinkConfig { prefix, root, .. } = link;
+        // Only a folder that is the run's own by its name.
+        let is_own = root.file_name().is_some_and(|name| prefix.trim_end_matches('_') == name);
         let mut command = Command::new("sh");
         command.args(["-c", Self::SCRIPT, "halfstep-watchdog", &group.to_string(), prefix]);
+        command.arg(if is_own { root.as_os_str() } else { OsStr::new("") });
         command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null()).process_group(0);
         command.spawn().map(Self)
     }

@@ -1,14 +1,15 @@
 //! What a scene asks for, before anything is run.
 
+use crate::forecast::{self, Forecast, megabytes};
 use crate::step_cost::step_cost;
 use crate::{effects, remarks};
 use halfstep_coupling::roles;
-use halfstep_link::LinkConfig;
 use halfstep_scene::geometry;
 use halfstep_scene::{self as scene, Phase, Scene, TimeStep, dispatch};
 use halfstep_solid::SubStepping;
 use halfstep_sph::lane::Isa;
 use std::fmt::Write;
+use std::path::Path;
 
 /// A text of counts, time steps, memory and an estimate of the run time.
 ///
@@ -78,13 +79,12 @@ fn describe_in<const D: usize>(scene: &Scene, isa: Isa) -> String {
         }
     }
     line("memory", format!("about {:.1} MB", scene::memory_needed(&counts) as f64 / 1e6));
-    if scene.fluid.is_some()
-        && !scene.solids.is_empty()
-        && let Ok(participants) = crate::participants::participants(scene, &layout, &[])
-    {
-        let bytes = LinkConfig::new(participants).shared_memory_bytes();
-        line("shared memory", format!("{:.1} MB", bytes as f64 / 1e6));
+    let Forecast { shared, disk, frames } = Forecast::of(scene, &layout, &[]);
+    if shared > 0 {
+        line("shared memory", megabytes(shared));
     }
+    let free = forecast::free_disk(Path::new(".")).map(|free| format!(", {} are free here", megabytes(free)));
+    line("disk", format!("about {}, {frames} frames{}", megabytes(disk), free.unwrap_or_default()));
     let costs: Option<Vec<f64>> = built.into_iter().map(|role| step_cost(role, dt)).collect();
     let seconds = costs.map(|costs| costs.into_iter().fold(0.0, f64::max) * scene.end_time / dt);
     line(

@@ -1,6 +1,7 @@
 //! Finding the checkpoint that an interrupted run goes on from.
 
 use halfstep_coupling::checkpoints::scene_hash;
+use halfstep_coupling::clock;
 use halfstep_coupling::error::RunError;
 use halfstep_coupling::say;
 use halfstep_output::checkpoint::{COUPLER, FOLDERS, Manifest, file, file_name};
@@ -28,7 +29,7 @@ impl Checkpoint {
     /// # Errors
     /// There is none, or it is of another scene, program or instruction set.
     pub(crate) fn newest(run: &Path, scene: &Scene, isa: Isa) -> Result<Self, RunError> {
-        let (mut found, mut torn) = (Vec::new(), Vec::new());
+        let (mut found, mut torn, mut begun) = (Vec::new(), Vec::new(), Vec::new());
         let participants = scene.participants().into_iter().map(|participant| file_name(&participant.name));
         let expected: Vec<String> = participants.chain([COUPLER.to_owned()]).collect();
         for name in FOLDERS {
@@ -38,13 +39,15 @@ impl Checkpoint {
                     torn.push(format!("{name} is not of the scene's participants"));
                 }
                 Ok(Some(manifest)) => found.push((manifest, folder)),
-                Ok(None) if folder.join(COUPLER).exists() => torn.push(format!("{name} is not complete")),
+                // An interruption that comes while a checkpoint is written is nothing to warn of.
+                Ok(None) if folder.join(COUPLER).exists() => begun.push(format!("{name} is not complete")),
                 Ok(None) => {}
                 Err(error) => torn.push(error.to_string()),
             }
         }
         found.sort_by_key(|(manifest, _)| manifest.number);
         let Some((manifest, folder)) = found.pop() else {
+            torn.append(&mut begun);
             let reasons = if torn.is_empty() { "it has written none".into() } else { torn.join("; ") };
             let reason = format!("{} has no whole checkpoint: {reasons}", run.display());
             return Err(RunError::Resume(reason));
@@ -87,6 +90,21 @@ impl Checkpoint {
         self.coupler.groups.get(name).ok_or_else(missing)
     }
 
+    /// Part of the time step that the run took when it was written.
+    pub(crate) fn factor(&self) -> f64 {
+        match self.part("clock").ok().and_then(|clock| clock.columns.get("factor")) {
+            Some(Column::Reals(factor)) if factor.len() == 1 => factor[0],
+            _ => 1.0,
+        }
+    }
+
+    /// Lets the run go on from it with this part of the time step.
+    pub(crate) fn shorten(&mut self, factor: f64) {
+        if let Some(clock) = self.coupler.groups.get_mut("clock") {
+            clock::shorten(clock, factor);
+        }
+    }
+
     /// Number of frames of each participant before the checkpoint.
     pub(crate) fn frames(&self) -> Result<u64, RunError> {
         match self.part("coupler")?.columns.get("frame") {
@@ -98,6 +116,6 @@ impl Checkpoint {
     /// How the report tells of it.
     pub(crate) fn resumption(&self) -> Resumption {
         let Manifest { number, step, time, .. } = self.manifest;
-        Resumption { checkpoint: number, step, time }
+        Resumption { checkpoint: number, step, time, time_step_factor: self.factor(), because: None }
     }
 }

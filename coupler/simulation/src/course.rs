@@ -36,6 +36,9 @@ pub(crate) fn begin(
     let recorder = match from {
         Some(from) => {
             let (frames, state) = (from.frames()?, from.part("recorder")?);
+            for participant in scene.participants() {
+                folder.map_or(Ok(()), |folder| folder.check_frames(&participant.name, frames))?;
+            }
             let recorder = Recorder::new(scene, None, quiet).resume(scene, probes.as_deref(), state)?;
             folder.map_or(Ok(()), |folder| folder.forget_frames(frames))?;
             recorder
@@ -56,7 +59,14 @@ pub(crate) fn begin(
         }
         None => None,
     };
-    Ok(Course { clock: Clock::new(scene), recorder, checkpoints, stop, progress: Arc::default() })
+    Ok(Course {
+        clock: Clock::new(scene),
+        recorder,
+        checkpoints,
+        must_save: false,
+        stop,
+        progress: Arc::default(),
+    })
 }
 
 /// Names of a scene's participants.
@@ -80,20 +90,20 @@ pub(crate) fn report_local(
 
 /// Completes the report of a run that was stopped or not, or failed, and writes what stands at its end.
 pub(crate) fn end(
-    course: Course,
+    course: &mut Course,
     result: Result<bool, RunError>,
     scene: &Scene,
     foreign: &[(Name, SolidSource)],
     folder: Option<&RunDirectory>,
     mut report: RunReport,
 ) -> (RunReport, Option<RunError>) {
-    let Course { clock, mut recorder, .. } = course;
+    let Course { clock, recorder, .. } = course;
     // Rows that are lost make a run fail that has nothing else to complain of.
     let rows = recorder.synchronise();
     let result = result.and_then(|stopped| Ok(rows.map(|()| stopped)?));
     recorder.finish(&mut report);
     let foreign: Vec<Name> = foreign.iter().map(|(name, _)| *name).collect();
-    let mut error = conclude(result, scene, &clock, &foreign, &mut report);
+    let mut error = conclude(result, scene, clock, &foreign, &mut report);
     let remarked = remarks::outcome(&report);
     remarked.iter().for_each(|warning| tracing::warn!("{warning}"));
     report.warnings.extend(remarked);

@@ -26,6 +26,7 @@ mod course;
 mod effects;
 mod error;
 pub mod explain;
+mod forecast;
 pub mod isa;
 pub mod options;
 mod participants;

@@ -46,6 +46,8 @@ pub struct RunOptions {
     pub solid_wait: f64,
     /// How long a participant that is alive may be silent, s.
     pub patience: f64,
+    /// How often a run that has diverged goes back to its last checkpoint, with half the time step each time.
+    pub retries: u32,
     /// Instruction set of every role; one that the processor has.
     pub isa: Isa,
 }
@@ -64,6 +66,7 @@ impl RunOptions {
             foreign: Vec::new(),
             solid_wait: 60.0,
             patience: 600.0,
+            retries: 0,
             isa: Isa::detect(),
         }
     }

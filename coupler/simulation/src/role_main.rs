@@ -1,8 +1,8 @@
 //! The process of a role: what a program becomes that a [`crate::Launcher`] starts.
 
 use crate::isa;
-use halfstep_coupling::say;
 use halfstep_coupling::supervise::abort_flag;
+use halfstep_coupling::{no_room, say};
 use halfstep_coupling::{reports, roles};
 use halfstep_role::lockstep::RoleError;
 use halfstep_role::serve::serve_process;
@@ -40,6 +40,11 @@ pub fn serve_role(name: &str, isa: Isa) -> u8 {
         }
     };
     let launcher = parent_id();
+    // In the form of the log's other lines.
+    let said = format!("- ERROR {}: {process}: {}\n", module_path!(), no_room::REASON);
+    if let Err(error) = no_room::prepare(said, None) {
+        tracing::warn!("{process}: a want of shared memory would not be told: {error}");
+    }
     let result = abort_flag()
         .map_err(|e| RoleError::Start(format!("cannot watch for signals: {e}")))
         .and_then(|abort| {

@@ -3,12 +3,13 @@
 use crate::checkpoint::Checkpoint;
 use crate::options::{RunOptions, known_solid};
 use crate::session::Session;
-use crate::{course, effects, remarks};
+use crate::{course, effects, forecast, remarks};
 use halfstep_coupling::course::Course;
 use halfstep_coupling::error::RunError;
 use halfstep_coupling::local::LocalRun;
 use halfstep_coupling::roles;
-use halfstep_output::run_json::{Particles, RunStatus};
+use halfstep_coupling::say;
+use halfstep_output::run_json::{Particles, Resumption, RunStatus};
 use halfstep_output::{RunDirectory, RunReport};
 use halfstep_role::serve;
 use halfstep_scene::{Scene, dispatch, geometry};
@@ -25,8 +26,42 @@ pub type Ended = (RunReport, Option<RunError>);
 /// Nothing could be started or written. A run that failed is a report with its error.
 pub fn run(scene: &Scene, options: &RunOptions) -> Result<Ended, RunError> {
     check_foreign(scene, options)?;
+    // Before an earlier run is removed.
+    check_resources(scene, options)?;
     let directory = RunDirectory::create(&options.out, options.force)?;
-    execute(scene, options, &directory, None)
+    let ended = execute(scene, options, &directory, None)?;
+    retry(scene, options, &directory, ended, 1.0)
+}
+
+/// Lets a run that has diverged go on from its last checkpoint with half the time step, as often as the options say.
+fn retry(
+    scene: &Scene,
+    options: &RunOptions,
+    directory: &RunDirectory,
+    mut ended: Ended,
+    mut factor: f64,
+) -> Result<Ended, RunError> {
+    for attempt in 1..=options.retries {
+        let (mut report, Some(RunError::Diverged { diverged, hint })) = ended else { return Ok(ended) };
+        let mut checkpoint = match Checkpoint::newest(directory.path(), scene, options.isa) {
+            Ok(checkpoint) => checkpoint,
+            Err(error) => {
+                say::warn(format_args!("warning: the diverged run has nothing to go back to: {error}"));
+                return Ok((report, Some(RunError::Diverged { diverged, hint })));
+            }
+        };
+        factor *= 0.5;
+        checkpoint.shorten(factor);
+        let told = format!(
+            "{diverged}; attempt {attempt} of {}: on from step {}, t = {:.6e} s, with {factor} of the time step",
+            options.retries, checkpoint.manifest.step, checkpoint.manifest.time
+        );
+        tracing::warn!("{told}");
+        say::warn(format_args!("warning: {told}"));
+        report.error = Some(diverged.to_string());
+        ended = execute(scene, options, directory, Some((checkpoint, report)))?;
+    }
+    Ok(ended)
 }
 
 /// Goes on with the interrupted run in the folder of the options: from its last whole checkpoint, to the same bits as
@@ -53,6 +88,13 @@ pub fn resume(options: &RunOptions, until: Option<f64>) -> Result<(Scene, Ended)
             );
             return Err(RunError::Resume(reason));
         }
+        Some(until) if earlier.status == Some(RunStatus::Finished) && until < earlier.time => {
+            let reason = format!(
+                "the run has reached {} s, and --until {until} s would discard its end: start a run of its own for it",
+                earlier.time
+            );
+            return Err(RunError::Resume(reason));
+        }
         Some(until) if until <= checkpoint.manifest.time => {
             let reason =
                 format!("--until {until} s is not after the checkpoint at {} s", checkpoint.manifest.time);
@@ -61,7 +103,10 @@ pub fn resume(options: &RunOptions, until: Option<f64>) -> Result<(Scene, Ended)
         Some(until) => scene.end_time = until,
         None => {}
     }
+    let factor = checkpoint.factor();
+    let earlier = RunReport { error: None, ..earlier };
     let ended = execute(&scene, options, &directory, Some((checkpoint, earlier)))?;
+    let ended = retry(&scene, options, &directory, ended, factor)?;
     Ok((scene, ended))
 }
 
@@ -71,9 +116,19 @@ pub fn resume(options: &RunOptions, until: Option<f64>) -> Result<(Scene, Ended)
 /// There is none that can be read.
 pub fn read_scene(dir: &Path) -> Result<Scene, RunError> {
     let path = dir.join("scene.json");
-    let wrong = |reason: String| RunError::Resume(format!("{}: {reason}", path.display()));
+    let wrong = |reason: String| RunError::System(format!("{}: {reason}", path.display()));
     let text = std::fs::read_to_string(&path).map_err(|error| wrong(error.to_string()))?;
     Scene::from_json(&text).map_err(|error| wrong(error.to_string()))
+}
+
+fn check_resources(scene: &Scene, options: &RunOptions) -> Result<(), RunError> {
+    let foreign = options.foreign_names();
+    let (out, as_processes) = (&options.out, options.launcher.is_some());
+    let checked = dispatch!(scene.dimension, D => {
+        let layout = geometry::layout::<D>(scene);
+        forecast::check(scene, &layout, &foreign, out, as_processes)
+    });
+    checked.unwrap_or_else(|| Err(unknown_dimension(scene)))
 }
 
 fn check_foreign(scene: &Scene, options: &RunOptions) -> Result<(), RunError> {
@@ -128,11 +183,12 @@ fn execute_in<const D: usize>(
     let mut report = begin_report(scene, options.isa)?;
     let checkpoint = resumed.map(|(checkpoint, earlier)| {
         report.resumed = earlier.resumed;
-        report.resumed.push(checkpoint.resumption());
+        report.resumed.push(Resumption { because: earlier.error, ..checkpoint.resumption() });
         checkpoint
     });
     let (stop, from) = (Arc::clone(&options.stop.stop), checkpoint.as_ref());
     let mut course = course::begin(scene, Some(directory), from, stop, options.isa, options.quiet)?;
+    course.must_save = options.retries > 0;
     if options.log {
         start_log(directory)?;
         report.warnings.iter().for_each(|warning| tracing::warn!("{warning}"));
@@ -149,7 +205,7 @@ fn execute_in<const D: usize>(
         course = ended;
         stopped
     };
-    Ok(course::end(course, result, scene, &options.foreign, Some(directory), report))
+    Ok(course::end(&mut course, result, scene, &options.foreign, Some(directory), report))
 }
 
 /// What this process has to say goes to the run's log, beside what its children say.

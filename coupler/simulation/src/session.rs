@@ -10,13 +10,13 @@ use halfstep_coupling::couple::{Coupler, Outcome};
 use halfstep_coupling::course::Course;
 use halfstep_coupling::error::RunError;
 use halfstep_coupling::foreign::ForeignSolid;
-use halfstep_coupling::say;
 use halfstep_coupling::supervise::Children;
+use halfstep_coupling::{no_room, say};
 use halfstep_coupling::{reports, roles};
 use halfstep_link::{
     self as link, Claim, CouplerLink, FLUID, LinkConfig, LinkError, Participant, Processes, Threads,
 };
-use halfstep_output::run_json::Percentiles;
+use halfstep_output::run_json::{Percentiles, RunStatus};
 use halfstep_output::{self as output, RunDirectory, RunReport};
 use halfstep_role::lockstep::RoleError;
 use halfstep_role::report::Report;
@@ -86,7 +86,13 @@ impl<'a, const D: usize> Session<'a, D> {
         let claim = Claim::new(&self.config)?;
         // The coupler's sums are short: one thread, and no worker to wake.
         let outcome = serve::on_threads(1, || match &self.options.launcher {
-            Some(launcher) => self.as_processes(course, launcher),
+            Some(launcher) => {
+                // What the process of a library does with signals is its own affair.
+                if self.options.log {
+                    self.prepare_for_no_room(report)?;
+                }
+                self.as_processes(course, launcher)
+            }
             None if self.options.foreign.is_empty() => self.as_threads(course),
             None => Err(RunError::System("a solid of another program needs a launcher of processes".into())),
         });
@@ -118,6 +124,17 @@ impl<'a, const D: usize> Session<'a, D> {
             report,
         );
         Ok(outcome.stopped)
+    }
+
+    /// The transport may find no room in the middle of making its objects: then the report tells of it.
+    fn prepare_for_no_room(&self, report: &RunReport) -> Result<(), RunError> {
+        let reason = no_room::REASON;
+        let failed =
+            RunReport { status: Some(RunStatus::Failed), error: Some(reason.into()), ..report.clone() };
+        let text = serde_json::to_vec_pretty(&failed).map_err(|e| RunError::System(e.to_string()))?;
+        let path = self.directory.file("run.json");
+        let refused = |e: std::io::Error| RunError::System(format!("cannot watch for signals: {e}"));
+        no_room::prepare(format!("error: {reason}\n"), Some((&path, text))).map_err(refused)
     }
 
     fn as_processes(&self, course: &mut Course, launcher: &Launcher) -> Result<Outcome, RunError> {

@@ -4,6 +4,7 @@ use crate::checkpoint::Checkpoint;
 use crate::error::Error;
 use crate::options::{Launcher, RunOptions, known_solid};
 use crate::{course, effects, run};
+use halfstep_coupling::error::RunError;
 use halfstep_coupling::local::LocalRun;
 use halfstep_coupling::recorder::Recorder;
 use halfstep_coupling::roles;
@@ -209,7 +210,18 @@ impl<X: FluidEffect<D>, const D: usize> Simulation<X, D> {
         let members = own.into_iter().map(|role| roles::equip(role, path, at)).collect::<Result<_, _>>()?;
         let coupler = from.as_ref().map(|from| &from.coupler);
         let run = pool.install(|| LocalRun::new(members, &scene, course, isa, coupler))?;
-        Ok(Running { run, pool, scene, folder, own_solids: names, own_effect, stop, isa, more: true })
+        Ok(Running {
+            run,
+            pool,
+            scene,
+            folder,
+            own_solids: names,
+            own_effect,
+            stop,
+            isa,
+            more: true,
+            failed: false,
+        })
     }
 }
 
@@ -251,19 +263,39 @@ pub struct Running<const D: usize = 2> {
     stop: Arc<AtomicBool>,
     isa: Isa,
     more: bool,
+    failed: bool,
 }
+
+/// What a run says that is used after its failure.
+const FAILED: &str = "the run has failed before: it has no end";
 
 impl<const D: usize> Running<D> {
     /// One step; returns whether there is another one. The end is reached with a last call that takes no step.
     ///
     /// # Errors
-    /// The run diverged, or something could not be written. What was written before is whole.
+    /// The run diverged, or something could not be written. What was written before is whole, and the report in the
+    /// folder, if there is one, tells of it.
     pub fn step(&mut self) -> Result<bool, Error> {
         if self.more {
             let Self { run, pool, .. } = self;
-            self.more = pool.install(|| run.step())?;
+            self.more = match pool.install(|| run.step()) {
+                Ok(more) => more,
+                Err(error) => return Err(self.fail(error)),
+            };
         }
         Ok(self.more)
+    }
+
+    /// Writes what a run leaves that has failed.
+    fn fail(&mut self, error: RunError) -> Error {
+        (self.more, self.failed) = (false, true);
+        let Self { run, scene, folder, isa, .. } = self;
+        let report = match run::begin_report(scene, *isa) {
+            Ok(report) => report,
+            Err(unknown) => return unknown.into(),
+        };
+        let (_, error) = course::end(run.course_mut(), Err(error), scene, &[], folder.as_ref(), report);
+        error.map_or_else(|| Error::Setup(FAILED.into()), Error::from)
     }
 
     /// Lets the next call of [`Self::step`] be the last: the state that it finds is written as the end of a run is.
@@ -321,6 +353,9 @@ impl<const D: usize> Running<D> {
     /// # Errors
     /// The run diverged, or something could not be written.
     pub fn finish(mut self) -> Result<RunReport, Error> {
+        if self.failed {
+            return Err(Error::Setup(FAILED.into()));
+        }
         if self.more {
             self.stop();
             self.step()?;
@@ -332,7 +367,8 @@ impl<const D: usize> Running<D> {
         for own in report.participants.iter_mut().filter(|own| own_solids.contains(&own.name)) {
             own.model = Some("own".into());
         }
-        let ended = course::end(run.into_course(), result, &scene, &[], folder.as_ref(), report);
+        let mut course = run.into_course();
+        let ended = course::end(&mut course, result, &scene, &[], folder.as_ref(), report);
         match ended {
             (report, None) => Ok(report),
             (_, Some(error)) => Err(error.into()),

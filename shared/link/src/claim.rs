@@ -14,6 +14,12 @@ use std::os::fd::AsRawFd;
 use std::os::unix::ffi::{OsStrExt, OsStringExt};
 use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// How long the end of a killed launcher may take, from what its roles hear first to the last of its files.
+const DYING: Duration = Duration::from_millis(500);
+/// How long such a launcher may still look alive.
+const HEARING: Duration = Duration::from_millis(10);
 
 /// Presence in a run. The last one to be dropped removes the run's files.
 #[derive(Debug)]
@@ -50,10 +56,22 @@ impl Claim {
 
 impl Drop for Claim {
     fn drop(&mut self) {
-        if flock(&self.lock, libc::LOCK_EX | libc::LOCK_NB).is_ok()
-            && is_file_at(&self.lock, &lock_path(&self.prefix))
-        {
-            remove_files(&self.prefix, &self.root);
+        let path = lock_path(&self.prefix);
+        let launcher = self.prefix.trim_end_matches('_');
+        let started = Instant::now();
+        while started.elapsed() < DYING && is_file_at(&self.lock, &path) {
+            if flock(&self.lock, libc::LOCK_EX | libc::LOCK_NB).is_ok() {
+                if is_file_at(&self.lock, &path) {
+                    remove_files(&self.prefix, &self.root);
+                }
+                return;
+            }
+            // The roles of a killed launcher hear of its end before the system has closed its files. One that lives
+            // leaves after its roles.
+            if started.elapsed() > HEARING && launcher_lives(launcher) {
+                return;
+            }
+            std::thread::sleep(Duration::from_millis(2));
         }
     }
 }

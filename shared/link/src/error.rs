@@ -120,6 +120,17 @@ pub enum LinkError {
         /// Bytes that are free.
         available: u64,
     },
+    /// A process may not open as many files as it needs.
+    #[error(
+        "too few files can be opened: a run of these participants needs about {needed} at once, {available} are left \
+         (ulimit -n)"
+    )]
+    Descriptors {
+        /// How many are needed.
+        needed: usize,
+        /// How many there are.
+        available: usize,
+    },
     /// Somebody has made room for messages that the run does not have.
     #[error(
         "the run's objects in /dev/shm have {bytes} bytes, {expected} were expected: a participant of another program \

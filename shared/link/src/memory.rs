@@ -8,6 +8,7 @@ use halfstep_wire::Name;
 use halfstep_wire::protocol::{ForceHeader, ForceRecord, ProbeHeader, StateHeader, StateRecord};
 use std::ffi::CString;
 use std::os::fd::AsRawFd;
+use std::os::unix::ffi::OsStrExt;
 use std::path::Path;
 
 /// Where POSIX shared memory lies.
@@ -35,6 +36,15 @@ pub(super) fn published_bytes(config: &LinkConfig, process: Name) -> u64 {
         Name::COUPLER => config.participants.iter().map(forces).sum(),
         _ => config.members(process).into_iter().map(|k| states(&config.participants[k])).sum(),
     }
+}
+
+/// Fails if what all processes of a run publish does not fit into what is free.
+///
+/// # Errors
+/// It does not, or the system does not say.
+pub fn check_all_room(config: &LinkConfig) -> Result<(), LinkError> {
+    let (needed, available) = (config.shared_memory_bytes(), free_bytes()?);
+    if needed > available { Err(LinkError::SharedMemoryFull { needed, available }) } else { Ok(()) }
 }
 
 /// Fails if what a process publishes does not fit into what is free.
@@ -89,12 +99,21 @@ pub(super) fn reserve<S: Transport>(config: &LinkConfig) -> Result<(), LinkError
 }
 
 fn free_bytes() -> Result<u64, LinkError> {
-    let path = CString::new(SHM).expect("no NUL");
+    free_space(Path::new(SHM))
+}
+
+/// Bytes that are free where a path lies.
+///
+/// # Errors
+/// The system does not say.
+pub fn free_space(folder: &Path) -> Result<u64, LinkError> {
+    let path = CString::new(folder.as_os_str().as_bytes());
+    let path = path.map_err(|e| LinkError::io(folder, &std::io::Error::from(e)))?;
     let mut info = std::mem::MaybeUninit::<libc::statvfs>::uninit();
     // SAFETY: `path` is NUL-terminated, `info` is large enough and read only if the call filled it.
     unsafe {
         if libc::statvfs(path.as_ptr(), info.as_mut_ptr()) != 0 {
-            return Err(LinkError::io(Path::new(SHM), &std::io::Error::last_os_error()));
+            return Err(LinkError::io(folder, &std::io::Error::last_os_error()));
         }
         let info = info.assume_init();
         Ok(info.f_bavail * info.f_frsize)

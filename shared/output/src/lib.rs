@@ -61,7 +61,7 @@ pub enum OutputError {
         error: std::io::Error,
     },
     /// The HDF5 library refused.
-    #[error("cannot {action} {}: HDF5: {reason}", path.display())]
+    #[error("cannot {action} {}: {reason}", path.display())]
     Hdf5 {
         /// What was tried: a verb.
         action: &'static str,
@@ -134,7 +134,17 @@ impl OutputError {
         move |error| Self::Io { action, path: path.into(), error }
     }
     pub(crate) fn hdf5(action: &'static str, path: &Path) -> impl FnOnce(hdf5::Error) -> Self {
-        move |error| Self::Hdf5 { action, path: path.into(), reason: error.to_string() }
+        move |error| {
+            let text = error.to_string();
+            // What the system said, where it did; the names of the library's functions say nothing to a reader.
+            let said = text.split_once("error message = '").and_then(|(_, rest)| rest.split_once('\''));
+            let reason = match (said, action) {
+                (Some((said, _)), _) => said.to_owned(),
+                (None, "read") => "it is damaged, or of another kind".to_owned(),
+                (None, _) => text,
+            };
+            Self::Hdf5 { action, path: path.into(), reason }
+        }
     }
     pub(crate) fn malformed(path: &Path, reason: impl Into<String>) -> Self {
         Self::Malformed { path: path.into(), reason: reason.into() }

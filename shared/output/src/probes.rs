@@ -3,8 +3,9 @@
 use super::OutputError;
 use super::series::is_at;
 use std::fs::File;
-use std::io::{Seek, SeekFrom};
+use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use xxhash_rust::xxh3::Xxh3;
 
 /// Header of the first column.
 pub const TIME_COLUMN: &str = "time [s]";
@@ -15,15 +16,48 @@ const ROW_CAPACITY: usize = 1 << 16;
 #[derive(Debug)]
 pub struct ProbeLog {
     path: PathBuf,
-    writer: csv::Writer<File>,
+    writer: csv::Writer<Hashed>,
     columns: usize,
+}
+
+/// What is on disk of a log.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Logged {
+    /// Length, bytes.
+    pub bytes: u64,
+    /// XXH3 (64 bit) of these bytes.
+    pub hash: u64,
+}
+
+/// A file that knows the hash of what it holds.
+struct Hashed {
+    file: File,
+    hash: Box<Xxh3>,
+}
+
+impl std::fmt::Debug for Hashed {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Hashed").field("file", &self.file).finish_non_exhaustive()
+    }
+}
+
+impl Write for Hashed {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        let written = self.file.write(bytes)?;
+        self.hash.update(&bytes[..written]);
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.file.flush()
+    }
 }
 
 impl ProbeLog {
     /// Creates the file with the header `time [s]` and then `columns` (see [`halfstep_scene::Probe::columns`]).
     pub fn create(path: &Path, columns: &[String]) -> Result<Self, OutputError> {
         let file = File::create(path).map_err(OutputError::io("create", path))?;
-        let mut writer = Self::writer(file);
+        let mut writer = Self::writer(Hashed { file, hash: Box::default() });
         writer
             .write_record(std::iter::once(TIME_COLUMN).chain(columns.iter().map(String::as_str)))
             .and_then(|()| Ok(writer.flush()?))
@@ -31,42 +65,55 @@ impl ProbeLog {
         Ok(Self { path: path.into(), writer, columns: columns.len() })
     }
 
-    fn writer(file: File) -> csv::Writer<File> {
+    fn writer(file: Hashed) -> csv::Writer<Hashed> {
         csv::WriterBuilder::new().has_headers(false).buffer_capacity(ROW_CAPACITY).from_writer(file)
     }
 
-    /// Opens the log of an interrupted run and forgets what was written after its first `length` bytes.
+    /// Opens the log of an interrupted run and forgets what was written after what was `logged`.
     ///
     /// # Errors
-    /// The file is shorter, or has other columns.
-    pub fn resume(path: &Path, columns: &[String], length: u64) -> Result<Self, OutputError> {
+    /// The file is shorter, or has other columns or rows.
+    pub fn resume(path: &Path, columns: &[String], logged: Logged) -> Result<Self, OutputError> {
+        let length = logged.bytes;
         let table = read_probes(path)?;
         if table.columns.first().map(String::as_str) != Some(TIME_COLUMN) || table.columns[1..] != *columns {
             return Err(OutputError::malformed(path, "its columns are not the scene's probes"));
         }
-        let mut file = File::options().write(true).open(path).map_err(OutputError::io("open", path))?;
+        let mut file =
+            File::options().read(true).write(true).open(path).map_err(OutputError::io("open", path))?;
         let found = file.metadata().map_err(OutputError::io("read", path))?.len();
         if found < length {
             let reason = format!("it has {found} bytes, and {length} at the checkpoint: rows are lost");
             return Err(OutputError::malformed(path, reason));
         }
+        let mut hash = Box::<Xxh3>::default();
+        let mut buffer = vec![0; ROW_CAPACITY];
+        let mut rest = (&mut file).take(length);
+        while let n @ 1.. = rest.read(&mut buffer).map_err(OutputError::io("read", path))? {
+            hash.update(&buffer[..n]);
+        }
+        if hash.digest() != logged.hash {
+            let reason = "its rows up to the checkpoint are not those that the run has written";
+            return Err(OutputError::malformed(path, reason));
+        }
         file.set_len(length).map_err(OutputError::io("shorten", path))?;
         file.seek(SeekFrom::End(0)).map_err(OutputError::io("read", path))?;
-        Ok(Self { path: path.into(), writer: Self::writer(file), columns: columns.len() })
+        Ok(Self { path: path.into(), writer: Self::writer(Hashed { file, hash }), columns: columns.len() })
     }
 
-    /// Bytes written so far, with the guarantee that they outlive a crash of the machine.
+    /// What was written so far, with the guarantee that it outlives a crash of the machine.
     ///
     /// # Errors
     /// The disk refuses, or somebody has removed the file.
-    pub fn synchronise(&self) -> Result<u64, OutputError> {
-        let file = self.writer.get_ref();
+    pub fn synchronise(&self) -> Result<Logged, OutputError> {
+        let Hashed { file, hash } = self.writer.get_ref();
         if !is_at(file, &self.path) {
             let reason = "it was removed or replaced while the run went on: its rows are lost";
             return Err(OutputError::malformed(&self.path, reason));
         }
         file.sync_data().map_err(OutputError::io("synchronise", &self.path))?;
-        Ok(file.metadata().map_err(OutputError::io("read", &self.path))?.len())
+        let bytes = file.metadata().map_err(OutputError::io("read", &self.path))?.len();
+        Ok(Logged { bytes, hash: hash.digest() })
     }
 
     /// Appends the values at `time` (s), in the order and the units of the columns. The row is in the file when this
@@ -170,7 +217,13 @@ mod tests {
         let mut log = ProbeLog::resume(&path, &columns, length).unwrap();
         log.row(0.05, &[3.0]).unwrap();
         assert_eq!(read_probes(&path).unwrap().rows, [[0.0, 1.0], [0.05, 3.0]]);
-        let message = ProbeLog::resume(&path, &columns, 1000).unwrap_err().to_string();
+        let text = std::fs::read_to_string(&path).unwrap();
+        std::fs::write(&path, text.replace("1.0", "1.5")).unwrap();
+        let message = ProbeLog::resume(&path, &columns, length).unwrap_err().to_string();
+        assert!(message.contains("are not those that the run has written"), "{message}");
+        std::fs::write(&path, text).unwrap();
+        let longer = Logged { bytes: 1000, ..length };
+        let message = ProbeLog::resume(&path, &columns, longer).unwrap_err().to_string();
         assert!(message.contains("rows are lost"), "{message}");
         assert!(ProbeLog::resume(&path, &["other [m]".to_string()], length).is_err());
     }

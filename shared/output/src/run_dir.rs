@@ -73,6 +73,25 @@ impl RunDirectory {
         Ok(Self { path: dir.into(), lock: Arc::new(Lock::take(dir)?) })
     }
 
+    /// Whether the frames of a participant below this number are listed and there.
+    ///
+    /// # Errors
+    /// One is missing, or the index cannot be read.
+    pub fn check_frames(&self, stem: &str, count: u64) -> Result<(), OutputError> {
+        let listed = series::Series::of_run(&self.path, stem)?;
+        for number in 0..count {
+            let path = self.frames().join(series::frame_name(stem, number as u32));
+            let is_listed = listed.get(number as usize).is_some_and(|(listed, _)| *listed == path);
+            if !is_listed || !path.is_file() {
+                return Err(OutputError::malformed(
+                    &path,
+                    "this frame was written before the checkpoint and is missing",
+                ));
+            }
+        }
+        Ok(())
+    }
+
     /// Forgets the frames from this number on, and what an interrupted write left.
     ///
     /// # Errors

@@ -49,7 +49,7 @@ pub struct RunReport {
 }
 
 /// The state that a run went on from after an interruption.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Resumption {
     /// Number of the checkpoint.
@@ -58,6 +58,10 @@ pub struct Resumption {
     pub step: u64,
     /// Its time, s.
     pub time: f64,
+    /// Part of the limits, or of the scene's own time step, that the run took from then on.
+    pub time_step_factor: f64,
+    /// Why the run had diverged, where it went back for that.
+    pub because: Option<String>,
 }
 
 /// One participant: an owner of particles.

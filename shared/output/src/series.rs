@@ -153,6 +153,16 @@ impl Index {
         Ok(Self { path, listed, file: None })
     }
 
+    /// Number after the last frame that is listed.
+    pub(crate) fn safe(&self) -> u32 {
+        let number = |name: &str| name.strip_suffix(".hdf")?.rsplit_once('_')?.1.parse::<u32>().ok();
+        self.listed
+            .files
+            .last()
+            .and_then(|entry| number(&entry.name))
+            .map_or(0, |last| last.saturating_add(1))
+    }
+
     /// Announces a frame, in place of those at its number and later ones. On return it is listed on disk.
     pub(crate) fn announce(&mut self, name: String, time: f64) -> Result<(), OutputError> {
         let before = self.listed.files.len();
@@ -231,6 +241,7 @@ mod tests {
         Series::read(&path).unwrap().write(&path).unwrap();
         assert_eq!(std::fs::read(&path).unwrap(), whole);
         let mut index = Index::open(path.clone()).unwrap();
+        assert_eq!(index.safe(), 40);
         index.announce(frame_name("fluid", 3), 0.5).unwrap();
         index.announce(frame_name("fluid", 4), 0.6).unwrap();
         assert_eq!(names(&path).len(), 5, "a run that goes on replaces what came later");

@@ -38,7 +38,7 @@ impl FrameWriter {
             // The receiver is right here and there is room for all of them.
             let _ = written.send(Frame::default());
         }
-        let safe = Arc::new(AtomicU32::new(0));
+        let safe = Arc::new(AtomicU32::new(index.safe()));
         let job = Job { folder: folder.clone(), stem: stem.into(), index, safe: safe.clone() };
         let work = move |frames: Receiver<_>| job.run(&frames, &written);
         let filled = Background::start(&folder, stem, "frames", IN_FLIGHT, work)?;
@@ -56,16 +56,21 @@ impl FrameWriter {
         self.filled.send((number, frame))
     }
 
-    /// The number up to which, not including it, all submitted frames are on disk and announced: with frames
-    /// numbered from 0, how many are safe.
+    /// The number up to which, not including it, all submitted frames are on disk and announced, those of an index that
+    /// is continued among them: with frames numbered from 0, how many are safe.
     pub fn safe(&self) -> u32 {
         self.safe.load(Ordering::Acquire)
     }
 
     /// Waits until everything submitted is on disk; returns what [`Self::safe`] then is.
     pub fn finish(mut self) -> Result<u32, OutputError> {
-        self.filled.finish()?;
+        self.wait()?;
         Ok(self.safe())
+    }
+
+    /// Waits until everything submitted is on disk; nothing can be submitted any more.
+    pub fn wait(&mut self) -> Result<(), OutputError> {
+        self.filled.finish()
     }
 }
 

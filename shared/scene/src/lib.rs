@@ -56,7 +56,7 @@ pub use metric::{Metric, MetricKind, MetricReference};
 pub use motion::{Motion, Placement};
 pub use participant::Participant;
 pub use probe::{Probe, ProbeKind, Reference};
-pub use resources::{BYTES_PER_PARTICLE, expected_speed, memory_available, memory_needed};
+pub use resources::{expected_speed, memory_available, memory_needed};
 pub use solid::{
     ArtificialStress, HypoelasticKeys, Material, ModelKeys, Plane, Solid, SolidModelName, SubSteps,
     TotalLagrangianKeys,

@@ -6,15 +6,27 @@ use super::*;
 use crate::dispatch;
 use crate::geometry::{self, Counts};
 
-/// Memory that a run needs for a particle, both stages and its neighbours, bytes.
-pub const BYTES_PER_PARTICLE: u64 = 400;
+/// Memory of a process without particles, bytes. These figures and the next ones are the largest resident sizes of runs
+/// with 0.1 to 5 million particles, pictures included, rounded up.
+const BYTES_PER_PROCESS: u64 = 30 << 20;
+/// Memory for a particle where there is a fluid alone, bytes.
+const BYTES_PER_FLUID: u64 = 850;
+/// Memory for a solid particle, bytes.
+const BYTES_PER_SOLID: u64 = 1300;
+/// Memory of all processes of a coupled run for any particle, bytes.
+const BYTES_COUPLED: u64 = 1000;
 
 /// Spacings from the origin within which places are told apart to 1e-6 dx.
 const MAX_SPACINGS: f64 = 1e9;
 
-/// Memory that a run with that many particles needs, bytes.
+/// Memory that a run with that many particles needs, bytes: of all its processes, without what they share.
 pub fn memory_needed(counts: &Counts) -> u64 {
-    counts.total().saturating_mul(BYTES_PER_PARTICLE)
+    let is_coupled = counts.fluid > 0 && counts.solid > 0;
+    let (processes, other, all) = if is_coupled { (3, 0, BYTES_COUPLED) } else { (1, BYTES_PER_FLUID, 0) };
+    let of_solids = counts.solid.saturating_mul(BYTES_PER_SOLID);
+    let of_others = counts.fluid.saturating_add(counts.wall).saturating_mul(other);
+    let of_all = counts.total().saturating_mul(all);
+    (processes * BYTES_PER_PROCESS).saturating_add(of_solids).saturating_add(of_others).saturating_add(of_all)
 }
 
 /// Memory that the machine has free for new programs, bytes; `None` where it does not say.
