@@ -1,6 +1,6 @@
 //! Clamps that move with a wall.
 
-use halfstep::{RunReport, Simulation, scene};
+use halfstep::{Simulation, scene};
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
@@ -75,7 +75,7 @@ const BAFFLE: &str = r#"
     name = "tank"
     phase = "wall"
     tank = { min = [0.0, 0.0], max = [0.4, 0.3], open = ["top"] }
-    motion = { amplitude = [0.05, 0.0], period = 1.0 }
+    motion = { amplitude = [0.05, 0.0], period = 1.0, ramp = 0.5 }
     [[shape]]
     name = "baffle"
     phase = "solid"
@@ -93,27 +93,16 @@ const BAFFLE: &str = r#"
     at = [0.2, -0.02]
 "#;
 
-fn baffle(with: bool) -> RunReport {
-    let text = if with { BAFFLE.to_owned() } else { BAFFLE.replace(", with = \"tank\"", "") };
-    let scene = scene::parse(&text, Path::new("baffle.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}"));
-    let mut run = Simulation::new(scene).begin().expect("a run");
-    while let Ok(true) = run.step() {}
-    let expected = if with { 0.05 * (TAU * run.time()).sin() } else { 0.0 };
-    let foot = run.probe("foot.x").expect("a probe");
-    assert!((foot - expected).abs() < 1e-12, "{foot} {expected}");
-    run.finish().expect("a run that ends")
-}
-
 #[test]
 fn a_baffle_goes_with_its_tank_and_keeps_the_water() {
-    let report = baffle(true);
+    let scene = scene::parse(BAFFLE, Path::new("baffle.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}"));
+    let mut run = Simulation::new(scene).begin().expect("a run");
+    while run.step().expect("a step") {}
+    // After the ramp.
+    let (foot, expected) = (run.probe("foot.x").expect("a probe"), 0.05 * (TAU * run.time()).sin());
+    assert!((foot - expected).abs() < 1e-12, "{foot} {expected}");
+    let report = run.finish().expect("a run that ends");
     assert_eq!((report.particles.removed, report.warnings.as_slice()), (0, &[][..]), "{:?}", report.audit);
     assert!(report.audit.density_error.is_some_and(|error| error < 0.03), "{:?}", report.audit);
     assert!(report.audit.min_gap.is_some_and(|gap| gap > 0.5), "{:?}", report.audit);
-}
-
-#[test]
-fn a_baffle_that_its_tank_leaves_is_warned_about() {
-    let report = baffle(false);
-    assert!(report.warnings[0].contains("which moves: the clamp stays where it is"), "{:?}", report.warnings);
 }
