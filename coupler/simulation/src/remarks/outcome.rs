@@ -15,7 +15,10 @@ pub fn outcome(report: &RunReport) -> Vec<String> {
         all.push(format!("{removed} of {fluid} fluid particles left the domain"));
     }
     if let Some(error) = report.audit.density_error.filter(|error| *error > DENSITY_ERROR) {
-        all.push(format!("density error {:.0} %: the fluid was compressed or torn", 100.0 * error));
+        all.push(format!(
+            "density error up to {:.0} %: the fluid was compressed or torn somewhere",
+            100.0 * error
+        ));
     }
     if let Some(gap) = report.audit.min_gap.filter(|gap| *gap < CLOSEST) {
         all.push(format!("fluid and solid came as close as {gap:.3} dx"));
