@@ -13,9 +13,9 @@ const SYSTEM: [&str; 25] = [
     "hypot",
 ];
 
-/// Parts of a path where no bit of a run is made: pictures and files of results, studies of finished runs, and the
-/// statistics of waiting times.
-const FREE: [&str; 3] = ["/output/", "/study/", "/latency.rs"];
+/// Parts of a path where no bit of a run is made: pictures and files of results, studies of finished runs, the
+/// statistics of waiting times, and what is said about a scene.
+const FREE: [&str; 4] = ["/output/", "/study/", "/latency.rs", "/remarks/"];
 
 /// Numbers of the lines that call one of the system's functions, from 1. A file ends where the tests within it begin.
 fn calls(text: &str) -> Vec<usize> {
