@@ -8,7 +8,6 @@ use halfstep_coupling::say;
 use halfstep_coupling::supervise::StopFlags;
 use halfstep_output::checkpoint::{FOLDERS, MANIFEST};
 use halfstep_output::run_json::RunStatus;
-use halfstep_output::{draw_contact, draw_plot};
 use halfstep_scene::{self as scene, Scene};
 use halfstep_sph::lane::Isa;
 use halfstep_study::command::{StudyArguments, study};
@@ -226,9 +225,6 @@ fn run_scene(arguments: RunArguments, isa: Isa) -> ExitCode {
         Ok(options) => options,
         Err(error) => return usage(&error),
     };
-    for warning in halfstep::remarks::remarks(&scene) {
-        say::warn(format_args!("warning: {warning}"));
-    }
     match run::run(&scene, &options) {
         Err(error) => usage(&error),
         Ok(ended) => tell(&scene, &options.out, ended),
@@ -256,9 +252,8 @@ fn plot(dir: &Path) -> ExitCode {
         Ok(scene) => scene,
         Err(error) => return usage(&error),
     };
-    let pictures = [draw_plot(&scene, dir).map(Some), draw_contact(&scene, dir)];
     let mut drawn = false;
-    for picture in pictures {
+    for picture in run::draw(&scene, dir) {
         match picture {
             Ok(Some(path)) => {
                 drawn = true;

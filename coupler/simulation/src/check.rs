@@ -30,7 +30,8 @@ fn describe_in<const D: usize>(scene: &Scene, isa: Isa) -> String {
     };
     line("scene", format!("{} ({})", scene.name, scene.path.display()));
     line("particles", format!("{} fluid, {} solid, {} wall", counts.fluid, counts.solid, counts.wall));
-    for shape in remarks::placed(scene, &layout) {
+    let placed = remarks::placed(scene, &layout);
+    for shape in &placed {
         line(&format!("  {}", shape.name), shape.to_string());
     }
     for (k, solid) in scene.solids.iter().enumerate() {
@@ -101,7 +102,7 @@ fn describe_in<const D: usize>(scene: &Scene, isa: Isa) -> String {
         let _ =
             writeln!(text, "{:<28}{:<5}{}", effect.name, if effect.on { "on" } else { "off" }, effect.why);
     }
-    for (k, warning) in remarks::remarks_in(scene, &layout).into_iter().enumerate() {
+    for (k, warning) in remarks::on(scene, &layout, &placed).into_iter().enumerate() {
         let _ = writeln!(text, "{}warning: {warning}", if k == 0 { "\n" } else { "" });
     }
     text

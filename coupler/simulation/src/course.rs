@@ -5,7 +5,7 @@ use crate::advice::advice;
 use crate::checkpoint::Checkpoint;
 use crate::options::SolidSource;
 use crate::participants::{report_outcome, report_participants};
-use crate::remarks;
+use crate::{remarks, run};
 use halfstep_coupling::checkpoints::Checkpoints;
 use halfstep_coupling::clock::Clock;
 use halfstep_coupling::couple::Outcome;
@@ -114,7 +114,9 @@ pub(crate) fn end(
             report.status = Some(RunStatus::Failed);
             error.get_or_insert(unwritten.into());
         }
-        draw(scene, folder);
+        for error in run::draw(scene, folder.path()).into_iter().filter_map(Result::err) {
+            tracing::warn!("a picture could not be drawn: {error}");
+        }
     }
     (report, error)
 }
@@ -144,16 +146,6 @@ fn conclude(
             tracing::error!("{error}");
             report.error = Some(error.to_string());
             Some(error)
-        }
-    }
-}
-
-fn draw(scene: &Scene, folder: &RunDirectory) {
-    for picture in
-        [output::draw_plot(scene, folder.path()).map(Some), output::draw_contact(scene, folder.path())]
-    {
-        if let Err(e) = picture {
-            tracing::warn!("a picture could not be drawn: {e}");
         }
     }
 }

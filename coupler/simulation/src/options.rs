@@ -34,7 +34,8 @@ pub struct RunOptions {
     pub launcher: Option<Launcher>,
     /// Set, they end the run.
     pub stop: StopFlags,
-    /// What this process has to say goes to the run's `log.txt`: it becomes the process's only log.
+    /// What this process has to say goes to the run's `log.txt`: it becomes the process's only log. Warnings about the
+    /// scene go to standard error as well.
     pub log: bool,
     /// No progress.
     pub quiet: bool,

@@ -9,26 +9,28 @@ mod shapes;
 mod water;
 
 pub use outcome::outcome;
-pub(crate) use shapes::placed;
+pub(crate) use shapes::{Placed, placed};
 
 use halfstep_scene::geometry::{self, Layout};
 use halfstep_scene::{Scene, dispatch};
 
 /// The remarks on a scene, most telling first.
 pub fn remarks(scene: &Scene) -> Vec<String> {
-    let all = dispatch!(scene.dimension, D => remarks_in::<D>(scene, &geometry::layout::<D>(scene)));
+    let all = dispatch!(scene.dimension, D => {
+        let layout = geometry::layout::<D>(scene);
+        on(scene, &layout, &placed(scene, &layout))
+    });
     all.unwrap_or_default()
 }
 
-/// The same with its particles at hand.
-pub(crate) fn remarks_in<const D: usize>(scene: &Scene, layout: &Layout<D>) -> Vec<String> {
+/// The same with its particles and shapes at hand.
+pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Placed]) -> Vec<String> {
     let mut all = Vec::new();
-    let placed = placed(scene, layout);
     bodies::clamps(scene, &mut all);
     bodies::free(scene, &mut all);
     bodies::joined(scene, &mut all);
-    shapes::sizes(scene, &placed, &mut all);
-    shapes::overlaps(&placed, &mut all);
+    shapes::sizes(scene, placed, &mut all);
+    shapes::overlaps(placed, &mut all);
     water::hanging(scene, layout, &mut all);
     water::expected_speed(scene, &mut all);
     magnitudes::materials(scene, &mut all);

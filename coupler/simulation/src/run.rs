@@ -10,11 +10,12 @@ use halfstep_coupling::local::LocalRun;
 use halfstep_coupling::roles;
 use halfstep_coupling::say;
 use halfstep_output::run_json::{Particles, Resumption, RunStatus};
-use halfstep_output::{RunDirectory, RunReport};
+use halfstep_output::{OutputError, RunDirectory, RunReport, draw_contact, draw_plot};
 use halfstep_role::serve;
-use halfstep_scene::{Scene, dispatch, geometry};
+use halfstep_scene::geometry::{self, Layout};
+use halfstep_scene::{Scene, dispatch};
 use halfstep_sph::lane::Isa;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A report, and the error where the run failed.
@@ -121,6 +122,11 @@ pub fn read_scene(dir: &Path) -> Result<Scene, RunError> {
     Scene::from_json(&text).map_err(|error| wrong(error.to_string()))
 }
 
+/// Draws the pictures of the run in a folder from what is on disk: their files, none where there is nothing to draw.
+pub fn draw(scene: &Scene, dir: &Path) -> [Result<Option<PathBuf>, OutputError>; 2] {
+    [draw_plot(scene, dir).map(Some), draw_contact(scene, dir)]
+}
+
 fn check_resources(scene: &Scene, options: &RunOptions) -> Result<(), RunError> {
     let foreign = options.foreign_names();
     let (out, as_processes) = (&options.out, options.launcher.is_some());
@@ -142,16 +148,16 @@ fn check_foreign(scene: &Scene, options: &RunOptions) -> Result<(), RunError> {
 }
 
 /// What the report of a run says at its start.
-pub(crate) fn begin_report(scene: &Scene, isa: Isa) -> Result<RunReport, RunError> {
-    let placed = dispatch!(scene.dimension, D => {
-        let layout = geometry::layout::<D>(scene);
-        (layout.counts(), remarks::remarks_in(scene, &layout))
-    });
-    let (counts, warnings) = placed.ok_or_else(|| unknown_dimension(scene))?;
+pub(crate) fn begin_report<const D: usize>(
+    scene: &Scene,
+    layout: &Layout<D>,
+    isa: Isa,
+) -> Result<RunReport, RunError> {
+    let counts = layout.counts();
     let mut report = RunReport {
         scene: serde_json::to_value(scene).map_err(|e| RunError::System(e.to_string()))?,
         version: env!("CARGO_PKG_VERSION").into(),
-        warnings,
+        warnings: remarks::on(scene, layout, &remarks::placed(scene, layout)),
         particles: Particles { fluid: counts.fluid, solid: counts.solid, wall: counts.wall, removed: 0 },
         ..RunReport::default()
     };
@@ -180,7 +186,8 @@ fn execute_in<const D: usize>(
     directory: &RunDirectory,
     resumed: Option<(Checkpoint, RunReport)>,
 ) -> Result<Ended, RunError> {
-    let mut report = begin_report(scene, options.isa)?;
+    let layout = geometry::layout::<D>(scene);
+    let mut report = begin_report(scene, &layout, options.isa)?;
     let checkpoint = resumed.map(|(checkpoint, earlier)| {
         report.resumed = earlier.resumed;
         report.resumed.push(Resumption { because: earlier.error, ..checkpoint.resumption() });
@@ -191,15 +198,21 @@ fn execute_in<const D: usize>(
     course.must_save = options.retries > 0;
     if options.log {
         start_log(directory)?;
-        report.warnings.iter().for_each(|warning| tracing::warn!("{warning}"));
+        for warning in &report.warnings {
+            tracing::warn!("{warning}");
+            // Who goes on has heard it.
+            if checkpoint.is_none() {
+                say::warn(format_args!("warning: {warning}"));
+            }
+        }
     }
     report.write(&directory.file("run.json"))?;
     course.recorder.renew(directory.file("run.json"), report.clone());
     let result = if scene.fluid.is_some() && !scene.solids.is_empty() {
-        let layout = geometry::layout::<D>(scene);
         Session::<D>::new(scene, options, directory, from, &layout)
             .and_then(|session| session.run(&mut course, &mut report))
     } else {
+        drop(layout);
         let local = local::<D>(scene, options, directory, from, course, &mut report);
         let (ended, stopped) = local?;
         course = ended;

@@ -13,7 +13,7 @@ use halfstep_fluid::Fluid;
 use halfstep_fluid::effects::FluidEffect;
 use halfstep_output::{Frame, RunDirectory, RunReport};
 use halfstep_role::role::Role;
-use halfstep_scene::{Decision, Phase, Scene};
+use halfstep_scene::{Decision, Phase, Scene, geometry};
 use halfstep_solid::{Solid, SolidModel};
 use halfstep_sph::lane::Isa;
 use std::ops::ControlFlow;
@@ -286,14 +286,21 @@ impl<const D: usize> Running<D> {
         Ok(self.more)
     }
 
+    /// What the report says of the scene and of the program's own effect.
+    fn begin_report(&self) -> Result<RunReport, Error> {
+        let mut report = run::begin_report(&self.scene, &geometry::layout::<D>(&self.scene), self.isa)?;
+        report.effects.extend(self.own_effect.clone().map(effects::row));
+        Ok(report)
+    }
+
     /// Writes what a run leaves that has failed.
     fn fail(&mut self, error: RunError) -> Error {
         (self.more, self.failed) = (false, true);
-        let Self { run, scene, folder, isa, .. } = self;
-        let report = match run::begin_report(scene, *isa) {
+        let report = match self.begin_report() {
             Ok(report) => report,
-            Err(unknown) => return unknown.into(),
+            Err(unknown) => return unknown,
         };
+        let Self { run, scene, folder, .. } = self;
         let (_, error) = course::end(run.course_mut(), Err(error), scene, &[], folder.as_ref(), report);
         error.map_or_else(|| Error::Setup(FAILED.into()), Error::from)
     }
@@ -360,9 +367,8 @@ impl<const D: usize> Running<D> {
             self.stop();
             self.step()?;
         }
-        let Self { mut run, scene, folder, own_solids, own_effect, isa, .. } = self;
-        let mut report = run::begin_report(&scene, isa)?;
-        report.effects.extend(own_effect.map(effects::row));
+        let mut report = self.begin_report()?;
+        let Self { mut run, scene, folder, own_solids, .. } = self;
         let result = run.end().map(|ended| course::report_local(&scene, &[], ended, &mut report));
         for own in report.participants.iter_mut().filter(|own| own_solids.contains(&own.name)) {
             own.model = Some("own".into());

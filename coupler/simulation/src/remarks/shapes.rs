@@ -35,23 +35,23 @@ pub(crate) struct Placed {
 
 /// The shapes of a scene, in its order.
 pub(crate) fn placed<const D: usize>(scene: &Scene, layout: &Layout<D>) -> Vec<Placed> {
-    scene.shapes.iter().enumerate().map(|(index, shape)| of_shape(scene, layout, index, shape)).collect()
+    let mut counts = vec![[0; 2]; scene.shapes.len()];
+    let of_solids = layout.solid.iter().map(|p| (p.body, p.clamped));
+    let of_others = layout.fluid.iter().map(|p| p.shape).chain(layout.wall.iter().map(|p| p.shape));
+    for (shape, clamped) in of_solids.chain(of_others.map(|shape| (shape, false))) {
+        let [particles, held] = &mut counts[shape as usize];
+        (*particles, *held) = (*particles + 1, *held + usize::from(clamped));
+    }
+    scene.shapes.iter().zip(counts).map(|(shape, counts)| of_shape::<D>(scene, shape, counts)).collect()
 }
 
-fn of_shape<const D: usize>(scene: &Scene, layout: &Layout<D>, index: usize, shape: &Shape) -> Placed {
+/// Of so many particles, and so many of them that a clamp holds.
+fn of_shape<const D: usize>(scene: &Scene, shape: &Shape, [particles, clamped]: [usize; 2]) -> Placed {
     let dx = scene.spacing(shape);
-    let own = |body: u32| body as usize == index;
-    let clamped = layout.solid.iter().filter(|p| own(p.body) && p.clamped).count();
-    let (particles, density) = match shape.phase {
-        Phase::Solid => (
-            layout.solid.iter().filter(|p| own(p.body)).count(),
-            shape.solid.and_then(|k| scene.solids.get(k)).map_or(0.0, |solid| solid.density),
-        ),
-        Phase::Fluid => (
-            layout.fluid.iter().filter(|p| own(p.shape)).count(),
-            scene.fluid.as_ref().map_or(0.0, |fluid| fluid.density),
-        ),
-        Phase::Wall => (layout.wall.iter().filter(|p| own(p.shape)).count(), 0.0),
+    let density = match shape.phase {
+        Phase::Solid => shape.solid.and_then(|k| scene.solids.get(k)).map_or(0.0, |solid| solid.density),
+        Phase::Fluid => scene.fluid.as_ref().map_or(0.0, |fluid| fluid.density),
+        Phase::Wall => 0.0,
     };
     let whole = halfstep_scene::geometry::particles_alone::<D>(scene, shape);
     let cells = |extent: f64| (extent / dx).round() * dx;
