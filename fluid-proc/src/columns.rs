@@ -54,7 +54,7 @@ impl<const D: usize> Source<D> {
 
 /// The particles of a pair pass: fluid and walls alike.
 #[derive(Clone, Debug)]
-pub struct Shown<const D: usize> {
+pub struct PairParticles<const D: usize> {
     /// Position, m.
     pub position: Vectors<D>,
     /// The same with the rest of the state.
@@ -63,7 +63,7 @@ pub struct Shown<const D: usize> {
     pub mass: f64,
 }
 
-impl<const D: usize> Shown<D> {
+impl<const D: usize> PairParticles<D> {
     /// `n` particles of one mass.
     pub fn new(n: usize, mass: f64) -> Self {
         Self { position: vectors(n), sources: vec![Source::ZERO; n], mass }
@@ -124,7 +124,7 @@ pub struct Columns<const D: usize> {
     /// Particle number, or [`PADDING`].
     pub id: Vec<u32>,
     /// Present state.
-    pub now: Shown<D>,
+    pub now: PairParticles<D>,
     /// Position at n, m.
     pub position_n: Vectors<D>,
     /// Velocity at n, m/s.
@@ -141,7 +141,7 @@ impl<const D: usize> Columns<D> {
     /// From the scene's points, unsorted.
     pub fn new(points: &[FluidPoint<D>], state: &StateEquation, volume: f64) -> Self {
         let n = points.len();
-        let mut now = Shown::new(n, state.density * volume);
+        let mut now = PairParticles::new(n, state.density * volume);
         for (i, p) in points.iter().enumerate() {
             for d in 0..D {
                 now.position[d][i] = p.position[d];

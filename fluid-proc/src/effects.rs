@@ -4,7 +4,7 @@
 //! when it takes part, its memory, its own pass, its share of a pair. A program that uses this crate may add one more
 //! effect, the parameter `X` of [`crate::Fluid`].
 
-use crate::columns::Shown;
+use crate::columns::PairParticles;
 use crate::composition::{NoShare, Shares};
 use crate::rates::PairEffect;
 use crate::walls::Walls;
@@ -66,11 +66,11 @@ pub struct Neighbourhood<'a, K, const D: usize> {
     /// Instruction set of the passes.
     pub isa: Isa,
     /// The fluid.
-    pub fluid: &'a Shown<D>,
+    pub fluid: &'a PairParticles<D>,
     /// The fluid around the fluid.
     pub list: &'a ClusterList,
     /// What the walls show, and the walls around the fluid.
-    pub walls: Option<(&'a Shown<D>, &'a ClusterList)>,
+    pub walls: Option<(&'a PairParticles<D>, &'a ClusterList)>,
 }
 
 /// Pairs that a pass over a list evaluates.

@@ -7,7 +7,7 @@ use crate::effects::{self, Effects, FluidEffect, List};
 use crate::interface::Coupling;
 use crate::midpoint::{self, Conditions, Extremes};
 use crate::rates::RateSum;
-use crate::time_step::Limits;
+use crate::time_step::StepLimits;
 use crate::walls::Walls;
 use crate::walls::moving::motions;
 use halfstep_interface::Parameters;
@@ -45,7 +45,7 @@ pub struct Fluid<const D: usize, X: FluidEffect<D> = ()> {
 
     bounds: Bounds,
     pub(crate) isa: Isa,
-    limits: Limits,
+    limits: StepLimits,
     pub(crate) effects: List<D, X>,
     /// Name of the composition that the rate pass runs.
     composition: String,
@@ -112,7 +112,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
 
                 bounds: Bounds::of_fluid(scene)?,
                 isa,
-                limits: Limits::new(scene),
+                limits: StepLimits::new(scene),
                 composition: effects.pairs().composition(),
                 effects,
                 stage: Stage::First,

@@ -1,6 +1,6 @@
 //! Memory of the fluid.
 
-use crate::columns::{Columns, Shown};
+use crate::columns::{Columns, PairParticles};
 use crate::effects::{Effects, FluidEffect};
 use crate::fluid::Fluid;
 use crate::walls::Walls;
@@ -13,7 +13,7 @@ fn of_each<T, const D: usize>(columns: &[Vec<T>; D]) -> usize {
     columns.iter().map(of).sum()
 }
 
-impl<const D: usize> Shown<D> {
+impl<const D: usize> PairParticles<D> {
     fn bytes(&self) -> usize {
         of_each(&self.position) + of(&self.sources)
     }

@@ -1,7 +1,7 @@
 //! The one pass that gives acceleration and density rate: pressure, continuity and whatever effects the scene calls
 //! for.
 
-use crate::columns::Shown;
+use crate::columns::PairParticles;
 use crate::composition::Composition;
 use crate::momentum::pressure_and_continuity;
 use halfstep_sph::artificial_viscosity::damping;
@@ -147,9 +147,9 @@ pub struct RateLaw<'a, K, E, const D: usize> {
     /// Effects beside pressure and continuity.
     pub effects: E,
     /// Particles whose rates are wanted.
-    pub targets: &'a Shown<D>,
+    pub targets: &'a PairParticles<D>,
     /// Neighbours of the targets.
-    pub sources: &'a Shown<D>,
+    pub sources: &'a PairParticles<D>,
 }
 
 /// What the law loads of four targets.

@@ -1,7 +1,7 @@
 //! Each term of the fluid's pass against values computed by hand, and the symmetries that they must keep, in two and in
 //! three dimensions.
 
-use crate::columns::Shown;
+use crate::columns::PairParticles;
 use crate::effects::artificial_viscosity::ArtificialViscosity;
 use crate::effects::density_diffusion::gradient::{GradientLaw, GradientSum};
 use crate::effects::density_diffusion::{DeltaSph, Hydrostatic, Simple, Strength};
@@ -26,14 +26,14 @@ struct P<const D: usize> {
 
 /// Particles of mass `m`, sorted, with their list and the slot of each.
 struct Cloud<const D: usize> {
-    shown: Shown<D>,
+    shown: PairParticles<D>,
     list: ClusterList,
     slot: Vec<usize>,
 }
 
 fn cloud<const D: usize>(points: &[P<D>], mass: f64) -> Cloud<D> {
     let n = points.len();
-    let mut shown = Shown::<D>::new(n, mass);
+    let mut shown = PairParticles::<D>::new(n, mass);
     let mut pressure = vec![0.0; n];
     for (i, p) in points.iter().enumerate() {
         for d in 0..D {

@@ -8,14 +8,14 @@ use halfstep_scene::{Scene, Treatment};
 
 /// The limits that do not change during a run, and the factors of those that do.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
+pub struct StepLimits {
     courant: f64,
     smoothing_length: f64,
     sound_speed: f64,
     fixed: f64,
 }
 
-impl Limits {
+impl StepLimits {
     /// From a scene with fluid.
     pub fn new(scene: &Scene) -> Self {
         let h = scene.smoothing_ratio * scene.resolution;

@@ -9,7 +9,7 @@
 
 pub mod moving;
 
-use crate::columns::{Columns, Shown, Source, Vectors, fit, vectors};
+use crate::columns::{Columns, PairParticles, Source, Vectors, fit, vectors};
 use halfstep_scene::Motion;
 use halfstep_scene::geometry::WallPoint;
 use halfstep_sph::columns::bounds;
@@ -27,7 +27,7 @@ pub struct Walls<const D: usize> {
     /// Wall particle number of a slot, or padding.
     pub id: Vec<u32>,
     /// What the fluid sees.
-    pub shown: Shown<D>,
+    pub shown: PairParticles<D>,
     /// Own velocity u_w, m/s.
     pub(crate) own_velocity: Vectors<D>,
     pub(crate) normal: Vectors<D>,
@@ -53,7 +53,7 @@ impl<const D: usize> Walls<D> {
         let n = points.len();
         let mut walls = Self {
             id: (0..n as u32).collect(),
-            shown: Shown::new(n, state.density * volume),
+            shown: PairParticles::new(n, state.density * volume),
             own_velocity: vectors(n),
             normal: vectors(n),
             reverse_all: vec![0.0; n],

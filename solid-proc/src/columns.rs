@@ -19,7 +19,7 @@ pub(crate) fn vector<const D: usize>(columns: &Vectors<D>, slot: u32) -> [f64; D
 }
 
 /// What [`Particles`] views.
-pub(crate) struct Shown<const D: usize> {
+pub(crate) struct ParticleColumns<const D: usize> {
     reference: Vec<[f64; D]>,
     pub(crate) position: Vec<[f64; D]>,
     pub(crate) velocity: Vec<[f64; D]>,
@@ -27,7 +27,7 @@ pub(crate) struct Shown<const D: usize> {
     mass: Vec<f64>,
 }
 
-impl<const D: usize> Shown<D> {
+impl<const D: usize> ParticleColumns<D> {
     /// Particles of this mass each, kg (2D: kg/m), where the scene begins with them.
     pub(crate) fn new(points: &[SolidPoint<D>], mass: f64) -> Self {
         let reference: Vec<[f64; D]> = points.iter().map(|p| p.position).collect();

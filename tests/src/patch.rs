@@ -1,6 +1,6 @@
 //! Fluid particles in the engine's order, outside any run: what instruction counts and benchmarks work on.
 
-use halfstep_fluid::columns::Shown;
+use halfstep_fluid::columns::PairParticles;
 use halfstep_fluid::composition::Pass;
 use halfstep_fluid::rates::{PairEffect, RateLaw, RateSum};
 use halfstep_sph::kernel::{CubicSpline, Kernel};
@@ -28,7 +28,7 @@ pub struct Particle {
 #[derive(Clone, Debug)]
 pub struct Patch {
     /// The particles.
-    pub shown: Shown<2>,
+    pub shown: PairParticles<2>,
     /// Neighbours of the particles.
     pub list: ClusterList,
     /// Number of the particle in each slot, or padding.
@@ -38,7 +38,7 @@ pub struct Patch {
 impl Patch {
     /// Sorts particles and lists all pairs within `reach`.
     pub fn new(particles: &[Particle], reach: f64) -> Self {
-        let mut shown = Shown::<2>::new(particles.len(), 1.0);
+        let mut shown = PairParticles::<2>::new(particles.len(), 1.0);
         let mut pressure: Vec<f64> = particles.iter().map(|p| p.pressure).collect();
         for (k, p) in particles.iter().enumerate() {
             for d in 0..2 {

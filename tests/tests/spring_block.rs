@@ -75,7 +75,7 @@ fn fluid(config: &LinkConfig) {
             link.send_state(0, &last, &[]).unwrap();
             return;
         }
-        half_step = half_step.told(answer.dt, answer.next_time).next();
+        half_step = half_step.with_step(answer.dt, answer.next_time).next();
     }
 }
 

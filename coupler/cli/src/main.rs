@@ -217,11 +217,11 @@ fn run_scene(arguments: RunArguments, isa: Isa) -> ExitCode {
         Err(code) => return code,
     };
     let out = arguments.out.unwrap_or_else(|| PathBuf::from("out").join(&scene.name));
-    let foreign = match foreign_solids(&scene, &arguments.how.solid, &arguments.how.await_solid) {
-        Ok(foreign) => foreign,
+    let external = match external_solids(&scene, &arguments.how.solid, &arguments.how.await_solid) {
+        Ok(external) => external,
         Err(error) => return usage(&error),
     };
-    let options = match options(out, arguments.force, &arguments.how, foreign, isa) {
+    let options = match options(out, arguments.force, &arguments.how, external, isa) {
         Ok(options) => options,
         Err(error) => return usage(&error),
     };
@@ -232,11 +232,11 @@ fn run_scene(arguments: RunArguments, isa: Isa) -> ExitCode {
 }
 
 fn resume(arguments: &ResumeArguments, isa: Isa) -> ExitCode {
-    let foreign = run::read_scene(&arguments.dir).map_err(|error| error.to_string());
-    let foreign =
-        foreign.and_then(|scene| foreign_solids(&scene, &arguments.how.solid, &arguments.how.await_solid));
+    let external = run::read_scene(&arguments.dir).map_err(|error| error.to_string());
+    let external =
+        external.and_then(|scene| external_solids(&scene, &arguments.how.solid, &arguments.how.await_solid));
     let options =
-        foreign.and_then(|foreign| options(arguments.dir.clone(), false, &arguments.how, foreign, isa));
+        external.and_then(|external| options(arguments.dir.clone(), false, &arguments.how, external, isa));
     let options = match options {
         Ok(options) => options,
         Err(error) => return usage(&error),
@@ -277,10 +277,10 @@ fn options(
     out: PathBuf,
     force: bool,
     how: &HowArguments,
-    foreign: Vec<(Name, SolidSource)>,
+    external: Vec<(Name, SolidSource)>,
     isa: Isa,
 ) -> Result<RunOptions, String> {
-    if how.on_divergence > 0 && foreign.iter().any(|(_, source)| *source == SolidSource::ByHand) {
+    if how.on_divergence > 0 && external.iter().any(|(_, source)| *source == SolidSource::ByHand) {
         return Err(
             "--on-divergence retry starts all participants anew: it cannot with a solid started by hand"
                 .into(),
@@ -295,7 +295,7 @@ fn options(
         log: true,
         quiet: how.quiet,
         force,
-        foreign,
+        external,
         solid_wait: how.solid_wait,
         patience: how.patience,
         retries: how.on_divergence,
@@ -344,7 +344,7 @@ fn tell(scene: &Scene, out: &Path, (report, error): run::Ended) -> ExitCode {
 }
 
 /// The solids that are not built in. Where there is one solid its name may be left out.
-fn foreign_solids(
+fn external_solids(
     scene: &Scene,
     commands: &[String],
     awaited: &[String],
@@ -358,13 +358,13 @@ fn foreign_solids(
             known.join(", ")
         )),
     };
-    let mut foreign: Vec<(Name, SolidSource)> = Vec::new();
+    let mut external: Vec<(Name, SolidSource)> = Vec::new();
     let mut add = |name: &str, source| {
         let name: Name = name.parse().map_err(|error| format!("{error}"))?;
-        if foreign.iter().any(|(other, _)| *other == name) {
+        if external.iter().any(|(other, _)| *other == name) {
             return Err(format!("the solid `{name}` is named twice"));
         }
-        foreign.push((name, source));
+        external.push((name, source));
         Ok(())
     };
     for text in commands {
@@ -380,5 +380,5 @@ fn foreign_solids(
         let name = if text.is_empty() { only()? } else { known_solid(scene, text)? };
         add(name, SolidSource::ByHand)?;
     }
-    Ok(foreign)
+    Ok(external)
 }

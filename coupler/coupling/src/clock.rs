@@ -79,7 +79,7 @@ pub struct Tick {
 impl Tick {
     /// The first half of the step to n + 1; its time step is zero where the end is reached.
     pub fn half_step(&self) -> HalfStep {
-        HalfStep::begin(self.step, self.time).told(self.dt.unwrap_or(0.0), self.next_time)
+        HalfStep::begin(self.step, self.time).with_step(self.dt.unwrap_or(0.0), self.next_time)
     }
 
     /// The orders of the answer at a stage, but for checkpoints: see [`order`]. Only the state at n is written or

@@ -4,7 +4,7 @@ use crate::clock::{Clock, Limit, Tick};
 use crate::course::{Course, Progress};
 use crate::energy::Account;
 use crate::error::RunError;
-use crate::foreign::ForeignSolid;
+use crate::external::ExternalSolid;
 use crate::recorder::Measured;
 use crate::solids::{Jump, Solids};
 use halfstep_link::{CouplerPort, Expect, StateMessage};
@@ -70,14 +70,14 @@ pub struct Coupler<P: CouplerPort, const D: usize> {
 
 impl<P: CouplerPort, const D: usize> Coupler<P, D> {
     /// For a scene, on a port whose participants are connected, computing with an instruction set that the processor
-    /// has. `foreign` has an entry for each solid: what stands in for what a foreign solid does not do itself.
-    pub fn new(port: P, scene: &Scene, foreign: Vec<Option<ForeignSolid>>, isa: Isa) -> Self {
+    /// has. `external` has an entry for each solid: what stands in for what an external solid does not do itself.
+    pub fn new(port: P, scene: &Scene, external: Vec<Option<ExternalSolid>>, isa: Isa) -> Self {
         let participants = port.participants();
         let phases = scene.participants().into_iter().map(|participant| participant.phase).collect();
         Self {
             port,
             phases,
-            solids: Solids::new(scene, foreign, isa),
+            solids: Solids::new(scene, external, isa),
             probes: vec![Vec::new(); participants],
             abilities: Vec::new(),
             states: Vec::with_capacity(participants),
@@ -167,7 +167,7 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
         Ok(tick.dt.is_some())
     }
 
-    /// Takes what the participants measured on the state at n where a row is due, and notes it. The frames of foreign
+    /// Takes what the participants measured on the state at n where a row is due, and notes it. The frames of external
     /// solids are written.
     ///
     /// # Errors
@@ -206,7 +206,7 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
     pub fn end(&mut self, course: &mut Course) -> Result<Outcome, RunError> {
         self.receive(&course.progress, &Expect::last(self.half_step.step))?;
         self.solids.finish()?;
-        // All frames of foreign solids are on disk.
+        // All frames of external solids are on disk.
         self.complete_checkpoint(course)?;
         self.checks += self.states.len() as u64;
         if let Some(diverged) = self.grown.take() {
@@ -221,7 +221,7 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
         let Some(checkpoints) = &mut course.checkpoints else { return Ok(()) };
         let safe = |(place, state): (usize, &P::State)| {
             let header = state.header();
-            let frames = if self.solids.is_foreign(place) {
+            let frames = if self.solids.is_external(place) {
                 self.solids.frames_safe(place)
             } else {
                 header.frames_safe
@@ -263,7 +263,7 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
         let account = |(place, state): (usize, &'a P::State)| Account {
             name: self.port.name(place),
             phase: self.phases[place],
-            audit: (!self.solids.is_foreign(place)).then_some(&state.header().audit),
+            audit: (!self.solids.is_external(place)).then_some(&state.header().audit),
             work: work[place],
         };
         self.states.iter().enumerate().map(account).collect()
@@ -308,25 +308,25 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
             status::OK | status::FINISHED => Ok(()),
             status::DIVERGED => {
                 let names: Vec<Name> = (0..self.port.participants()).map(|k| self.port.name(k)).collect();
-                Err(Diverged::told(role, &names, header).into())
+                Err(Diverged::of_message(role, &names, header).into())
             }
             _ => Err(RunError::RoleFailed { role, step: header.step, said: None }),
         }
     }
 
-    /// Fetches the probe values of the state at n where a row is due, and writes the frames of foreign solids.
+    /// Fetches the probe values of the state at n where a row is due, and writes the frames of external solids.
     fn measure(&mut self, tick: &Tick) -> Result<(), RunError> {
         for (place, state) in self.states.iter().enumerate() {
             let values = &mut self.probes[place];
             values.clear();
             let measures = self.abilities[place] & ability::PROBES != 0;
-            if let Some((foreign, forces)) = self.solids.foreign(place) {
+            if let Some((external, forces)) = self.solids.external(place) {
                 if tick.frame {
-                    foreign.write(self.frame - 1, tick.time, state.records())?;
+                    external.write(self.frame - 1, tick.time, state.records())?;
                 }
                 if !measures {
                     if tick.row {
-                        values.extend_from_slice(foreign.measure(state.records(), forces));
+                        values.extend_from_slice(external.measure(state.records(), forces));
                     }
                     continue;
                 }

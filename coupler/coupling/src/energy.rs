@@ -10,7 +10,7 @@
 //! Dissipation makes growth negative. Above [`LIMIT`] or [`SOLID_LIMIT`] for [`PATIENCE`] states the run ends: a fast
 //! blow-up leaves the bounds of a particle before that, and a particle says more.
 //!
-//! The walls of a scene must be at rest for the fluid to be judged, a solid's clamps for the solid. A foreign solid's
+//! The walls of a scene must be at rest for the fluid to be judged, a solid's clamps for the solid. An external solid's
 //! energy is not known. With the
 //! phase-blind interface the fluid strains the solid as well, so both are judged as one.
 

@@ -20,7 +20,7 @@ pub mod couple;
 pub mod course;
 pub mod energy;
 pub mod error;
-pub mod foreign;
+pub mod external;
 pub mod local;
 pub mod no_room;
 pub mod recorder;

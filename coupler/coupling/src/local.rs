@@ -205,8 +205,8 @@ impl<const D: usize> LocalRun<D> {
             answers: vec![(ForceHeader::default(), Vec::new()); count],
             probes: vec![Vec::new(); count],
         };
-        let foreign = scene.solids.iter().map(|_| None).collect();
-        let mut coupler = Coupler::new(mailbox, scene, foreign, isa);
+        let external = scene.solids.iter().map(|_| None).collect();
+        let mut coupler = Coupler::new(mailbox, scene, external, isa);
         if let Some(checkpoint) = resumed {
             coupler.resume(&mut course.clock, checkpoint)?;
         }

@@ -20,7 +20,7 @@ pub fn write(folder: &Path, report: &Report) -> Result<(), OutputError> {
     atomic::replace_bytes(&path, &serde_json::to_vec_pretty(report).map_err(malformed)?)
 }
 
-/// Reads the report of a participant; `None` where it left none, as a foreign solid may.
+/// Reads the report of a participant; `None` where it left none, as an external solid may.
 ///
 /// # Errors
 /// There is a file that is no report.

@@ -2,7 +2,7 @@
 //! these do.
 
 use crate::error::RunError;
-use crate::foreign::ForeignSolid;
+use crate::external::ExternalSolid;
 use halfstep_interface::cross_viscosity::CrossViscosity;
 use halfstep_interface::{Interface, Parameters};
 use halfstep_link::{FLUID, StateMessage};
@@ -29,12 +29,12 @@ pub(crate) struct Jump {
 pub(crate) struct Solids<const D: usize> {
     /// Place of the first solid: 1 after a fluid, else 0.
     pub(crate) first: usize,
-    solids: Vec<SolidSide<D>>,
+    solids: Vec<CoupledSolid<D>>,
     cross: CrossViscosity<D>,
     fluid_forces: Vec<ForceRecord>,
 }
 
-struct SolidSide<const D: usize> {
+struct CoupledSolid<const D: usize> {
     /// `None` where there is no fluid.
     interface: Option<Interface<D>>,
     forces: Vec<ForceRecord>,
@@ -42,19 +42,19 @@ struct SolidSide<const D: usize> {
     at_n: Vec<[f64; 3]>,
     /// Number of its interface particles, once known.
     count: Option<u64>,
-    /// Positions of the state before, m: of a foreign solid.
+    /// Positions of the state before, m: of an external solid.
     before: Vec<[f64; 3]>,
     /// How far a particle may come between two states whatever its velocity, m.
     reach: f64,
     /// Hash of the state that a checkpoint was made of, as the solid published it.
     saved: u64,
-    foreign: Option<ForeignSolid>,
+    external: Option<ExternalSolid>,
 }
 
 impl<const D: usize> Solids<D> {
-    /// Of a scene; `foreign` has an entry for each.
-    pub(crate) fn new(scene: &Scene, foreign: Vec<Option<ForeignSolid>>, isa: Isa) -> Self {
-        let side = |(solid, foreign)| SolidSide {
+    /// Of a scene; `external` has an entry for each.
+    pub(crate) fn new(scene: &Scene, external: Vec<Option<ExternalSolid>>, isa: Isa) -> Self {
+        let side = |(solid, external)| CoupledSolid {
             interface: Parameters::new(scene, solid, isa).map(Interface::new),
             forces: Vec::new(),
             at_n: Vec::new(),
@@ -62,11 +62,11 @@ impl<const D: usize> Solids<D> {
             before: Vec::new(),
             reach: REACH * scene.smoothing_ratio * scene.resolution,
             saved: 0,
-            foreign,
+            external,
         };
         Self {
             first: usize::from(scene.fluid.is_some()),
-            solids: foreign.into_iter().enumerate().map(side).collect(),
+            solids: external.into_iter().enumerate().map(side).collect(),
             cross: CrossViscosity::default(),
             fluid_forces: Vec::new(),
         }
@@ -75,8 +75,8 @@ impl<const D: usize> Solids<D> {
     /// Takes the first states of a run that begins.
     pub(crate) fn begin(&mut self, states: &[impl StateMessage]) {
         for (side, state) in self.solids.iter_mut().zip(&states[self.first..]) {
-            if let Some(foreign) = &mut side.foreign {
-                foreign.begin(state.records());
+            if let Some(external) = &mut side.external {
+                external.begin(state.records());
             }
         }
     }
@@ -90,7 +90,7 @@ impl<const D: usize> Solids<D> {
 
     /// Place of a solid whose state is not the one that the checkpoint was made of.
     pub(crate) fn changed_since_saved<S: StateMessage>(&self, states: &[S]) -> Option<usize> {
-        let changed = |(side, state): (&SolidSide<D>, &S)| positions_hash(state.records()) != side.saved;
+        let changed = |(side, state): (&CoupledSolid<D>, &S)| positions_hash(state.records()) != side.saved;
         let solid = self.solids.iter().zip(&states[self.first..]).position(changed)?;
         Some(self.first + solid)
     }
@@ -105,11 +105,11 @@ impl<const D: usize> Solids<D> {
         counts.find(|(_, first, now)| first != now || *now == 0)
     }
 
-    /// A particle of a foreign solid that has come farther since the state before than the solid's velocities and the
+    /// A particle of an external solid that has come farther since the state before than the solid's velocities and the
     /// time step, s, explain. The fluid would take it for one that is too fast.
     pub(crate) fn jumped(&mut self, states: &[impl StateMessage], dt: f64) -> Option<Jump> {
         let all = self.solids.iter_mut().zip(&states[self.first..]).enumerate();
-        all.filter(|(_, (side, _))| side.foreign.is_some()).find_map(|(solid, (side, state))| {
+        all.filter(|(_, (side, _))| side.external.is_some()).find_map(|(solid, (side, state))| {
             let (records, reach) = (state.records(), side.reach);
             let length = |v: [f64; 3]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
             let way =
@@ -127,26 +127,26 @@ impl<const D: usize> Solids<D> {
     }
 
     /// Another program computes this participant.
-    pub(crate) fn is_foreign(&self, place: usize) -> bool {
-        place.checked_sub(self.first).is_some_and(|solid| self.solids[solid].foreign.is_some())
+    pub(crate) fn is_external(&self, place: usize) -> bool {
+        place.checked_sub(self.first).is_some_and(|solid| self.solids[solid].external.is_some())
     }
 
     /// What stands in for a participant that another program computes, and the forces on it.
-    pub(crate) fn foreign(&mut self, place: usize) -> Option<(&mut ForeignSolid, &[ForceRecord])> {
+    pub(crate) fn external(&mut self, place: usize) -> Option<(&mut ExternalSolid, &[ForceRecord])> {
         let side = &mut self.solids[place.checked_sub(self.first)?];
-        Some((side.foreign.as_mut()?, &side.forces))
+        Some((side.external.as_mut()?, &side.forces))
     }
 
-    /// Number of frames of a foreign solid that are on disk.
+    /// Number of frames of an external solid that are on disk.
     pub(crate) fn frames_safe(&self, place: usize) -> u32 {
         let side = place.checked_sub(self.first).map(|solid| &self.solids[solid]);
-        side.and_then(|side| side.foreign.as_ref()).map_or(u32::MAX, ForeignSolid::frames_safe)
+        side.and_then(|side| side.external.as_ref()).map_or(u32::MAX, ExternalSolid::frames_safe)
     }
 
-    /// Waits until the frames of foreign solids are on disk.
+    /// Waits until the frames of external solids are on disk.
     pub(crate) fn finish(&mut self) -> Result<(), RunError> {
-        let mut foreign = self.solids.iter_mut().filter_map(|side| side.foreign.as_mut());
-        Ok(foreign.try_for_each(ForeignSolid::finish)?)
+        let mut external = self.solids.iter_mut().filter_map(|side| side.external.as_mut());
+        Ok(external.try_for_each(ExternalSolid::finish)?)
     }
 
     /// Work of the fluid on each participant from the state at n before to this one, J: the force of n + 1/2 moved a
@@ -241,7 +241,7 @@ impl<const D: usize> State for Solids<D> {
     }
 }
 
-impl<const D: usize> State for SolidSide<D> {
+impl<const D: usize> State for CoupledSolid<D> {
     fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
         fields.optional_count("count", &mut self.count)?;
         fields.count("published", &mut self.saved)?;
@@ -262,15 +262,15 @@ impl<const D: usize> State for SolidSide<D> {
         if let Some(interface) = &mut self.interface {
             fields.part("interface", interface)?;
         }
-        match &mut self.foreign {
-            Some(foreign) => fields.part("foreign", foreign),
+        match &mut self.external {
+            Some(external) => fields.part("external", external),
             None => Ok(()),
         }
     }
 
     fn restored(&mut self) -> Result<(), StateError> {
         self.interface.as_mut().map_or(Ok(()), State::restored)?;
-        self.foreign.as_mut().map_or(Ok(()), State::restored)
+        self.external.as_mut().map_or(Ok(()), State::restored)
     }
 }
 

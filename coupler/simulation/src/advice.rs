@@ -6,8 +6,8 @@ use halfstep_sph::Phase;
 use halfstep_wire::Name;
 use halfstep_wire::failure::{Diverged, Quantity};
 
-/// The keys to change, with their present values. `foreign`: the solids that other programs compute.
-pub(crate) fn advice(diverged: &Diverged, scene: &Scene, clock: &Clock, foreign: &[Name]) -> String {
+/// The keys to change, with their present values. `external`: the solids that other programs compute.
+pub(crate) fn advice(diverged: &Diverged, scene: &Scene, clock: &Clock, external: &[Name]) -> String {
     let name = diverged.participant;
     let of_solid = scene.solids.iter().any(|solid| solid.name == name.as_str());
     let phase = if of_solid { Phase::Solid } else { Phase::Fluid };
@@ -22,7 +22,7 @@ pub(crate) fn advice(diverged: &Diverged, scene: &Scene, clock: &Clock, foreign:
             limit.participant, limit.dt
         );
     }
-    if foreign.contains(&name) {
+    if external.contains(&name) {
         return format!("the {name} is not this program's: look at what its process does");
     }
     let section = match scene.solids.as_slice() {

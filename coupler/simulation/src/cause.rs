@@ -19,7 +19,7 @@ pub(crate) struct Cause<'a> {
     /// The run's log.
     pub(crate) log: &'a Path,
     /// Solids of other programs.
-    pub(crate) foreign: &'a [Name],
+    pub(crate) external: &'a [Name],
     /// Step n and its time, s; `None`: the run had not begun.
     pub(crate) at: Option<(u64, f64)>,
 }
@@ -29,11 +29,11 @@ impl Cause<'_> {
     pub(crate) fn of(&self, error: RunError, ended: Option<(Name, ExitStatus)>) -> RunError {
         match (error, ended) {
             (RunError::RoleFailed { role, step, .. }, _) => {
-                let said = last_words(self.log, role, self.foreign.contains(&role));
+                let said = last_words(self.log, role, self.external.contains(&role));
                 RunError::RoleFailed { role, step, said }
             }
             (RunError::Link(link), Some((role, status))) if !names_the_fault(&link) => {
-                let is_own = !self.foreign.contains(&role);
+                let is_own = !self.external.contains(&role);
                 // Whom a signal ends has no last words.
                 let words = || last_words(self.log, role, !is_own);
                 let said = if status.signal().is_some() { None } else { words() };
@@ -58,7 +58,7 @@ fn names_the_fault(link: &LinkError) -> bool {
 
 /// The last line of a log in which a process tells of its error; of a program of the user's the last line that no other
 /// process has written.
-fn last_words(log: &Path, role: Name, foreign: bool) -> Option<String> {
+fn last_words(log: &Path, role: Name, external: bool) -> Option<String> {
     let mut file = File::open(log).ok()?;
     let length = file.metadata().ok()?.len();
     file.seek(SeekFrom::Start(length.saturating_sub(TAIL))).ok()?;
@@ -66,7 +66,7 @@ fn last_words(log: &Path, role: Name, foreign: bool) -> Option<String> {
     file.take(TAIL).read_to_end(&mut text).ok()?;
     let text = String::from_utf8_lossy(&text);
     let mark = format!(": {role}: ");
-    let words = |line: &str| match (line.split_once(" ERROR "), foreign) {
+    let words = |line: &str| match (line.split_once(" ERROR "), external) {
         (Some((_, rest)), false) => rest.split_once(&mark).map(|(_, words)| words.trim().to_owned()),
         (None, true) => Some(line.trim().to_owned()).filter(|line| !line.is_empty() && !is_of_a_role(line)),
         _ => None,
@@ -99,7 +99,7 @@ mod tests {
         let log = folder.path().join("log.txt");
         assert_eq!(last_words(&log, Name::FLUID, false), None, "there is no log");
         std::fs::write(&log, LOG).unwrap();
-        let words = |role, foreign| last_words(&log, role, foreign);
+        let words = |role, external| last_words(&log, role, external);
         assert_eq!(words(Name::FLUID, false).unwrap(), "cannot write f.hdf: No space left on device");
         assert_eq!(words(Name::SOLID, false).unwrap(), "the fluid ended the run at step 3, stage 1");
         assert_eq!(words(Name::SOLID, true).unwrap(), "ValueError: no such key");
@@ -112,8 +112,8 @@ mod tests {
         std::fs::write(&log, LOG).unwrap();
         let at = Some((12, 0.25));
         let failed = ExitStatus::from_raw(2 << 8);
-        let told = |foreign: &[Name], at, ended, link: LinkError| {
-            let cause = Cause { log: &log, foreign, at };
+        let told = |external: &[Name], at, ended, link: LinkError| {
+            let cause = Cause { log: &log, external, at };
             cause.of(RunError::Link(link), Some(ended)).to_string()
         };
         let died = LinkError::PeerDied { peer: Name::FLUID };

@@ -98,7 +98,7 @@ fn describe_in<const D: usize>(scene: &Scene, isa: Isa) -> String {
         },
     );
     text.push('\n');
-    for effect in effects::ledger(scene, &counts) {
+    for effect in effects::reports(scene, &counts) {
         let _ =
             writeln!(text, "{:<28}{:<5}{}", effect.name, if effect.on { "on" } else { "off" }, effect.why);
     }

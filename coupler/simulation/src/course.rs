@@ -78,13 +78,13 @@ fn names(scene: &Scene) -> Result<Vec<Name>, RunError> {
 /// Puts the end of a run in one process into its report; returns whether it was stopped.
 pub(crate) fn report_local(
     scene: &Scene,
-    foreign: &[(Name, SolidSource)],
+    external: &[(Name, SolidSource)],
     (outcome, reports): (Outcome, Vec<Report>),
     report: &mut RunReport,
 ) -> bool {
     report_outcome(scene, &outcome, report);
     let reports: Vec<Option<Report>> = reports.into_iter().map(Some).collect();
-    report_participants(scene, foreign, &outcome.last, &reports, None, report);
+    report_participants(scene, external, &outcome.last, &reports, None, report);
     outcome.stopped
 }
 
@@ -93,7 +93,7 @@ pub(crate) fn end(
     course: &mut Course,
     result: Result<bool, RunError>,
     scene: &Scene,
-    foreign: &[(Name, SolidSource)],
+    external: &[(Name, SolidSource)],
     folder: Option<&RunDirectory>,
     mut report: RunReport,
 ) -> (RunReport, Option<RunError>) {
@@ -102,8 +102,8 @@ pub(crate) fn end(
     let rows = recorder.synchronise();
     let result = result.and_then(|stopped| Ok(rows.map(|()| stopped)?));
     recorder.finish(&mut report);
-    let foreign: Vec<Name> = foreign.iter().map(|(name, _)| *name).collect();
-    let mut error = conclude(result, scene, clock, &foreign, &mut report);
+    let external: Vec<Name> = external.iter().map(|(name, _)| *name).collect();
+    let mut error = conclude(result, scene, clock, &external, &mut report);
     let remarked = remarks::outcome(&report);
     remarked.iter().for_each(|warning| tracing::warn!("{warning}"));
     report.warnings.extend(remarked);
@@ -126,7 +126,7 @@ fn conclude(
     result: Result<bool, RunError>,
     scene: &Scene,
     clock: &Clock,
-    foreign: &[Name],
+    external: &[Name],
     report: &mut RunReport,
 ) -> Option<RunError> {
     match result {
@@ -138,7 +138,7 @@ fn conclude(
             report.status = Some(match &mut error {
                 RunError::StoppedAtOnce { .. } => RunStatus::Stopped,
                 RunError::Diverged { diverged, hint } => {
-                    *hint = advice(diverged, scene, clock, foreign);
+                    *hint = advice(diverged, scene, clock, external);
                     RunStatus::Diverged
                 }
                 _ => RunStatus::Failed,

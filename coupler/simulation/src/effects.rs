@@ -1,4 +1,4 @@
-//! The ledger of effects: which take part in a scene, why, and what they cost.
+//! The effects of a scene: which take part in a scene, why, and what they cost.
 
 use halfstep_output::RunReport;
 use halfstep_output::run_json::EffectReport;
@@ -23,8 +23,8 @@ pub(crate) fn row(decision: Decision) -> EffectReport {
     EffectReport { name: name.into(), on, why, ..EffectReport::default() }
 }
 
-/// The ledger of effects of a scene, without shares.
-pub(crate) fn ledger(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
+/// The effects of a scene, without shares.
+pub(crate) fn reports(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
     let row = |name, on, why| row(Decision { name, on, why });
     let (fluid, solid) = (scene.fluid.is_some(), !scene.solids.is_empty());
     let moving = scene.gravity.iter().any(|&g| g != 0.0);
@@ -82,7 +82,7 @@ pub(crate) fn ledger(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
     list
 }
 
-/// Puts the shares of the computing time of all roles into the ledger, as the participants reported them. `coupler`:
+/// Puts the shares of the computing time of all roles into the rows, as the participants reported them. `coupler`:
 /// the coupler's own computing time, s.
 pub(crate) fn share(report: &mut RunReport, reports: &[(Phase, Report)], coupler: f64) {
     let total = coupler + reports.iter().map(|(_, own)| own.compute).sum::<f64>();
@@ -111,7 +111,7 @@ pub(crate) fn share(report: &mut RunReport, reports: &[(Phase, Report)], coupler
     }
 }
 
-/// The ledger has a row that can show what the effect costs. (A solid's artificial viscosity has none without a
+/// There is a row that can show what the effect costs. (A solid's artificial viscosity has none without a
 /// fluid's: then it is part of the solid.)
 fn is_on(report: &RunReport, effect: EffectName) -> bool {
     report.effects.iter().any(|row| row.on && row.name == effect.name())

@@ -13,7 +13,7 @@ use std::fmt;
 /// Steps that are run to measure the shares.
 const STEPS: f64 = 20.0;
 
-/// The ledger of a scene, its shares measured over the scene's first steps.
+/// The effects of a scene, their shares measured over the scene's first steps.
 #[derive(Clone, Debug, Serialize)]
 pub struct Explanation {
     /// The scene's name.

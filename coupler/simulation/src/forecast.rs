@@ -32,7 +32,7 @@ pub(crate) struct Forecast {
 
 impl Forecast {
     /// Of a scene's run.
-    pub(crate) fn of<const D: usize>(scene: &Scene, layout: &Layout<D>, foreign: &[Name]) -> Self {
+    pub(crate) fn of<const D: usize>(scene: &Scene, layout: &Layout<D>, external: &[Name]) -> Self {
         let counts = layout.counts();
         let instants = |interval: f64| (scene.end_time / interval).min(1e15) as u64 + 2;
         let frames = instants(scene.output.frame_interval);
@@ -43,13 +43,13 @@ impl Forecast {
         let columns: u64 =
             scene.probes.iter().map(|probe| probe.columns(scene.dimension).len() as u64 + 1).sum();
         let rows = instants(scene.output.probe_interval).saturating_mul(NUMBER * (columns + 1));
-        let shared = Self::link(scene, layout, foreign).map_or(0, |link| link.shared_memory_bytes());
+        let shared = Self::link(scene, layout, external).map_or(0, |link| link.shared_memory_bytes());
         Self { shared, disk: of_frames.saturating_add(saved).saturating_add(rows), frames }
     }
 
-    fn link<const D: usize>(scene: &Scene, layout: &Layout<D>, foreign: &[Name]) -> Option<LinkConfig> {
+    fn link<const D: usize>(scene: &Scene, layout: &Layout<D>, external: &[Name]) -> Option<LinkConfig> {
         let coupled = scene.fluid.is_some() && !scene.solids.is_empty();
-        coupled.then(|| participants(scene, layout, foreign).ok().map(LinkConfig::new)).flatten()
+        coupled.then(|| participants(scene, layout, external).ok().map(LinkConfig::new)).flatten()
     }
 }
 
@@ -64,11 +64,11 @@ pub(crate) fn free_disk(out: &Path) -> Option<u64> {
 pub(crate) fn check<const D: usize>(
     scene: &Scene,
     layout: &Layout<D>,
-    foreign: &[Name],
+    external: &[Name],
     out: &Path,
     as_processes: bool,
 ) -> Result<(), RunError> {
-    let Forecast { disk, frames, .. } = Forecast::of(scene, layout, foreign);
+    let Forecast { disk, frames, .. } = Forecast::of(scene, layout, external);
     if let Some(free) = free_disk(out).filter(|free| *free < disk) {
         return Err(RunError::System(format!(
             "the run will write about {}, {frames} frames among it, and {} are free in {}: raise output.frame_interval, \
@@ -78,7 +78,7 @@ pub(crate) fn check<const D: usize>(
             out.display()
         )));
     }
-    if let (true, Some(config)) = (as_processes, Forecast::link(scene, layout, foreign)) {
+    if let (true, Some(config)) = (as_processes, Forecast::link(scene, layout, external)) {
         link::raise_descriptor_limit();
         link::check_descriptors(&config)?;
         link::check_all_room(&config)?;

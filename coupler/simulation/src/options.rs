@@ -42,7 +42,7 @@ pub struct RunOptions {
     /// An earlier run in the folder is removed.
     pub force: bool,
     /// Solids that are not built in, by name.
-    pub foreign: Vec<(Name, SolidSource)>,
+    pub external: Vec<(Name, SolidSource)>,
     /// How long to wait for a solid started by hand, s.
     pub solid_wait: f64,
     /// How long a participant that is alive may be silent, s.
@@ -64,7 +64,7 @@ impl RunOptions {
             log: false,
             quiet: true,
             force: false,
-            foreign: Vec::new(),
+            external: Vec::new(),
             solid_wait: 60.0,
             patience: 600.0,
             retries: 0,
@@ -73,19 +73,19 @@ impl RunOptions {
     }
 
     /// Names of the solids that are not built in.
-    pub fn foreign_names(&self) -> Vec<Name> {
-        self.foreign.iter().map(|(name, _)| *name).collect()
+    pub fn external_names(&self) -> Vec<Name> {
+        self.external.iter().map(|(name, _)| *name).collect()
     }
 
     /// Where a solid comes from; `None`: it is built in.
     pub fn source(&self, name: Name) -> Option<&SolidSource> {
-        source(&self.foreign, name)
+        source(&self.external, name)
     }
 }
 
 /// Where a solid comes from that may be among those that are not built in.
-pub(crate) fn source(foreign: &[(Name, SolidSource)], name: Name) -> Option<&SolidSource> {
-    foreign.iter().find(|(known, _)| *known == name).map(|(_, source)| source)
+pub(crate) fn source(external: &[(Name, SolidSource)], name: Name) -> Option<&SolidSource> {
+    external.iter().find(|(known, _)| *known == name).map(|(_, source)| source)
 }
 
 /// The name of a solid of the scene.

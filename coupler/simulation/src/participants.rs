@@ -15,14 +15,14 @@ use halfstep_wire::Name;
 use halfstep_wire::protocol::StateHeader;
 
 /// The participants of a coupled scene with the sizes of their messages: each in the process that the scene names,
-/// those in `foreign` in one of their own.
+/// those in `external` in one of their own.
 ///
 /// # Errors
 /// A name of the scene is none.
 pub(crate) fn participants<const D: usize>(
     scene: &Scene,
     layout: &Layout<D>,
-    foreign: &[Name],
+    external: &[Name],
 ) -> Result<Vec<Participant>, RunError> {
     let solids = layout.solid_counts(scene);
     let name = |text: &str| text.parse::<Name>().map_err(|e| RunError::System(e.to_string()));
@@ -31,26 +31,26 @@ pub(crate) fn participants<const D: usize>(
     let mut all_solids = 0.0;
     for (place, participant) in scene.participants().into_iter().enumerate() {
         let own = name(&participant.name)?;
-        let is_foreign = foreign.contains(&own);
+        let is_external = external.contains(&own);
         let capacity = match place {
             FLUID => 0,
-            _ if is_foreign => solids[place - 1].max(4096),
+            _ if is_external => solids[place - 1].max(4096),
             _ => solids[place - 1],
         };
         if place != FLUID {
             let cells = (scene.solid_spacing(place - 1) / scene.resolution).powi(D as i32);
-            all_solids += capacity as f64 * if is_foreign { 1.0 } else { cells };
+            all_solids += capacity as f64 * if is_external { 1.0 } else { cells };
         }
         participants.push(Participant {
             name: own,
-            process: if is_foreign { own } else { name(&participant.process)? },
+            process: if is_external { own } else { name(&participant.process)? },
             capacity: capacity.max(1) as u32,
             probes: values(scene, place) as u32,
         });
     }
     let shared = |k: &usize| {
         let own = &participants[*k];
-        foreign.contains(&own.name)
+        external.contains(&own.name)
             && participants.iter().any(|other| other.name != own.name && other.process == own.process)
     };
     if let Some(k) = (0..participants.len()).find(shared) {
@@ -86,7 +86,7 @@ pub(crate) fn report_outcome(scene: &Scene, outcome: &Outcome, report: &mut RunR
 /// Puts what the participants said at their ends into the report: sums by phase, and a row for each of them.
 pub(crate) fn report_participants(
     scene: &Scene,
-    foreign: &[(Name, SolidSource)],
+    external: &[(Name, SolidSource)],
     last: &[StateHeader],
     reports: &[Option<Report>],
     config: Option<&LinkConfig>,
@@ -118,7 +118,7 @@ pub(crate) fn report_participants(
         if let Some(own) = pairs {
             *evaluations.get_or_insert(0) += own;
         }
-        let source = participant.name.parse().ok().and_then(|name| source(foreign, name));
+        let source = participant.name.parse().ok().and_then(|name| source(external, name));
         let model = match participant.phase {
             Phase::Fluid => Some("weakly-compressible".to_owned()),
             _ => scene

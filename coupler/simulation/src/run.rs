@@ -26,7 +26,7 @@ pub type Ended = (RunReport, Option<RunError>);
 /// # Errors
 /// Nothing could be started or written. A run that failed is a report with its error.
 pub fn run(scene: &Scene, options: &RunOptions) -> Result<Ended, RunError> {
-    check_foreign(scene, options)?;
+    check_external(scene, options)?;
     // Before an earlier run is removed.
     check_resources(scene, options)?;
     let directory = RunDirectory::create(&options.out, options.force)?;
@@ -78,7 +78,7 @@ pub fn resume(options: &RunOptions, until: Option<f64>) -> Result<(Scene, Ended)
     // Nobody else changes what is read from here on.
     let directory = RunDirectory::reopen(dir)?;
     let mut scene = read_scene(dir)?;
-    check_foreign(&scene, options)?;
+    check_external(&scene, options)?;
     let checkpoint = Checkpoint::newest(dir, &scene, options.isa)?;
     let earlier = RunReport::read(&dir.join("run.json")).unwrap_or_default();
     match until {
@@ -128,20 +128,20 @@ pub fn draw(scene: &Scene, dir: &Path) -> [Result<Option<PathBuf>, OutputError>;
 }
 
 fn check_resources(scene: &Scene, options: &RunOptions) -> Result<(), RunError> {
-    let foreign = options.foreign_names();
+    let external = options.external_names();
     let (out, as_processes) = (&options.out, options.launcher.is_some());
     let checked = dispatch!(scene.dimension, D => {
         let layout = geometry::layout::<D>(scene);
-        forecast::check(scene, &layout, &foreign, out, as_processes)
+        forecast::check(scene, &layout, &external, out, as_processes)
     });
     checked.unwrap_or_else(|| Err(unknown_dimension(scene)))
 }
 
-fn check_foreign(scene: &Scene, options: &RunOptions) -> Result<(), RunError> {
-    if !options.foreign.is_empty() && (scene.fluid.is_none() || scene.solids.is_empty()) {
+fn check_external(scene: &Scene, options: &RunOptions) -> Result<(), RunError> {
+    if !options.external.is_empty() && (scene.fluid.is_none() || scene.solids.is_empty()) {
         return Err(RunError::System("--solid needs a scene with [fluid] and [solid]".into()));
     }
-    for name in options.foreign_names() {
+    for name in options.external_names() {
         known_solid(scene, name.as_str()).map_err(RunError::System)?;
     }
     Ok(())
@@ -161,7 +161,7 @@ pub(crate) fn begin_report<const D: usize>(
         particles: Particles { fluid: counts.fluid, solid: counts.solid, wall: counts.wall, removed: 0 },
         ..RunReport::default()
     };
-    report.effects = effects::ledger(scene, &counts);
+    report.effects = effects::reports(scene, &counts);
     report.audit.isa = Some(isa.bits_name().into());
     Ok(report)
 }
@@ -218,7 +218,7 @@ fn execute_in<const D: usize>(
         course = ended;
         stopped
     };
-    Ok(course::end(&mut course, result, scene, &options.foreign, Some(directory), report))
+    Ok(course::end(&mut course, result, scene, &options.external, Some(directory), report))
 }
 
 /// What this process has to say goes to the run's log, beside what its children say.
@@ -263,7 +263,7 @@ fn local<const D: usize>(
         let members = roles::members(scene, &places, options.isa, Some(directory.path()), from)?;
         let coupler = checkpoint.map(|checkpoint| &checkpoint.coupler);
         let mut run = LocalRun::<D>::new(members, scene, course, options.isa, coupler)?;
-        let result = run.run().map(|ended| course::report_local(scene, &options.foreign, ended, report));
+        let result = run.run().map(|ended| course::report_local(scene, &options.external, ended, report));
         Ok((run.into_course(), result))
     })?
 }

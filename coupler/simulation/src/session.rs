@@ -9,7 +9,7 @@ use crate::silence::{Silence, TICK, TOLD};
 use halfstep_coupling::couple::{Coupler, Outcome};
 use halfstep_coupling::course::Course;
 use halfstep_coupling::error::RunError;
-use halfstep_coupling::foreign::ForeignSolid;
+use halfstep_coupling::external::ExternalSolid;
 use halfstep_coupling::supervise::Children;
 use halfstep_coupling::{no_room, say};
 use halfstep_coupling::{reports, roles};
@@ -49,9 +49,9 @@ impl<'a, const D: usize> Session<'a, D> {
         checkpoint: Option<&'a Checkpoint>,
         layout: &Layout<D>,
     ) -> Result<Self, RunError> {
-        let mut config = LinkConfig::new(participants(scene, layout, &options.foreign_names())?);
+        let mut config = LinkConfig::new(participants(scene, layout, &options.external_names())?);
         config.patience_seconds = options.patience;
-        if options.foreign.iter().any(|(_, source)| *source == SolidSource::ByHand) {
+        if options.external.iter().any(|(_, source)| *source == SolidSource::ByHand) {
             config.handshake_seconds = options.solid_wait;
         }
         Ok(Self { scene, options, directory, checkpoint, config })
@@ -93,7 +93,7 @@ impl<'a, const D: usize> Session<'a, D> {
                 }
                 self.as_processes(course, launcher)
             }
-            None if self.options.foreign.is_empty() => self.as_threads(course),
+            None if self.options.external.is_empty() => self.as_threads(course),
             None => Err(RunError::System("a solid of another program needs a launcher of processes".into())),
         });
         drop(claim);
@@ -117,7 +117,7 @@ impl<'a, const D: usize> Session<'a, D> {
         });
         report_participants(
             self.scene,
-            &self.options.foreign,
+            &self.options.external,
             &outcome.last,
             &own,
             Some(&self.config),
@@ -195,8 +195,8 @@ impl<'a, const D: usize> Session<'a, D> {
             let (early, silent) = watcher.join().unwrap_or((None, None));
             match (result, early, silent) {
                 (Err(error @ RunError::Link(_)), Some(ended), _) => {
-                    let foreign = self.options.foreign_names();
-                    Err(Cause { log: &log, foreign: &foreign, at: None }.of(error, Some(ended)))
+                    let external = self.options.external_names();
+                    Err(Cause { log: &log, external: &external, at: None }.of(error, Some(ended)))
                 }
                 (Err(RunError::Link(_)), _, Some((role, silence))) => {
                     Err(RunError::StoppedAtOnce { role, seconds: silence.as_secs_f64() })
@@ -232,9 +232,9 @@ impl<'a, const D: usize> Session<'a, D> {
                         RunError::NoSolid { seconds }
                     }
                     (error, ended) => {
-                        let foreign = self.options.foreign_names();
+                        let external = self.options.external_names();
                         let at = (!waiting).then(|| (course.clock.step(), course.clock.time()));
-                        Cause { log: &log, foreign: &foreign, at }.of(error, ended)
+                        Cause { log: &log, external: &external, at }.of(error, ended)
                     }
                 })
             }
@@ -271,14 +271,14 @@ impl<'a, const D: usize> Session<'a, D> {
         link: CouplerLink<S>,
         course: &mut Course,
     ) -> Result<Outcome, RunError> {
-        let foreign = |(place, participant): (usize, &Participant)| {
+        let external = |(place, participant): (usize, &Participant)| {
             let name = participant.name;
-            let stands_in = || ForeignSolid::new(self.scene, place, name, self.directory.path());
+            let stands_in = || ExternalSolid::new(self.scene, place, name, self.directory.path());
             self.options.source(name).map(|_| stands_in()).transpose()
         };
         let solids = self.config.participants.iter().enumerate().skip(1);
-        let foreign = solids.map(foreign).collect::<Result<Vec<_>, _>>()?;
-        let mut coupler = Coupler::<_, D>::new(link, self.scene, foreign, self.options.isa);
+        let external = solids.map(external).collect::<Result<Vec<_>, _>>()?;
+        let mut coupler = Coupler::<_, D>::new(link, self.scene, external, self.options.isa);
         if let Some(checkpoint) = self.checkpoint {
             coupler.resume(&mut course.clock, &checkpoint.coupler)?;
         }

@@ -5,7 +5,7 @@
 
 use super::artificial_viscosity::ArtificialViscosity;
 use super::{FluidEffect, Listed, Neighbourhood, evaluations};
-use crate::columns::{Shown, fit, four};
+use crate::columns::{PairParticles, fit, four};
 use crate::composition::Composition;
 use crate::rates::{FluidPair, PairEffect, PairRates};
 use crate::walls::Walls;
@@ -34,9 +34,9 @@ pub struct GradientLaw<'a, K, const D: usize> {
     /// Kernel.
     pub kernel: K,
     /// Fluid.
-    pub targets: &'a Shown<D>,
+    pub targets: &'a PairParticles<D>,
     /// Fluid or walls.
-    pub sources: &'a Shown<D>,
+    pub sources: &'a PairParticles<D>,
 }
 
 impl<K: Kernel<D>, const D: usize> PairLaw<D> for GradientLaw<'_, K, D> {

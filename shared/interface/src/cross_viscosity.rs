@@ -7,7 +7,7 @@
 //! (c_f + c_s) / 2 with phase-blind coupling; with the moving wall, where the solid shows the fluid the mass and
 //! density of the fluid that it displaces, c_ij = c_f.
 
-use crate::{Interface, Side};
+use crate::{Interface, InterfaceParticles};
 use halfstep_scene::Treatment;
 use halfstep_sph::artificial_viscosity::damping;
 use halfstep_sph::fade::Fade;
@@ -24,8 +24,8 @@ const GONE: f64 = 1.25;
 
 struct Law<'a, K, const D: usize> {
     kernel: K,
-    targets: &'a Side<D>,
-    sources: &'a Side<D>,
+    targets: &'a InterfaceParticles<D>,
+    sources: &'a InterfaceParticles<D>,
     /// C c_ij between particles far from each other, m/s.
     far: f64,
     /// What being near adds, m/s.
@@ -119,8 +119,8 @@ impl<const D: usize> CrossViscosity<D> {
     fn evaluate(
         &mut self,
         interface: &Interface<D>,
-        targets: &Side<D>,
-        sources: &Side<D>,
+        targets: &InterfaceParticles<D>,
+        sources: &InterfaceParticles<D>,
         list: &ClusterList,
         mut visit: impl FnMut(usize, [f64; D]),
     ) {

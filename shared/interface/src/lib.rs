@@ -27,19 +27,19 @@
 //! ```
 
 pub mod cross_viscosity;
+mod interface_particles;
 mod moving_wall;
 mod phase_blind;
 mod screen;
 #[cfg(test)]
 mod screen_tests;
-mod side;
 mod state;
 #[cfg(test)]
 mod symmetry_tests;
 mod thin_plate;
 
+pub use interface_particles::InterfaceParticles;
 pub use phase_blind::SolidRates;
-pub use side::Side;
 pub use thin_plate::thin_plate_screen;
 
 use halfstep_scene::geometry::Plate;
@@ -143,9 +143,9 @@ pub struct Interface<const D: usize> {
     /// Parameters.
     pub parameters: Parameters<D>,
     /// The fluid's interface particles.
-    pub fluid: Side<D>,
+    pub fluid: InterfaceParticles<D>,
     /// The solid's interface particles.
-    pub solid: Side<D>,
+    pub solid: InterfaceParticles<D>,
     /// For each cluster of fluid particles its solid neighbours.
     pub fluid_list: ClusterList,
     /// For each cluster of solid particles its fluid neighbours.
@@ -163,8 +163,8 @@ impl<const D: usize> Interface<D> {
     pub fn new(parameters: Parameters<D>) -> Self {
         Self {
             parameters,
-            fluid: Side::default(),
-            solid: Side::default(),
+            fluid: InterfaceParticles::default(),
+            solid: InterfaceParticles::default(),
             fluid_list: ClusterList::default(),
             solid_list: ClusterList::default(),
             epoch: None,

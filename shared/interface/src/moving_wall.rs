@@ -8,7 +8,7 @@
 //!   m_f a_f += -sum_s m_f m_s (p_f/rho_f² + p_s/rho_s²) grad W,
 //! and the solid receives the opposite of each pair force. Its density and strain do not see the fluid.
 
-use super::{FluidSum, Interface, Parameters, Side, SolidForce};
+use super::{FluidSum, Interface, InterfaceParticles, Parameters, SolidForce};
 use halfstep_sph::extrapolation::{Extrapolation, ExtrapolationSum};
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::{Arch, LANES, Lane};
@@ -70,7 +70,7 @@ pub(super) trait WallPressure<const D: usize>: Copy + Send + Sync {
 
 /// One pressure whatever the fluid's place is: the columns of the solid.
 #[derive(Clone, Copy)]
-struct OneFace<'a, const D: usize>(&'a Side<D>);
+struct OneFace<'a, const D: usize>(&'a InterfaceParticles<D>);
 
 impl<const D: usize> WallPressure<D> for OneFace<'_, D> {
     type Own = Lane;
@@ -102,8 +102,8 @@ struct OfFluid<const D: usize> {
 
 struct OnFluid<'a, K, S, const D: usize> {
     kernel: K,
-    targets: &'a Side<D>,
-    sources: &'a Side<D>,
+    targets: &'a InterfaceParticles<D>,
+    sources: &'a InterfaceParticles<D>,
     wall: S,
 }
 
@@ -145,8 +145,8 @@ impl<K: Kernel<D>, S: WallPressure<D>, const D: usize> PairLaw<D> for OnFluid<'_
 
 struct OnSolid<'a, K, S, const D: usize> {
     kernel: K,
-    targets: &'a Side<D>,
-    sources: &'a Side<D>,
+    targets: &'a InterfaceParticles<D>,
+    sources: &'a InterfaceParticles<D>,
     wall: S,
 }
 

@@ -7,7 +7,7 @@
 //! over the neighbours j of the other phase. The fluid shows -p I only. The artificial viscosity between the phases is
 //! left out here: f_i replaces it.
 
-use super::{FluidSum, Interface, Side};
+use super::{FluidSum, Interface, InterfaceParticles};
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::{Arch, Lane};
 use halfstep_sph::pair::{self, PairLaw, distance, dot};
@@ -51,8 +51,8 @@ struct Target<const D: usize> {
 
 struct Blind<'a, K, const D: usize> {
     kernel: K,
-    targets: &'a Side<D>,
-    sources: &'a Side<D>,
+    targets: &'a InterfaceParticles<D>,
+    sources: &'a InterfaceParticles<D>,
 }
 
 impl<K: Kernel<D>, const D: usize> Blind<'_, K, D> {

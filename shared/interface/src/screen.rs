@@ -15,7 +15,7 @@
 //! plate have n = 0, o = 0: half of everything on either side, which is the one state that they show.
 
 use super::moving_wall::{WallPressure, extrapolated, extrapolation};
-use super::{Interface, Parameters, Side};
+use super::{Interface, InterfaceParticles, Parameters};
 use halfstep_sph::extrapolation::{Extrapolation, ExtrapolationSum};
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::{Arch, LANES, Lane};
@@ -123,7 +123,7 @@ impl<const D: usize> Screen<D> {
     }
 
     /// Where the faces are now.
-    fn carry(&mut self, solid: &Side<D>, records: &[StateRecord]) {
+    fn carry(&mut self, solid: &InterfaceParticles<D>, records: &[StateRecord]) {
         let slots = solid.density.len();
         for column in self.normal.iter_mut().chain([&mut self.before]) {
             column.resize(slots, 0.0);

@@ -2,7 +2,7 @@
 //! run in that order, and the plates' first positions, since their normals belong to the undeformed plate.
 
 use super::screen::Screen;
-use super::{Interface, Side};
+use super::{Interface, InterfaceParticles};
 use halfstep_sph::columns::bounds;
 use halfstep_sph::neighbours::PADDING;
 use halfstep_wire::order;
@@ -47,7 +47,7 @@ impl<const D: usize> State for Interface<D> {
     }
 }
 
-impl<const D: usize> State for Side<D> {
+impl<const D: usize> State for InterfaceParticles<D> {
     fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
         fields.numbers("record", &mut self.record)?;
         fields.vectors("reference", &mut self.reference)?;
@@ -55,7 +55,7 @@ impl<const D: usize> State for Side<D> {
     }
 }
 
-impl<const D: usize> Side<D> {
+impl<const D: usize> InterfaceParticles<D> {
     /// The rows as they were when the lists were made, from the order and the positions of that time.
     fn restore(&mut self, height: f64) -> Result<(), StateError> {
         let particles = self.record.iter().filter(|&&r| r != PADDING).count();

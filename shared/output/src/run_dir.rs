@@ -207,7 +207,7 @@ mod tests {
         names
     }
 
-    const FOREIGN: [&str; 7] = [
+    const EXTERNAL: [&str; 7] = [
         "notes.txt",
         ".notes.tmp",
         "old-run.json",
@@ -239,10 +239,10 @@ mod tests {
         // Frames of a participant of any name are known by their index, which other programs' files lack.
         touch(dir.path(), &["frames/gate-2_000000.hdf", "frames/gate-2.hdf.series", "report-gate-2.json"]);
         touch(dir.path(), &[".run.json.tmp", "frames/.fluid_000001.hdf.tmp", "frames/.solid.hdf.series.tmp"]);
-        touch(dir.path(), &FOREIGN);
+        touch(dir.path(), &EXTERNAL);
         fs::create_dir(dir.path().join("frames/solid_000009.hdf")).unwrap();
         RunDirectory::create(dir.path(), true).unwrap();
-        let mut kept = FOREIGN.map(String::from);
+        let mut kept = EXTERNAL.map(String::from);
         kept.sort();
         assert_eq!(listing(dir.path()), kept);
         assert!(dir.path().join("frames/solid_000009.hdf").is_dir());

@@ -155,7 +155,7 @@ impl Lockstep {
             // At the first stage the answer brings the time step.
             let answer = port.receive_forces(k, &expect, &mut track.forces)?;
             track.latency.add(track.sent.elapsed());
-            told = half_step.told(answer.dt, answer.next_time);
+            told = half_step.with_step(answer.dt, answer.next_time);
             at = told.after();
             if answer.order & order::WRITE_FRAME != 0 {
                 track.write_frame(answer.frame as u32, told.time).map_err(RoleError::Output)?;
@@ -185,7 +185,7 @@ impl Lockstep {
         let last = self.tracks[k].header;
         let mut header = StateHeader { status: status::FAILED, step, stage: stage.number(), ..last };
         match error {
-            RoleError::Diverged(diverged) => diverged.tell(port.participants(), &mut header),
+            RoleError::Diverged(diverged) => diverged.write_to(port.participants(), &mut header),
             // The exchange itself is broken, or the others know already.
             RoleError::Link(_) | RoleError::PeerEnded { .. } | RoleError::Start(_) => return,
             RoleError::Output(_) => {}

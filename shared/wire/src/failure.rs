@@ -48,7 +48,7 @@ impl std::error::Error for Diverged {}
 impl Diverged {
     /// Makes `header` the message that tells of this in the place of its sender's next state. `participants` are those
     /// of the run, in its order.
-    pub fn tell(&self, participants: &[Name], header: &mut StateHeader) {
+    pub fn write_to(&self, participants: &[Name], header: &mut StateHeader) {
         let place = participants.iter().position(|name| *name == self.participant);
         header.status = status::DIVERGED;
         header.failure = Failure {
@@ -63,7 +63,7 @@ impl Diverged {
 
     /// The divergence that a message of `sender` reports. The message takes the place of the state after the one that
     /// diverged.
-    pub fn told(sender: Name, participants: &[Name], header: &StateHeader) -> Self {
+    pub fn of_message(sender: Name, participants: &[Name], header: &StateHeader) -> Self {
         let failure = &header.failure;
         let (step, stage) = Stage::try_from(header.stage).unwrap_or(Stage::First).preceding(header.step);
         Self {
@@ -117,13 +117,13 @@ mod tests {
             };
             // The state of step 41, stage 1 was the last one: the message stands for step 42, stage 0.
             let mut header = StateHeader { step: 42, stage: 0, ..StateHeader::default() };
-            diverged.tell(&participants, &mut header);
+            diverged.write_to(&participants, &mut header);
             assert_eq!(header.status, status::DIVERGED);
-            assert_eq!(Diverged::told(sender, &participants, &header), diverged);
+            assert_eq!(Diverged::of_message(sender, &participants, &header), diverged);
         }
         // A number that stands for no participant is the sender's.
         let mut header = StateHeader { step: 42, ..StateHeader::default() };
         header.failure.participant = 9;
-        assert_eq!(Diverged::told(plate, &participants, &header).participant, plate);
+        assert_eq!(Diverged::of_message(plate, &participants, &header).participant, plate);
     }
 }

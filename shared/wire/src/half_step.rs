@@ -89,13 +89,13 @@ impl HalfStep {
     }
 
     /// The same half-step with the time step `dt`, s, to `next_time`, s, both as the coupler told them.
-    pub const fn told(self, dt: f64, next_time: f64) -> Self {
+    pub const fn with_step(self, dt: f64, next_time: f64) -> Self {
         Self { dt, next_time, ..self }
     }
 
     /// The same half-step with the time step `dt`, s, where no coupler tells the time of n + 1.
     pub fn lasting(self, dt: f64) -> Self {
-        self.told(dt, self.time + dt)
+        self.with_step(dt, self.time + dt)
     }
 
     /// First and second stage of the step.
@@ -188,7 +188,7 @@ mod tests {
 
     #[test]
     fn a_step_begins_where_the_one_before_it_ended() {
-        let first = HalfStep::begin(7, 2.0).told(0.5, 2.5);
+        let first = HalfStep::begin(7, 2.0).with_step(0.5, 2.5);
         let second = first.next();
         assert_eq!([first, second], first.both());
         assert_eq!(second.next(), HalfStep::begin(8, 2.5));
@@ -200,7 +200,7 @@ mod tests {
         let (time, end) = (0.1, 0.41);
         let dt = end - time;
         assert_ne!(time + dt, end);
-        let [first, last] = HalfStep::begin(3, time).told(dt, end).both();
+        let [first, last] = HalfStep::begin(3, time).with_step(dt, end).both();
         assert_eq!(first.after(), 0.1 + 0.5 * dt);
         assert_eq!(last.before(), first.after());
         assert_eq!(last.after(), end);
@@ -228,7 +228,7 @@ mod tests {
 
     #[test]
     fn headers_carry_place_and_times() {
-        let [first, second] = HalfStep::begin(7, 2.0).told(0.5, 2.5).both();
+        let [first, second] = HalfStep::begin(7, 2.0).with_step(0.5, 2.5).both();
         let place = |h: StateHeader| (h.step, h.stage, h.time, h.dt);
         assert_eq!(place(first.state_header()), (7, 0, 2.0, 0.0));
         assert_eq!(place(second.state_header()), (7, 1, 2.0, 0.5));

@@ -3,7 +3,7 @@
 use super::columns::{Rates, Source, State};
 use super::rates::SolidSum;
 use super::wall_clamp::WallClamp;
-use crate::columns::{Shown, vector};
+use crate::columns::{ParticleColumns, vector};
 use crate::effects::takes_part;
 use crate::model::{Load, OutOfBounds, OuterRates, Particles, SolidModel};
 use crate::shown_velocity::ShownVelocity;
@@ -48,7 +48,7 @@ pub struct Hypoelastic<const D: usize> {
     pub(super) artificial_stress: Option<ArtificialStress>,
     pub(super) mass: f64,
     pub(super) points: Vec<SolidPoint<D>>,
-    shown: Shown<D>,
+    shown: ParticleColumns<D>,
     /// What the fluid adds to strain rates (phase-blind), by particle number; else empty.
     pub(super) outer: Vec<OuterRates<D>>,
     interface_set: Vec<u32>,
@@ -113,7 +113,7 @@ impl<const D: usize> Hypoelastic<D> {
             renormalised: takes_part(scene, solid, EffectName::RenormalisedGradient),
             wall_clamp: takes_part(scene, solid, EffectName::WallClamp).then(WallClamp::default),
             artificial_stress,
-            shown: Shown::new(&layout.solid, mass),
+            shown: ParticleColumns::new(&layout.solid, mass),
             outer: Vec::new(),
             mass,
             material,

@@ -10,7 +10,7 @@ use super::hourglass;
 use super::material::{Law, Matrix};
 use super::pass::{Acceleration, DeformationSum, Fixed, Matrices};
 use super::relaxation::{self, Arm, Memory};
-use crate::columns::{Shown, Vectors, vector, vectors};
+use crate::columns::{ParticleColumns, Vectors, vector, vectors};
 use crate::effects::takes_part;
 use crate::model::{Load, OutOfBounds, Particles, SolidModel};
 use crate::shown_velocity::ShownVelocity;
@@ -78,7 +78,7 @@ pub struct TotalLagrangian<const D: usize> {
     /// Beyond the face of a clamp there is no strain.
     pub(super) rigid_clamps: bool,
     points: Vec<SolidPoint<D>>,
-    shown: Shown<D>,
+    shown: ParticleColumns<D>,
     interface_set: Vec<u32>,
     /// Particle number of a slot, or padding.
     pub(super) id: Vec<u32>,
@@ -182,7 +182,7 @@ impl<const D: usize> TotalLagrangian<D> {
             gravity: std::array::from_fn(|d| scene.gravity[d]),
             courant: scene.numerics.solid_cfl,
             volume: dx.powi(D as i32),
-            shown: Shown::new(points, mass),
+            shown: ParticleColumns::new(points, mass),
             mass,
             hourglass_modulus: alpha * material.shear_modulus(),
             rigid_clamps,

@@ -4,7 +4,7 @@
 //! M is the unit matrix inside a regular packing and nearly singular for lone particles, jets and films: there
 //! (`tensor::smallest_determinant`) the gradient is zero and the diffusion falls back to the simple one.
 
-use crate::columns::Shown;
+use crate::columns::PairParticles;
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::{Arch, LANES, Lane};
 use halfstep_sph::pair::{PairLaw, distance};
@@ -29,7 +29,7 @@ pub struct GradientLaw<'a, K, const D: usize> {
     /// Kernel.
     pub kernel: K,
     /// The fluid.
-    pub fluid: &'a Shown<D>,
+    pub fluid: &'a PairParticles<D>,
 }
 
 impl<K: Kernel<D>, const D: usize> PairLaw<D> for GradientLaw<'_, K, D> {

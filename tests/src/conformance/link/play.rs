@@ -124,7 +124,7 @@ pub fn phase<S: Transport>(
             assert_eq!(*record, force(&records[slot], other), "{role} {step} {stage} {slot}");
         }
         assert_eq!(forces.records().len(), records.len());
-        half_step = half_step.told(answer.dt, answer.next_time).next();
+        half_step = half_step.with_step(answer.dt, answer.next_time).next();
     }
 }
 

@@ -7,7 +7,7 @@ use halfstep_wire::wire_component;
 
 /// The interface particles of one phase, sorted into rows.
 #[derive(Clone, Debug)]
-pub struct Side<const D: usize> {
+pub struct InterfaceParticles<const D: usize> {
     /// Position, m.
     pub position: [Vec<f64>; D],
     /// Velocity, m/s.
@@ -30,7 +30,7 @@ pub struct Side<const D: usize> {
     pub(super) rows: Rows<D>,
 }
 
-impl<const D: usize> Default for Side<D> {
+impl<const D: usize> Default for InterfaceParticles<D> {
     fn default() -> Self {
         let columns = || std::array::from_fn(|_| Vec::new());
         Self {
@@ -49,7 +49,7 @@ impl<const D: usize> Default for Side<D> {
     }
 }
 
-impl<const D: usize> Side<D> {
+impl<const D: usize> InterfaceParticles<D> {
     /// Number of records.
     pub fn records(&self) -> usize {
         self.records

@@ -9,8 +9,8 @@ use halfstep_wire::protocol::{ForceRecord, StateRecord};
 use halfstep_wire::state::{Fields, State, StateError};
 use std::path::Path;
 
-/// Stand-in for a foreign solid's writer and probes.
-pub struct ForeignSolid {
+/// Stand-in for an external solid's writer and probes.
+pub struct ExternalSolid {
     writer: FrameWriter,
     kinds: Vec<ProbeKind>,
     dimension: usize,
@@ -20,7 +20,7 @@ pub struct ForeignSolid {
     values: Vec<f64>,
 }
 
-impl ForeignSolid {
+impl ExternalSolid {
     /// For the participant at this place of the scene. Frames go to the run's folder.
     ///
     /// # Errors
@@ -121,7 +121,7 @@ impl ForeignSolid {
     }
 }
 
-impl State for ForeignSolid {
+impl State for ExternalSolid {
     fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
         fields.points("first_position", &mut self.first)
     }
