@@ -254,11 +254,11 @@ impl Drop for Children {
 }
 
 /// Lets the calling process end when its parent does and not hear Ctrl-C: the coupler decides what that means. A role
-/// does not hear SIGTERM and SIGHUP either; `foreign` programs do.
-fn bind_to_parent(parent: u32, foreign: bool) -> io::Result<()> {
+/// does not hear SIGTERM and SIGHUP either; `external` programs do.
+fn bind_to_parent(parent: u32, external: bool) -> io::Result<()> {
     // SAFETY: no memory is passed; all calls are safe after a fork.
     unsafe {
-        if libc::prctl(libc::PR_SET_PDEATHSIG, if foreign { SIGTERM } else { END }) != 0 {
+        if libc::prctl(libc::PR_SET_PDEATHSIG, if external { SIGTERM } else { END }) != 0 {
             return Err(io::Error::last_os_error());
         }
         // The parent may have ended before that call.
@@ -266,7 +266,7 @@ fn bind_to_parent(parent: u32, foreign: bool) -> io::Result<()> {
             libc::_exit(1);
         }
         libc::signal(SIGINT, libc::SIG_IGN);
-        if !foreign {
+        if !external {
             libc::signal(SIGTERM, libc::SIG_IGN);
             libc::signal(SIGHUP, libc::SIG_IGN);
         }
@@ -280,9 +280,11 @@ fn bind_to_parent(parent: u32, foreign: bool) -> io::Result<()> {
 struct Watchdog(Child);
 
 impl Watchdog {
-    /// What it does, with the group, the prefix of the run's objects and its folder as arguments.
+    /// What it does, with the group, the prefix of the run's objects and its folder as arguments. It removes them more
+    /// than once: a role that was about to connect makes objects until it hears of the end.
     const SCRIPT: &str = "trap '' HUP INT TERM; read -r _; kill -s TERM -- \"-$1\"; sleep 1; \
-                          kill -s KILL -- \"-$1\"; rm -f -- /dev/shm/\"$2\"*; rm -rf -- \"$3\"";
+                          kill -s KILL -- \"-$1\"; for _ in 1 2 3 4 5 6 7 8 9 10; do \
+                          rm -f -- /dev/shm/\"$2\"*; rm -rf -- \"$3\"; sleep 0.5; done";
 
     fn start(group: u32, link: &LinkConfig) -> io::Result<Self> {
         let LinkConfig { prefix, root, .. } = link;
