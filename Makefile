@@ -1,6 +1,6 @@
 # What people run. Every target first installs what is missing (setup.sh) and then calls cargo.
 
-.PHONY: gate test torture validate stability baselines bench prices docs book setup
+.PHONY: gate test torture soak fuzz validate stability baselines bench prices docs book setup
 
 # Where rustup puts cargo, for shells that were open before.
 export PATH := $(PATH):$(HOME)/.cargo/bin
@@ -24,6 +24,26 @@ validate: setup
 torture: setup
 	cargo build --release -p halfstep-tests --bins
 	target/release/torture $(or $(RUNS),1000) $(or $(SECONDS),1000000)
+
+# Short runs, eight at once, for an hour (SECONDS), and one of STEPS (1000000) steps: nothing that they hold may grow.
+soak: setup
+	cargo build --release -p halfstep-tests --bins
+	target/release/soak $(or $(SECONDS),3600) 8 $(or $(STEPS),1000000)
+
+# Coverage-guided fuzzing of all that reads bytes of others, SECONDS (600) for each; what is new goes to target/corpus.
+# Its tool goes to target/tools; the instrumentation is no stable feature of the compiler, hence the variable.
+CARGO_FUZZ_VERSION := 0.13.2
+CARGO_FUZZ := target/tools/cargo-fuzz-$(CARGO_FUZZ_VERSION)/bin/cargo-fuzz
+fuzz: setup $(CARGO_FUZZ)
+	for target in scene curve message checkpoint; do \
+		mkdir -p target/corpus/$$target; \
+		RUSTC_BOOTSTRAP=1 $(CARGO_FUZZ) run --fuzz-dir tests/fuzz --features libfuzzer --target-dir target/fuzz \
+			$$target target/corpus/$$target tests/fuzz/corpus/$$target -- \
+			-max_total_time=$(or $(SECONDS),600) -max_len=65536 -timeout=20 -rss_limit_mb=4096 || exit 1; \
+	done
+
+$(CARGO_FUZZ):
+	cargo install --locked --version $(CARGO_FUZZ_VERSION) --root target/tools/cargo-fuzz-$(CARGO_FUZZ_VERSION) cargo-fuzz
 
 # Stores the bits of the coarse runs in validation/CASE/baseline.toml anew, at each instruction set level of this
 # processor, and prints which changed. Say in CHANGELOG.md why they did.

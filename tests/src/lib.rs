@@ -12,6 +12,7 @@ pub mod process;
 pub mod run;
 pub mod sources;
 pub mod stability;
+pub mod soak;
 pub mod torture;
 
 pub use curve::Curve;

@@ -64,3 +64,26 @@ pub fn leftovers(launcher: u32) -> Vec<String> {
     found.dedup();
     found
 }
+
+/// Memory of a process that is resident, bytes: its own and what it has touched of shared memory; 0 where it is gone.
+pub fn resident(pid: u32) -> u64 {
+    let status = std::fs::read_to_string(format!("/proc/{pid}/status")).unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
+    let kib = line.and_then(|line| line.split_whitespace().next()?.parse::<u64>().ok());
+    kib.unwrap_or(0) << 10
+}
+
+/// Number of open descriptors of a process; 0 where it is gone.
+pub fn descriptors(pid: u32) -> u64 {
+    std::fs::read_dir(format!("/proc/{pid}/fd")).map_or(0, |entries| entries.count() as u64)
+}
+
+/// What the runs of a launcher have in shared memory: bytes that are allocated, and number of objects.
+pub fn shared_memory(launcher: u32) -> (u64, u64) {
+    use std::os::unix::fs::MetadataExt;
+    let prefix = format!("hs{launcher}-");
+    let entries = std::fs::read_dir("/dev/shm").into_iter().flatten().flatten();
+    let own = entries.filter(|entry| entry.file_name().to_string_lossy().starts_with(&prefix));
+    own.filter_map(|entry| entry.metadata().ok())
+        .fold((0, 0), |(bytes, count), file| (bytes + file.blocks() * 512, count + 1))
+}

@@ -6,6 +6,7 @@ use crate::run::{RunBuilder, Running, repository, scene};
 use halfstep_output::checkpoint::{FOLDERS, MANIFEST};
 use halfstep_output::run_json::RunStatus;
 use halfstep_output::{RunReport, read_probes, series::Series, vtkhdf};
+use fastrand::Rng;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -118,26 +119,6 @@ impl Kind {
     }
 }
 
-/// Numbers without a pattern (SplitMix64).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, n: usize) -> usize {
-        (self.next() % n as u64) as usize
-    }
-
-    fn seconds(&mut self, most: f64) -> Duration {
-        Duration::from_secs_f64(most * (self.next() >> 11) as f64 / (1_u64 << 53) as f64)
-    }
-}
-
 /// What came of it.
 #[derive(Clone, Debug, Default)]
 pub struct Tally {
@@ -167,7 +148,7 @@ pub fn torture(
     python: Option<&str>,
     mut told: impl FnMut(&str),
 ) -> Tally {
-    let (mut random, mut tally) = (Random(seed), Tally::default());
+    let (mut random, mut tally) = (Rng::with_seed(seed), Tally::default());
     let started = Instant::now();
     let mut known: BTreeMap<usize, Whole> = BTreeMap::new();
     let kinds: Vec<usize> = (0..KINDS.len()).filter(|&k| python.is_some() || !KINDS[k].external).collect();
@@ -219,7 +200,7 @@ fn files(dir: &Path) -> BTreeMap<String, Vec<u8>> {
 struct Trial<'a> {
     kind: &'a Kind,
     python: &'a str,
-    random: &'a mut Random,
+    random: &'a mut Rng,
     what: String,
 }
 
@@ -229,10 +210,10 @@ impl Trial<'_> {
         let dir = folder.path().join("run");
         let mut resumes = false;
         for round in 0..8 {
-            let mark = format!("{}-{}", std::process::id(), self.random.next());
+            let mark = format!("{}-{}", std::process::id(), self.random.u64(..));
             let running = self.kind.builder(self.python, &dir, resumes, &mark).start();
             // The last round is left alone.
-            let code = if round < 2 + self.random.below(2) {
+            let code = if round < 2 + self.random.usize(..2) {
                 self.disturb(running, whole.seconds, &mark)?
             } else {
                 running.wait().code()
@@ -280,17 +261,17 @@ impl Trial<'_> {
             ("HUP", libc::SIGHUP),
         ];
         let launcher = running.pid();
-        std::thread::sleep(self.random.seconds(seconds));
+        std::thread::sleep(Duration::from_secs_f64(seconds * self.random.f64()));
         let all = with_variable(MARK, mark);
         if all.is_empty() {
             return Ok(running.wait().code());
         }
         // The launcher as often as all others together; now and then all at once.
-        let (name, signal) = SIGNALS[self.random.below(SIGNALS.len())];
-        let victims: Vec<u32> = match self.random.below(5) {
+        let (name, signal) = SIGNALS[self.random.usize(..SIGNALS.len())];
+        let victims: Vec<u32> = match self.random.usize(..5) {
             0 => all.clone(),
             1 | 2 => vec![launcher],
-            _ => vec![all[self.random.below(all.len())]],
+            _ => vec![all[self.random.usize(..all.len())]],
         };
         let who = match victims.as_slice() {
             [one] if *one == launcher => "the launcher".to_owned(),
@@ -306,8 +287,8 @@ impl Trial<'_> {
         };
         send(&victims, signal);
         if signal == libc::SIGSTOP {
-            std::thread::sleep(self.random.seconds(0.5));
-            if victims.len() == 1 && victims[0] != launcher && self.random.below(2) == 0 {
+            std::thread::sleep(Duration::from_secs_f64(0.5 * self.random.f64()));
+            if victims.len() == 1 && victims[0] != launcher && self.random.usize(..2) == 0 {
                 // Nobody wakes it: the run is told to end.
                 send(&[launcher], libc::SIGINT);
                 self.what += " for good";

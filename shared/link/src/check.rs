@@ -136,23 +136,25 @@ impl Check<'_> {
 
 /// Particle numbers of the messages of one epoch.
 #[derive(Debug)]
-pub(super) struct Identities {
+pub struct Identities {
     ids: Vec<u32>,
     epoch: Option<u64>,
 }
 
 impl Identities {
-    pub(super) fn new(capacity: u32) -> Self {
+    /// Of messages with at most so many.
+    pub fn new(capacity: u32) -> Self {
         Self { ids: Vec::with_capacity(capacity as usize), epoch: None }
     }
 
     /// Follows own messages, which others check.
-    pub(super) fn begin(&mut self, epoch: u64) {
+    pub fn begin(&mut self, epoch: u64) {
         self.epoch = Some(epoch);
         self.ids.clear();
     }
 
-    pub(super) fn push(&mut self, id: u32) {
+    /// The next particle of the epoch.
+    pub fn push(&mut self, id: u32) {
         self.ids.push(id);
     }
 
@@ -171,7 +173,7 @@ impl Identities {
 
 /// Checks the states of a phase.
 #[derive(Debug)]
-pub(super) struct StateCheck {
+pub struct StateCheck {
     run_id: u64,
     peer: Name,
     is_fluid: bool,
@@ -181,7 +183,7 @@ pub(super) struct StateCheck {
 
 impl StateCheck {
     /// Of the participant at this place.
-    pub(super) fn new(config: &LinkConfig, place: usize) -> Self {
+    pub fn new(config: &LinkConfig, place: usize) -> Self {
         let Participant { name, capacity, .. } = config.participants[place];
         let known = Identities::new(capacity);
         let run_id = config.run_id;
@@ -190,7 +192,10 @@ impl StateCheck {
 
     /// Whether this is the message that is due. A message that says that its sender failed is, at any time: it must
     /// only be of this run.
-    pub(super) fn verify(
+    ///
+    /// # Errors
+    /// What is wrong with it: the peer, the field, what was expected and found.
+    pub fn verify(
         &mut self,
         header: &StateHeader,
         records: &[StateRecord],
@@ -270,7 +275,10 @@ impl StateCheck {
 }
 
 /// Checks the coupler's answer to an own state of these particles.
-pub(super) fn verify_forces(
+///
+/// # Errors
+/// What is wrong with it: the field, what was expected and found.
+pub fn verify_forces(
     run_id: u64,
     sent: &Identities,
     header: &ForceHeader,
@@ -305,7 +313,10 @@ pub(super) fn verify_forces(
 }
 
 /// Checks the probe values of a participant on the state of a step.
-pub(super) fn verify_probes(
+///
+/// # Errors
+/// What is wrong with them: the peer, the field, what was expected and found.
+pub fn verify_probes(
     run_id: u64,
     participant: &Participant,
     header: &ProbeHeader,

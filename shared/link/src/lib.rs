@@ -34,7 +34,7 @@ mod slot;
 mod verdict;
 
 pub use channel::{ForceSample, ProbeSample, StateSample};
-pub use check::Expect;
+pub use check::{Expect, Identities, StateCheck, verify_forces, verify_probes};
 pub use claim::{Claim, cleanup, cleanup_stale};
 pub use config::{FLUID, LinkConfig, Participant};
 pub use coupler::CouplerLink;

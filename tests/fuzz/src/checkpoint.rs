@@ -1,0 +1,26 @@
+//! Checkpoints that somebody has changed.
+
+use halfstep_output::checkpoint::{MANIFEST, Manifest, file};
+
+/// Length of the manifest in the first four bytes (little-endian), the manifest, then the file `fluid.hdf`.
+///
+/// # Panics
+/// A manifest is believed that its folder contradicts, or there is no folder for temporary files.
+pub fn checkpoint(bytes: &[u8]) {
+    let Some((length, rest)) = bytes.split_first_chunk() else { return };
+    let (manifest, data) = rest.split_at(rest.len().min(u32::from_le_bytes(*length) as usize));
+    let folder = tempfile::tempdir().expect("a folder for temporary files");
+    let path = folder.path().join("fluid.hdf");
+    std::fs::write(folder.path().join(MANIFEST), manifest).expect("the folder takes a file");
+    std::fs::write(&path, data).expect("the folder takes a file");
+    if let Ok(found) = Manifest::read(folder.path()) {
+        let found = found.expect("it is there");
+        assert!(found.time.is_finite() && found.number >= 1);
+        for listed in &found.files {
+            let size = std::fs::metadata(folder.path().join(&listed.name)).map_or(u64::MAX, |file| file.len());
+            assert_eq!(size, listed.bytes, "{}", listed.name);
+        }
+    }
+    // A file that is what was written comes here only after its checksum was compared; another one is an error.
+    let _ = file::read(&path);
+}
