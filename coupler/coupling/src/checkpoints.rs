@@ -22,6 +22,8 @@ pub struct Checkpoints {
     folder: PathBuf,
     /// Simulated time between checkpoints, s; `None`: by the duration of the computation.
     interval: Option<f64>,
+    /// Also of the state that the run begins with.
+    pub at_start: bool,
     /// Number of the next instant of the interval.
     next: u64,
     started: Instant,
@@ -60,6 +62,7 @@ impl Checkpoints {
         Ok(Self {
             folder: folder.to_owned(),
             interval,
+            at_start: false,
             next: interval.map_or(1, |interval| instants(time, interval) + 1),
             started: now,
             last: now,
@@ -85,7 +88,8 @@ impl Checkpoints {
         let by_interval = self.interval.is_some_and(|interval| instants(clock.time(), interval) >= self.next);
         let by_duration = self.interval.is_none() && self.last.elapsed() >= EVERY;
         let worth = self.interval.is_some() || self.started.elapsed() >= WORTH_PROLONGING;
-        stopped || by_interval || by_duration || worth && clock.is_about_to_clip(limits)
+        let first = self.at_start && self.number == 0;
+        stopped || first || by_interval || by_duration || worth && clock.is_about_to_clip(limits)
     }
 
     /// Begins a checkpoint of the state at n, before which so many frames were ordered, with the coupler's part;
@@ -96,7 +100,7 @@ impl Checkpoints {
     pub fn begin(&mut self, coupler: &Group, clock: &Clock, frames: u64) -> Result<u64, OutputError> {
         self.frames = frames;
         if let Some(interval) = self.interval {
-            self.next = self.next.max(instants(clock.time(), interval)) + 1;
+            self.next = self.next.max(instants(clock.time(), interval) + 1);
         }
         self.last = Instant::now();
         self.number += 1;

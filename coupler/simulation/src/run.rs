@@ -196,6 +196,9 @@ fn execute_in<const D: usize>(
     let (stop, from) = (Arc::clone(&options.stop.stop), checkpoint.as_ref());
     let mut course = course::begin(scene, Some(directory), from, stop, options.isa, options.quiet)?;
     course.must_save = options.retries > 0;
+    if let Some(checkpoints) = &mut course.checkpoints {
+        checkpoints.at_start = course.must_save;
+    }
     if options.log {
         start_log(directory)?;
         for warning in &report.warnings {
