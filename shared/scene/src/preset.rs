@@ -64,8 +64,13 @@ impl Defaults {
                 cross_viscosity_far: 1.0,
                 kernel: KernelName::CubicSpline,
                 lattice: Lattice::Nodal,
-                // Kayaki's scheme evaluates everything at both stages.
-                effects: &[(EffectName::FrozenDiffusion, Switch::Off)],
+                // Kayaki's scheme evaluates everything at both stages, the viscous stress however small, and the solid
+                // from the start.
+                effects: &[
+                    (EffectName::FrozenDiffusion, Switch::Off),
+                    (EffectName::Viscosity, Switch::On),
+                    (EffectName::SleepingSolid, Switch::Off),
+                ],
             },
         }
     }
