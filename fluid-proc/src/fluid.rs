@@ -6,6 +6,7 @@ use crate::effects::non_negative_wall_pressure::NonNegativeWallPressure;
 use crate::effects::{self, Effects, FluidEffect, List};
 use crate::interface::Coupling;
 use crate::midpoint::{self, Conditions, Extremes};
+use crate::probes::{self, Gauge};
 use crate::rates::RateSum;
 use crate::time_step::StepLimits;
 use crate::walls::Walls;
@@ -14,7 +15,7 @@ use halfstep_interface::Parameters;
 use halfstep_role::role::{Costs, CoverageError, Peer, Role};
 use halfstep_scene::bounds::Bounds;
 use halfstep_scene::geometry;
-use halfstep_scene::{KernelName, Phase, ProbeKind, Scene};
+use halfstep_scene::{KernelName, Phase, Scene};
 use halfstep_sph::lane::{Isa, LANES};
 use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_sph::state_equation::StateEquation;
@@ -41,7 +42,7 @@ pub struct Fluid<const D: usize, X: FluidEffect<D> = ()> {
     pub(crate) resolution: f64,
     pub(crate) kernel: KernelName,
     pub(crate) gravity: [f64; D],
-    pub(crate) probes: Vec<ProbeKind>,
+    pub(crate) probes: Vec<Gauge<D>>,
 
     bounds: Bounds,
     pub(crate) isa: Isa,
@@ -108,7 +109,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
                 resolution: scene.resolution,
                 kernel: scene.numerics.kernel,
                 gravity: std::array::from_fn(|d| scene.gravity[d]),
-                probes: scene.probes.iter().map(|p| p.kind).filter(|k| k.phase() == Phase::Fluid).collect(),
+                probes: probes::of_fluid(scene, &layout.wall),
 
                 bounds: Bounds::of_fluid(scene)?,
                 isa,

@@ -28,6 +28,9 @@ mod memory;
 pub mod midpoint;
 pub mod momentum;
 mod passes;
+#[cfg(test)]
+mod probe_tests;
+mod probes;
 pub mod rates;
 mod state;
 #[cfg(test)]

@@ -1,9 +1,9 @@
-//! Probes, integral quantities, output and hash of the fluid.
+//! Integral quantities, output and hash of the fluid.
 
 use crate::columns::Source;
 use crate::effects::FluidEffect;
 use crate::fluid::Fluid;
-use halfstep_scene::{Phase, ProbeKind};
+use halfstep_scene::Phase;
 use halfstep_sph::neighbours::PADDING;
 use halfstep_wire::frame::{Frame, FramePoint};
 use halfstep_wire::protocol::Audit;
@@ -11,11 +11,11 @@ use halfstep_wire::wide;
 use xxhash_rust::xxh3::Xxh3;
 
 impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
-    fn real_slots(&self) -> impl Iterator<Item = usize> + '_ {
+    pub(crate) fn real_slots(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.columns.slots()).filter(|&s| self.columns.id[s] != PADDING)
     }
 
-    fn position(&self, slot: usize) -> [f64; D] {
+    pub(crate) fn position(&self, slot: usize) -> [f64; D] {
         std::array::from_fn(|d| self.columns.now.position[d][slot])
     }
 
@@ -23,58 +23,8 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         self.columns.now.sources[slot].velocity.iter().map(|v| v.powi(2)).sum()
     }
 
-    fn kinetic_energy(&self) -> f64 {
+    pub(crate) fn kinetic_energy(&self) -> f64 {
         0.5 * self.columns.now.mass * self.real_slots().map(|s| self.speed_squared(s)).sum::<f64>()
-    }
-
-    /// Kernel average of the fluid's pressure at a point; 0 where there is no fluid within 2h.
-    fn pressure_at(&self, at: [f64; D]) -> f64 {
-        let h = self.smoothing_length;
-        let (mut sum, mut weight) = (0.0, 0.0);
-        self.rows.candidates(&self.columns.reference[0], at, at, 2.0 * h + self.skin, |first, end| {
-            for s in first..end {
-                let x = self.position(s);
-                let r2: f64 = (0..D).map(|d| (x[d] - at[d]).powi(2)).sum();
-                if r2 < 4.0 * h * h {
-                    let w = halfstep_sph::kernel::value_at::<D>(self.kernel, h, r2.sqrt());
-                    // Extrapolated along gravity, as toward a wall: exact at rest.
-                    let head: f64 = (0..D).map(|d| self.gravity[d] * (at[d] - x[d])).sum();
-                    let particle = &self.columns.now.sources[s];
-                    sum += w * (particle.pressure + particle.density * head);
-                    weight += w;
-                }
-            }
-        });
-        if weight > 0.0 { sum / weight } else { 0.0 }
-    }
-
-    /// Appends the values of the fluid's probes.
-    pub(crate) fn measure(&self, out: &mut Vec<f64>) {
-        let mut put = |value: f64| out.push(value);
-        let half = 0.5 * self.resolution;
-        for probe in &self.probes {
-            match *probe {
-                ProbeKind::Pressure { at } => put(self.pressure_at(std::array::from_fn(|d| at[d]))),
-                ProbeKind::WaterLevel { x } => put(self
-                    .real_slots()
-                    .filter(|&s| (self.columns.now.position[0][s] - x).abs() <= 2.0 * half)
-                    .map(|s| self.columns.now.position[1][s] + half)
-                    .reduce(f64::max)
-                    .unwrap_or(0.0)),
-                ProbeKind::Front => put(self
-                    .real_slots()
-                    .map(|s| self.columns.now.position[0][s] + half)
-                    .fold(f64::NEG_INFINITY, f64::max)),
-                ProbeKind::KineticEnergy { phase: Phase::Fluid } => put(self.kinetic_energy()),
-                ProbeKind::Centroid { phase: Phase::Fluid } => {
-                    let count = self.columns.particles.max(1) as f64;
-                    for d in 0..D {
-                        put(self.real_slots().map(|s| self.columns.now.position[d][s]).sum::<f64>() / count);
-                    }
-                }
-                _ => {}
-            }
-        }
     }
 
     pub(crate) fn audit_values(&self) -> Audit {

@@ -7,6 +7,7 @@
 //! p_w, the mass rho0 V. Without fluid around: p_w = 0, rho0, u_w. Of a wall that moves by prescription, g is less its
 //! own acceleration.
 
+mod load;
 pub mod moving;
 
 use crate::columns::{Columns, PairParticles, Source, Vectors, fit, vectors};
@@ -97,6 +98,11 @@ impl<const D: usize> Walls<D> {
     pub fn set_time(&mut self, time: f64) {
         let Some(moving) = &mut self.moving else { return };
         moving.place(time, &mut self.shown.position, &mut self.own_velocity);
+    }
+
+    /// Where a point of the scene is that goes along with the wall of a shape.
+    pub(crate) fn carry(&self, shape: usize, point: [f64; D]) -> [f64; D] {
+        self.moving.as_ref().map_or(point, |moving| moving.carry(shape, point))
     }
 
     /// Largest displacement of a wall particle since the last sort, m.

@@ -24,6 +24,7 @@ pub mod effects;
 pub mod hypoelastic;
 pub mod model;
 mod models;
+mod probes;
 mod shown_velocity;
 mod side_friction;
 mod sleep;

@@ -3,12 +3,12 @@
 use crate::effects::takes_part;
 use crate::model::{Load, OutOfBounds, OuterRates, SolidModel};
 use crate::models;
+use crate::probes::{self, Measurement};
 use crate::sleep::{Rest, Sleep};
 use crate::sub_steps::SubStepping;
 use halfstep_interface::{Interface, Parameters};
 use halfstep_role::role::{Costs, CoverageError, Peer, Role};
-use halfstep_scene::geometry::{holds, nearest};
-use halfstep_scene::{EffectName, Phase, ProbeKind, Scene, Treatment};
+use halfstep_scene::{EffectName, Phase, Scene, Treatment};
 use halfstep_sph::lane::Isa;
 use halfstep_wire::failure::Diverged;
 use halfstep_wire::frame::{Frame, FramePoint};
@@ -29,22 +29,13 @@ pub struct Solid<const D: usize> {
     outer: Vec<OuterRates<D>>,
     /// All particle numbers.
     all: Vec<u32>,
-    probes: Vec<Measurement>,
+    probes: Vec<Measurement<D>>,
     sub_steps: SubStepping,
     taken: u32,
     density: f64,
     limit: f64,
     cross_pairs: u64,
     sleep: Option<Sleep>,
-}
-
-enum Measurement {
-    /// Mean displacement of these particles.
-    Displacement(Vec<u32>),
-    KineticEnergy,
-    Centroid,
-    /// Force of the fluid on these particles.
-    Force(Vec<u32>),
 }
 
 impl<const D: usize> Solid<D> {
@@ -58,26 +49,7 @@ impl<const D: usize> Solid<D> {
         let phase_blind = scene.interface.treatment == Treatment::PhaseBlind;
         let interface = Parameters::<D>::new(scene, solid, isa).filter(|_| phase_blind).map(Interface::new);
         let particles = model.particles();
-        let probes = scene
-            .probes
-            .iter()
-            .filter(|p| p.solid == Some(solid))
-            .filter_map(|p| match p.kind {
-                ProbeKind::Displacement { at } => {
-                    let near = nearest(particles.reference.iter().copied(), std::array::from_fn(|d| at[d]));
-                    Some(Measurement::Displacement(near.into_iter().map(|p| p as u32).collect()))
-                }
-                ProbeKind::KineticEnergy { phase: Phase::Solid } => Some(Measurement::KineticEnergy),
-                ProbeKind::Centroid { phase: Phase::Solid } => Some(Measurement::Centroid),
-                ProbeKind::Force { within } => {
-                    let set = model.interface_set().iter().copied();
-                    let inside =
-                        |p: &u32| within.is_none_or(|b| holds(&b, &particles.reference[*p as usize], 0.0));
-                    Some(Measurement::Force(set.filter(inside).collect()))
-                }
-                _ => None,
-            })
-            .collect();
+        let probes = probes::of_solid(scene, solid, model.as_ref());
         let material = scene.solids.get(solid);
         let sleep = takes_part(scene, solid, EffectName::SleepingSolid)
             .then(|| {
@@ -221,34 +193,7 @@ impl<const D: usize> Role for Solid<D> {
     }
 
     fn probes(&self, out: &mut Vec<f64>) {
-        let mut put = |value: f64| out.push(value);
-        let state = self.model.particles();
-        for probe in &self.probes {
-            match probe {
-                Measurement::Displacement(particles) => {
-                    for d in 0..D {
-                        let sum: f64 = particles
-                            .iter()
-                            .map(|&p| state.position[p as usize][d] - state.reference[p as usize][d])
-                            .sum();
-                        put(sum / particles.len() as f64);
-                    }
-                }
-                Measurement::KineticEnergy => put(state.kinetic_energy()),
-                Measurement::Centroid => {
-                    let mass: f64 = state.mass.iter().sum();
-                    for d in 0..D {
-                        let moment: f64 = state.mass.iter().zip(state.position).map(|(m, x)| m * x[d]).sum();
-                        put(moment / mass);
-                    }
-                }
-                Measurement::Force(particles) => {
-                    for d in 0..D {
-                        put(particles.iter().map(|&p| self.load.force[p as usize][d]).sum());
-                    }
-                }
-            }
-        }
+        self.probes.iter().for_each(|probe| probe.measure(self.model.as_ref(), &self.load, out));
     }
 
     fn audit(&self) -> Audit {

@@ -2,9 +2,10 @@
 
 use crate::roles::probes_of;
 use halfstep_output::{Frame, FramePoint, FrameWriter, OutputError};
-use halfstep_scene::geometry::{holds, nearest};
-use halfstep_scene::{ProbeKind, Scene};
+use halfstep_scene::geometry::{self, holds, nearest};
+use halfstep_scene::{Geometry, ProbeKind, Scene};
 use halfstep_wire::Name;
+use halfstep_wire::frame::von_mises;
 use halfstep_wire::protocol::{ForceRecord, StateRecord};
 use halfstep_wire::state::{Fields, State, StateError};
 use std::path::Path;
@@ -14,6 +15,9 @@ pub struct ExternalSolid {
     writer: FrameWriter,
     kinds: Vec<ProbeKind>,
     dimension: usize,
+    /// Where the scene's shapes are, and how far outside of its shape a particle may lie, m.
+    bodies: Vec<Geometry>,
+    margin: f64,
     first: Vec<[f64; 3]>,
     /// The records that each probe is about, where it is not about all of them.
     chosen: Vec<Vec<usize>>,
@@ -28,8 +32,10 @@ impl ExternalSolid {
     pub fn new(scene: &Scene, place: usize, name: Name, folder: &Path) -> Result<Self, OutputError> {
         Ok(Self {
             writer: FrameWriter::start(folder, name.as_str())?,
-            kinds: probes_of(scene, place).map(|probe| probe.kind).collect(),
+            kinds: probes_of(scene, place).map(|probe| probe.kind.clone()).collect(),
             dimension: scene.dimension,
+            bodies: scene.shapes.iter().map(|shape| shape.geometry.clone()).collect(),
+            margin: 0.5 * scene.resolution,
             first: Vec::new(),
             chosen: Vec::new(),
             values: Vec::new(),
@@ -60,6 +66,25 @@ impl ExternalSolid {
                         self.values.push(sum / chosen.len() as f64);
                     }
                 }
+                ProbeKind::Position { .. } => {
+                    for d in 0..self.dimension {
+                        let sum: f64 = chosen.iter().map(|&i| records[i].position[d]).sum();
+                        self.values.push(sum / chosen.len() as f64);
+                    }
+                }
+                ProbeKind::Stress { .. } => {
+                    let sum: f64 = chosen.iter().map(|&i| von_mises(&records[i].deviatoric_stress)).sum();
+                    self.values.push(sum / chosen.len() as f64);
+                }
+                // Its particles say nothing of what its inside stores.
+                ProbeKind::StrainEnergy => self.values.push(f64::NAN),
+                ProbeKind::Moment { about, .. } => {
+                    let of = |&i: &usize| {
+                        let (x, f) = (records[i].position, forces[i].force(records[i].mass));
+                        (x[0] - about[0]) * f[1] - (x[1] - about[1]) * f[0]
+                    };
+                    self.values.push(chosen.iter().map(of).sum());
+                }
                 ProbeKind::KineticEnergy { .. } => {
                     let energy =
                         |r: &StateRecord| 0.5 * r.mass * r.velocity.iter().map(|v| v * v).sum::<f64>();
@@ -84,9 +109,18 @@ impl ExternalSolid {
 
     fn choose(&self, kind: &ProbeKind) -> Vec<usize> {
         match *kind {
-            ProbeKind::Displacement { at } => nearest(self.first.iter().copied(), at),
-            ProbeKind::Force { within } => {
-                let inside = |i: &usize| within.is_none_or(|b| holds(&b, &self.first[*i], 0.0));
+            ProbeKind::Displacement { at } | ProbeKind::Position { at } | ProbeKind::Stress { at } => {
+                nearest(self.first.iter().copied(), at)
+            }
+            ProbeKind::Force { within, shape } | ProbeKind::Moment { within, shape, .. } => {
+                let of_shape = |x: &[f64; 3]| {
+                    let shape = shape.and_then(|shape| self.bodies.get(shape));
+                    shape.is_none_or(|geometry| geometry::distance(geometry, x) < self.margin)
+                };
+                let inside = |i: &usize| {
+                    let x = &self.first[*i];
+                    within.is_none_or(|b| holds(&b, x, 0.0)) && of_shape(x)
+                };
                 (0..self.first.len()).filter(inside).collect()
             }
             _ => Vec::new(),

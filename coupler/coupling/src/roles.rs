@@ -71,7 +71,7 @@ fn resume(member: &mut Member, checkpoint: &Path, name: &str) -> Result<(), Role
 /// Places of the probes' participants, in the order of the probes: who measures each.
 pub fn measured_by(scene: &Scene) -> Vec<usize> {
     let first_solid = usize::from(scene.fluid.is_some());
-    let place = |probe: &Probe| match probe.kind.phase() {
+    let place = |probe: &Probe| match probe.phase() {
         Phase::Solid => first_solid + probe.solid.unwrap_or_default(),
         _ => 0,
     };

@@ -97,6 +97,12 @@ impl<const D: usize> Moving<D> {
         }
     }
 
+    /// Where a point of the scene is that goes along with the wall of a shape.
+    pub(crate) fn carry(&self, shape: usize, point: [f64; D]) -> [f64; D] {
+        let now = &self.placements[shape];
+        std::array::from_fn(|d| point[d] + now.displacement[d])
+    }
+
     /// Acceleration of a slot, m/s².
     pub(crate) fn acceleration(&self, slot: usize) -> [f64; 3] {
         self.placements[self.shape[slot] as usize].acceleration

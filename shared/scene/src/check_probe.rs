@@ -3,6 +3,9 @@
 use super::check::Check;
 use super::*;
 
+/// Longest line along which something is measured, in particle spacings: it has as many points.
+const MAX_LINE: f64 = 1e5;
+
 impl Check<'_> {
     pub(super) fn probes(&self) {
         let names: Vec<&str> = self.scene.probes.iter().map(|p| p.name.as_str()).collect();
@@ -15,7 +18,7 @@ impl Check<'_> {
             if self.report.has(&key) {
                 continue;
             }
-            let phase = probe.kind.phase();
+            let phase = probe.phase();
             let (name, section) = match phase {
                 Phase::Solid => ("solid", !self.scene.solids.is_empty()),
                 _ => ("fluid", self.scene.fluid.is_some()),
@@ -34,50 +37,92 @@ impl Check<'_> {
         if self.report.has_any(&["resolution", "shape", "dimension"]) {
             return;
         }
+        let solids = || self.scene.shapes.iter().filter(|s| s.phase == Phase::Solid);
         match &probe.kind {
-            ProbeKind::Displacement { at } => {
-                let near = |s: &&Shape| {
+            ProbeKind::Displacement { at } | ProbeKind::Position { at } | ProbeKind::Stress { at } => {
+                let near = |s: &Shape| {
                     let bounds = geometry::bounding_box(s, self.scene);
-                    s.phase == Phase::Solid && geometry::holds(&bounds, at, 2.0 * self.scene.resolution)
+                    geometry::holds(&bounds, at, 2.0 * self.scene.resolution)
                 };
-                if !self.scene.shapes.iter().any(|s| near(&s)) {
+                if !solids().any(near) {
                     self.wrong(&format!("{key}.at"), "is in or beside no solid shape");
                 }
             }
-            ProbeKind::Pressure { at }
-                if !self.report.has("numerics.domain")
-                    && !geometry::holds(&geometry::domain(self.scene), at, 0.0) =>
-            {
-                self.wrong(&format!("{key}.at"), "is outside the domain: no fluid gets there");
+            ProbeKind::Pressure { at, to, .. } => {
+                let first = if to.is_some() { "from" } else { "at" };
+                self.in_domain(&format!("{key}.{first}"), at);
+                to.iter().for_each(|to| self.in_domain(&format!("{key}.to"), to));
+                self.line(key, at, to.as_ref());
+            }
+            ProbeKind::Velocity { at } => self.in_domain(&format!("{key}.at"), at),
+            ProbeKind::Flux { from, to } => {
+                self.in_domain(&format!("{key}.from"), from);
+                self.in_domain(&format!("{key}.to"), to);
+                self.line(key, from, Some(to));
             }
             ProbeKind::WaterLevel { x } if !self.report.has("numerics.domain") => {
                 let domain = geometry::domain(self.scene);
-                if *x < domain.min[0] || *x > domain.max[0] {
-                    self.wrong(&format!("{key}.x"), "is outside the domain: no fluid gets there");
+                for (k, x) in x.iter().enumerate() {
+                    if *x < domain.min[0] || *x > domain.max[0] {
+                        let place = [format!("{key}.x.{k}"), format!("{key}.x")];
+                        let place = &place[usize::from(self.root.child_at(&place[0]).is_none())];
+                        self.wrong(place, "is outside the domain: no fluid gets there");
+                    }
                 }
             }
-            ProbeKind::Force { .. } if self.scene.fluid.is_none() || self.scene.solids.is_empty() => {
-                self.wrong(&format!("{key}.kind"), "needs a fluid and a solid");
-            }
-            ProbeKind::Force { within: Some(within) } => {
-                let near = |s: &&Shape| {
-                    let bounds = geometry::bounding_box(s, self.scene);
-                    s.solid.is_some_and(|k| probe.solid == Some(k))
-                        && (0..self.scene.dimension)
-                            .all(|a| bounds.min[a] < within.max[a] && within.min[a] < bounds.max[a])
-                };
-                if !self.scene.shapes.iter().any(|s| near(&s)) {
-                    let reason = match &self.scene.solids[..] {
-                        [_] => "holds no part of a solid shape".to_owned(),
-                        several => {
-                            let name = probe.solid.map_or("", |k| &several[k].name);
-                            format!("holds no part of a shape of `{name}`")
-                        }
-                    };
-                    self.wrong(&format!("{key}.within"), reason);
-                }
+            ProbeKind::Force { within, shape } | ProbeKind::Moment { within, shape, .. } => {
+                self.loaded(probe, key, within.as_ref(), *shape);
             }
             _ => (),
         }
+    }
+
+    fn in_domain(&self, key: &str, at: &[f64; 3]) {
+        if !self.report.has("numerics.domain") && !geometry::holds(&geometry::domain(self.scene), at, 0.0) {
+            self.wrong(key, "is outside the domain: no fluid gets there");
+        }
+    }
+
+    /// A line has a length, and no more points than can be meant.
+    fn line(&self, key: &str, from: &[f64; 3], to: Option<&[f64; 3]>) {
+        let Some(to) = to else { return };
+        if from == to {
+            return self
+                .wrong(&format!("{key}.to"), "must be another point than `from`: the line has no length");
+        }
+        let length = from.iter().zip(to).map(|(a, b)| (b - a).powi(2)).sum::<f64>().sqrt();
+        if length > MAX_LINE * self.scene.resolution {
+            let reason = format!("is {length} m from `from`, more than {MAX_LINE} particle spacings");
+            self.wrong(&format!("{key}.to"), reason);
+        }
+    }
+
+    /// Forces on a solid, or on a shape: there is a fluid, and the box holds a part of what it is about.
+    fn loaded(&self, probe: &Probe, key: &str, within: Option<&Block>, shape: Option<usize>) {
+        let solids = !self.scene.solids.is_empty();
+        if self.scene.fluid.is_none() || (shape.is_none() && !solids) {
+            return self.wrong(&format!("{key}.kind"), "needs a fluid and a solid");
+        }
+        let Some(within) = within else { return };
+        let of_probe = |(index, s): &(usize, &Shape)| match shape {
+            Some(shape) => *index == shape,
+            None => s.solid.is_some_and(|k| probe.solid == Some(k)),
+        };
+        let near = |s: &Shape| {
+            let bounds = geometry::bounding_box(s, self.scene);
+            (0..self.scene.dimension).all(|a| bounds.min[a] < within.max[a] && within.min[a] < bounds.max[a])
+        };
+        if self.scene.shapes.iter().enumerate().filter(of_probe).any(|(_, s)| near(s)) {
+            return;
+        }
+        let reason = match (shape, &self.scene.solids[..]) {
+            (Some(shape), _) => format!("holds no part of `{}`", self.scene.shapes[shape].name),
+            (None, [_]) => "holds no part of a solid shape".to_owned(),
+            (None, several) => {
+                let name = probe.solid.map_or("", |k| &several[k].name);
+                format!("holds no part of a shape of `{name}`")
+            }
+        };
+        self.wrong(&format!("{key}.within"), reason);
     }
 }

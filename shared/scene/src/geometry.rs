@@ -227,7 +227,7 @@ pub fn bounding_box(shape: &Shape, scene: &Scene) -> Block {
 }
 
 /// Distance of a point to a shape, m: zero inside. A tank's is that to its cavity.
-pub(crate) fn distance(geometry: &Geometry, at: &[f64; 3]) -> f64 {
+pub fn distance(geometry: &Geometry, at: &[f64; 3]) -> f64 {
     let length = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
     let from = |center: &[f64; 3]| length(std::array::from_fn(|a| at[a] - center[a]));
     match geometry {

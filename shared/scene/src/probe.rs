@@ -15,7 +15,7 @@ pub struct Probe {
 }
 
 /// The kinds of probes.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ProbeKind {
     /// Displacement of the solid particles nearest to a point of the initial configuration; components x, y (, z), m.
@@ -23,15 +23,45 @@ pub enum ProbeKind {
         /// The point, m.
         at: [f64; 3],
     },
-    /// Fluid pressure at a fixed point (kernel average of the fluid around), Pa.
-    Pressure {
+    /// Where the solid particles nearest to a point of the initial configuration are; components x, y (, z), m.
+    Position {
         /// The point, m.
         at: [f64; 3],
     },
-    /// Highest fluid particle surface in the column at a place (against gravity), m.
+    /// Von Mises stress of the solid particles nearest to a point of the initial configuration, Pa.
+    Stress {
+        /// The point, m.
+        at: [f64; 3],
+    },
+    /// Elastic energy stored in a solid, J (2D: J/m).
+    StrainEnergy,
+    /// Fluid pressure at a point, or its mean along a line (kernel average of the fluid around), Pa.
+    Pressure {
+        /// The point, or where the line begins, m.
+        at: [f64; 3],
+        /// Where the line ends, m.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        to: Option<[f64; 3]>,
+        /// Index of the wall in [`crate::Scene::shapes`] that the point or line moves with.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        shape: Option<usize>,
+    },
+    /// Fluid velocity at a fixed point (kernel average); components x, y (, z), m/s.
+    Velocity {
+        /// The point, m.
+        at: [f64; 3],
+    },
+    /// Volume of fluid that crosses a line in a second, from its left to its right as seen along it, m³/s (2D: m²/s).
+    Flux {
+        /// Where the line begins, m.
+        from: [f64; 3],
+        /// Where the line ends, m.
+        to: [f64; 3],
+    },
+    /// Highest fluid particle surface in the columns at some places (against gravity), m.
     WaterLevel {
-        /// x of the column, m.
-        x: f64,
+        /// x of each column, m.
+        x: Vec<f64>,
     },
     /// Farthest reach of the fluid along +x, m.
     Front,
@@ -47,37 +77,71 @@ pub enum ProbeKind {
         #[serde(with = "crate::names::PhaseName")]
         phase: Phase,
     },
-    /// Force of the fluid on the solid; components x, y (, z), N (2D: N/m).
+    /// Force of the fluid on a solid, or on one shape of a solid or of walls; components x, y (, z), N (2D: N/m).
     Force {
         /// Only on particles whose place in the initial configuration is in this box.
         within: Option<Block>,
+        /// Index of the shape in [`crate::Scene::shapes`].
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        shape: Option<usize>,
+    },
+    /// Moment of the same forces about a fixed axis along z, N m (2D: N m/m), positive counter-clockwise.
+    Moment {
+        /// Where the axis is, m.
+        about: [f64; 3],
+        /// As of the force.
+        within: Option<Block>,
+        /// As of the force.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        shape: Option<usize>,
     },
 }
 
 impl ProbeKind {
-    /// The phase whose process measures it.
-    pub fn phase(&self) -> Phase {
-        match *self {
-            Self::Displacement { .. } | Self::Force { .. } => Phase::Solid,
-            Self::Pressure { .. } | Self::WaterLevel { .. } | Self::Front => Phase::Fluid,
-            Self::KineticEnergy { phase } | Self::Centroid { phase } => phase,
-        }
-    }
     /// Components of the probe and their unit, in the order of the values.
-    pub fn components(&self, dimension: usize) -> (&'static [&'static str], &'static str) {
-        let axes = &["x", "y", "z"][..dimension];
+    pub fn components(&self, dimension: usize) -> (Vec<String>, &'static str) {
+        let axes = || ["x", "y", "z"][..dimension].iter().map(|&axis| axis.to_owned()).collect();
+        let one = |name: &str| vec![name.to_owned()];
         match self {
-            Self::Displacement { .. } | Self::Centroid { .. } => (axes, "m"),
-            Self::Pressure { .. } => (&["pressure"], "Pa"),
-            Self::WaterLevel { .. } => (&["level"], "m"),
-            Self::Front => (&["x"], "m"),
-            Self::KineticEnergy { .. } => (&["energy"], "J"),
-            Self::Force { .. } => (axes, "N"),
+            Self::Displacement { .. } | Self::Position { .. } | Self::Centroid { .. } => (axes(), "m"),
+            Self::Stress { .. } => (one("stress"), "Pa"),
+            Self::Pressure { .. } => (one("pressure"), "Pa"),
+            Self::Velocity { .. } => (axes(), "m/s"),
+            Self::Flux { .. } => (one("flux"), if dimension == 2 { "m2/s" } else { "m3/s" }),
+            Self::WaterLevel { x } if x.len() == 1 => (one("level"), "m"),
+            Self::WaterLevel { x } => ((1..=x.len()).map(|k| format!("level-{k}")).collect(), "m"),
+            Self::Front => (one("x"), "m"),
+            Self::KineticEnergy { .. } | Self::StrainEnergy => (one("energy"), "J"),
+            Self::Force { .. } => (axes(), "N"),
+            Self::Moment { .. } => (one("moment"), "N m"),
         }
     }
 }
 
 impl Probe {
+    /// The phase whose process measures it: forces on walls are the fluid's.
+    pub fn phase(&self) -> Phase {
+        match self.kind {
+            ProbeKind::Force { shape: Some(_), .. } | ProbeKind::Moment { shape: Some(_), .. }
+                if self.solid.is_none() =>
+            {
+                Phase::Fluid
+            }
+            ProbeKind::Displacement { .. }
+            | ProbeKind::Position { .. }
+            | ProbeKind::Stress { .. }
+            | ProbeKind::StrainEnergy
+            | ProbeKind::Force { .. }
+            | ProbeKind::Moment { .. } => Phase::Solid,
+            ProbeKind::Pressure { .. }
+            | ProbeKind::Velocity { .. }
+            | ProbeKind::Flux { .. }
+            | ProbeKind::WaterLevel { .. }
+            | ProbeKind::Front => Phase::Fluid,
+            ProbeKind::KineticEnergy { phase } | ProbeKind::Centroid { phase } => phase,
+        }
+    }
+
     /// Columns of the probe in `probes.csv`: `NAME.COMPONENT [UNIT]`.
     pub fn columns(&self, dimension: usize) -> Vec<String> {
         let (components, unit) = self.kind.components(dimension);

@@ -9,22 +9,34 @@ use std::path::Path;
 #[derive(Clone, Copy)]
 enum Kind {
     Displacement,
+    Position,
+    Stress,
+    StrainEnergy,
     Pressure,
+    Velocity,
+    Flux,
     WaterLevel,
     Front,
     KineticEnergy,
     Centroid,
     Force,
+    Moment,
 }
 
-const KINDS: [(&str, Kind); 7] = [
+const KINDS: [(&str, Kind); 13] = [
     ("displacement", Kind::Displacement),
+    ("position", Kind::Position),
+    ("stress", Kind::Stress),
+    ("strain-energy", Kind::StrainEnergy),
     ("pressure", Kind::Pressure),
+    ("velocity", Kind::Velocity),
+    ("flux", Kind::Flux),
     ("water-level", Kind::WaterLevel),
     ("front", Kind::Front),
     ("kinetic-energy", Kind::KineticEnergy),
     ("centroid", Kind::Centroid),
     ("force", Kind::Force),
+    ("moment", Kind::Moment),
 ];
 
 const MOVING: [(&str, Phase); 2] = [("fluid", Phase::Fluid), ("solid", Phase::Solid)];
@@ -37,37 +49,121 @@ pub(super) fn probe(
     shapes: &[Shape],
 ) -> Option<Probe> {
     let name = name(&section);
-    let at = || section.vector("at", dimension, None);
+    let vector = |key| section.vector(key, dimension, None);
+    let at = || vector("at");
     // Without a kind its other keys mean nothing: they are not looked at.
     let kind = match section.choice("kind", None, &KINDS)? {
         Kind::Displacement => ProbeKind::Displacement { at: at() },
-        Kind::Pressure => ProbeKind::Pressure { at: at() },
-        Kind::WaterLevel => ProbeKind::WaterLevel { x: section.number("x", None, Range::ANY) },
+        Kind::Position => ProbeKind::Position { at: at() },
+        Kind::Stress => ProbeKind::Stress { at: at() },
+        Kind::StrainEnergy => ProbeKind::StrainEnergy,
+        Kind::Pressure => pressure(&section, dimension, shapes)?,
+        Kind::Velocity => ProbeKind::Velocity { at: at() },
+        Kind::Flux => ProbeKind::Flux { from: vector("from"), to: vector("to") },
+        Kind::WaterLevel => ProbeKind::WaterLevel { x: gauges(&section)? },
         Kind::Front => ProbeKind::Front,
         Kind::KineticEnergy => ProbeKind::KineticEnergy { phase: section.choice("phase", None, &MOVING)? },
         Kind::Centroid => ProbeKind::Centroid { phase: section.choice("phase", None, &MOVING)? },
         Kind::Force => {
-            let within = section.section("within");
-            ProbeKind::Force { within: within.is_present().then(|| within.whole_block(dimension)) }
+            let (shape, within) = loaded(&section, dimension, shapes)?;
+            ProbeKind::Force { within, shape }
+        }
+        Kind::Moment => {
+            let (shape, within) = loaded(&section, dimension, shapes)?;
+            ProbeKind::Moment { about: vector("about"), within, shape }
         }
     };
-    let solid = match kind {
-        ProbeKind::Displacement { at } => nearest_solid(shapes, &at),
-        _ if kind.phase() == Phase::Solid => {
+    let mut probe = Probe { name, kind, solid: None };
+    probe.solid = match probe.kind {
+        ProbeKind::Displacement { at } | ProbeKind::Position { at } | ProbeKind::Stress { at } => {
+            nearest_solid(shapes, &at)
+        }
+        ProbeKind::Force { shape: Some(shape), .. } | ProbeKind::Moment { shape: Some(shape), .. } => {
+            shapes[shape].solid
+        }
+        _ if probe.phase() == Phase::Solid => {
             needs_solid(&section, solids, "a probe of a solid");
             which_solid(&section, solids)
         }
         _ => None,
     };
-    let needless = match kind {
+    let needless = match probe.kind {
         ProbeKind::Displacement { .. } => Some("the displacement is that of the solid nearest to `at`"),
-        _ => (kind.phase() == Phase::Fluid).then_some("the probe measures the fluid"),
+        ProbeKind::Position { .. } => Some("the position is that of the solid nearest to `at`"),
+        ProbeKind::Stress { .. } => Some("the stress is that of the solid nearest to `at`"),
+        ProbeKind::Force { shape: Some(_), .. } | ProbeKind::Moment { shape: Some(_), .. } => {
+            Some("`shape` says it")
+        }
+        _ => (probe.phase() == Phase::Fluid).then_some("the probe measures the fluid"),
     };
     if let (Some(why), Some(node)) = (needless, section.node("solid")) {
         section.wrong("solid", node, format!("is not asked for: {why}"));
     }
     section.finish();
-    Some(Probe { name, kind, solid })
+    Some(probe)
+}
+
+/// Pressure at a point `at`, or its mean between `from` and `to`; `shape` is the wall that takes them along.
+fn pressure(section: &Section<'_>, dimension: usize, shapes: &[Shape]) -> Option<ProbeKind> {
+    let line = ["from", "to"].into_iter().any(|key| section.node(key).is_some());
+    if let (true, Some(node)) = (line, section.node("at")) {
+        section.wrong("at", node, "is a point, and `from` and `to` say a line: a probe has one of them");
+        return None;
+    }
+    let vector = |key| section.vector(key, dimension, None);
+    let (at, to) = if line { (vector("from"), Some(vector("to"))) } else { (vector("at"), None) };
+    let wall = |shape: &Shape| (shape.phase != Phase::Wall).then_some("only a wall takes a point along");
+    let shape = which_shape(section, shapes, wall)?;
+    Some(ProbeKind::Pressure { at, to, shape })
+}
+
+/// The shape that a probe of forces names, and the box that it keeps to.
+fn loaded(
+    section: &Section<'_>,
+    dimension: usize,
+    shapes: &[Shape],
+) -> Option<(Option<usize>, Option<Block>)> {
+    let within = section.section("within");
+    let within = within.is_present().then(|| within.whole_block(dimension));
+    let rigid = |shape: &Shape| {
+        (shape.phase == Phase::Fluid).then_some("is of phase \"fluid\": forces are those on walls and solids")
+    };
+    Some((which_shape(section, shapes, rigid)?, within))
+}
+
+/// Index of the shape that `shape` names. `None` where it names none, or one that `refuses` has a reason against.
+fn which_shape(
+    section: &Section<'_>,
+    shapes: &[Shape],
+    refuses: impl Fn(&Shape) -> Option<&'static str>,
+) -> Option<Option<usize>> {
+    let Some(node) = section.node("shape") else { return Some(None) };
+    let names: Vec<(&str, usize)> = shapes.iter().enumerate().map(|(k, s)| (s.name.as_str(), k)).collect();
+    let shape = section.as_choice("shape", node, &names)?;
+    if let Some(reason) = refuses(&shapes[shape]) {
+        section.wrong("shape", node, reason);
+        return None;
+    }
+    Some(Some(shape))
+}
+
+/// Most gauges of one probe.
+const MAX_GAUGES: usize = 1000;
+
+/// x of one column of water, or of several.
+fn gauges(section: &Section<'_>) -> Option<Vec<f64>> {
+    let Some(node) = section.node("x") else {
+        section.missing("x");
+        return None;
+    };
+    let Value::Array(items) = &node.value else {
+        return section.as_number("x", node, Range::ANY).map(|x| vec![x]);
+    };
+    if items.is_empty() || items.len() > MAX_GAUGES {
+        section.wrong("x", node, format!("must have from 1 to {MAX_GAUGES} places"));
+        return None;
+    }
+    items.iter().map(|item| section.as_number("x", item, Range::ANY)).collect()
 }
 
 /// The solid whose shape is nearest to a point: of several equally near the one that comes first.

@@ -69,6 +69,13 @@ pub struct FramePoint {
     pub id: u32,
 }
 
+/// Von Mises stress of a stress or its deviatoric part xx, yy, zz, xy, yz, xz.
+pub fn von_mises(stress: &[f64; 6]) -> f64 {
+    let [xx, yy, zz, xy, yz, xz] = stress;
+    let normal = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
+    (0.5 * normal + 3.0 * (xy * xy + yz * yz + xz * xz)).sqrt()
+}
+
 impl FramePoint {
     /// A solid particle as its record shows it.
     pub fn solid(r: &StateRecord) -> Self {

@@ -9,7 +9,7 @@ use crate::pictures::units;
 use crate::series::Series;
 use crate::{Frame, OutputError, vtkhdf};
 use halfstep_scene::Scene;
-use halfstep_wire::frame;
+use halfstep_wire::frame::{self, von_mises};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::path::{Path, PathBuf};
@@ -117,13 +117,6 @@ fn instants(scene: &Scene, dir: &Path) -> Result<Vec<Instant>, OutputError> {
         .collect()
 }
 
-/// Von Mises stress of xx, yy, zz, xy, yz, xz.
-fn von_mises(stress: [f32; 6]) -> f64 {
-    let [xx, yy, zz, xy, yz, xz] = stress.map(f64::from);
-    let normal = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
-    (0.5 * normal + 3.0 * (xy * xy + yz * yz + xz * xz)).sqrt()
-}
-
 /// Ends of the colour scales, Pa; `None` where the phase is absent.
 struct ColourScales {
     pressure: Option<(f64, f64)>,
@@ -143,7 +136,7 @@ impl ColourScales {
             (!values.is_empty()).then(|| values[((values.len() - 1) as f64 * part).round() as usize])
         };
         let pressure = values(frame::FLUID, |frame, k| f64::from(frame.pressure[k]));
-        let stress = values(frame::SOLID, |frame, k| von_mises(frame.stress[k]));
+        let stress = values(frame::SOLID, |frame, k| von_mises(&frame.stress[k].map(f64::from)));
         let top = |value: f64| if value > 0.0 { units::scale_end(value) } else { 1.0 };
         Self {
             pressure: end(&pressure, QUANTILE).zip(end(&pressure, 1.0 - QUANTILE)).map(|(high, low)| {
@@ -158,7 +151,7 @@ impl ColourScales {
     fn color(&self, scale: Scale, frame: &Frame, k: usize) -> u8 {
         let (value, range) = match scale {
             Scale::Fluid => (f64::from(frame.pressure[k]), self.pressure),
-            Scale::Solid => (von_mises(frame.stress[k]), self.stress),
+            Scale::Solid => (von_mises(&frame.stress[k].map(f64::from)), self.stress),
         };
         let (low, high) = range.unwrap_or((0.0, 1.0));
         scale.index((value - low) / (high - low))

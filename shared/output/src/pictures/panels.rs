@@ -131,10 +131,18 @@ fn share_well(singles: &[Panel], last: f64) -> bool {
 fn axis(name: &str, kind: &ProbeKind) -> String {
     match kind {
         ProbeKind::Displacement { .. } => format!("{name} displacement"),
+        ProbeKind::Position { .. } => format!("{name} position"),
+        ProbeKind::Velocity { .. } => format!("{name} velocity"),
         ProbeKind::Centroid { .. } => format!("{name} centre of mass"),
         ProbeKind::Front => format!("{name} reach"),
         ProbeKind::Force { .. } => format!("{name} force"),
-        ProbeKind::Pressure { .. } | ProbeKind::WaterLevel { .. } | ProbeKind::KineticEnergy { .. } => {
+        ProbeKind::Pressure { .. }
+        | ProbeKind::WaterLevel { .. }
+        | ProbeKind::KineticEnergy { .. }
+        | ProbeKind::StrainEnergy
+        | ProbeKind::Stress { .. }
+        | ProbeKind::Flux { .. }
+        | ProbeKind::Moment { .. } => {
             // `p1.pressure` reads well; the component of these is the quantity.
             name.replacen('.', " ", 1)
         }

@@ -1,0 +1,44 @@
+//! What the fluid does to walls: the reaction to what it gets from them. Measured where a probe asks for it and a row
+//! is due; the time integration does not need it.
+
+use crate::effects::{Effects, FluidEffect};
+use crate::fluid::Fluid;
+use crate::rates::{RateLaw, RateSum};
+use halfstep_sph::kernel::Kernel;
+use halfstep_sph::lane::{LANES, Lane, Unfused};
+use halfstep_sph::neighbours::PADDING;
+use halfstep_sph::pair::PairLaw;
+use halfstep_sph::with_kernel;
+
+impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
+    /// Force of the fluid on each slot of the walls, N (2D: N/m), after the sums of the same state: for each pair minus
+    /// the fluid particle's mass times the acceleration that the pair gives it, all effects at walls included.
+    pub(crate) fn wall_loads(&self) -> Vec<[f64; D]> {
+        with_kernel!(self.kernel, self.smoothing_length, D, |kernel| self.loads(kernel))
+    }
+
+    fn loads<K: Kernel<D>>(&self, kernel: K) -> Vec<[f64; D]> {
+        let Some(walls) = &self.walls else { return Vec::new() };
+        let mut loads = vec![[0.0; D]; walls.slots()];
+        let (fluid, mass) = (&self.columns.now, self.columns.now.mass);
+        let law = RateLaw { kernel, effects: self.effects.at_walls(), targets: fluid, sources: &walls.shown };
+        for cluster in 0..self.wall_list.clusters() {
+            let slot = cluster * LANES;
+            let target = law.target(slot);
+            let real: [bool; LANES] = std::array::from_fn(|k| self.columns.id[slot + k] != PADDING);
+            for &j in self.wall_list.of(cluster) {
+                let wall = law.source_position(j as usize);
+                let dx: [Lane; D] = std::array::from_fn(|d| {
+                    Lane(std::array::from_fn(|k| fluid.position[d][slot + k] - wall[d]))
+                });
+                let r2 = dx.iter().fold(Lane::ZERO, |sum, &dx| sum + dx * dx);
+                let mut rates = RateSum::default();
+                law.add::<Unfused>(&target, j as usize, dx, r2, &mut rates);
+                for k in (0..LANES).filter(|&k| real[k]) {
+                    (0..D).for_each(|d| loads[j as usize][d] -= mass * rates.acceleration[d].0[k]);
+                }
+            }
+        }
+        loads
+    }
+}

@@ -1,0 +1,115 @@
+//! What is measured of a solid.
+
+use crate::model::{Load, SolidModel};
+use halfstep_scene::geometry::{self, holds, nearest};
+use halfstep_scene::{Block, Phase, ProbeKind, Scene};
+use halfstep_wire::frame::von_mises;
+
+/// A probe of a solid.
+pub(crate) enum Measurement<const D: usize> {
+    /// Mean displacement of these particles.
+    Displacement(Vec<u32>),
+    /// Mean position of these particles.
+    Position(Vec<u32>),
+    /// Mean von Mises stress of these particles.
+    Stress(Vec<u32>),
+    KineticEnergy,
+    StrainEnergy,
+    Centroid,
+    /// Force of the fluid on these particles.
+    Force(Vec<u32>),
+    /// Moment of the same forces about an axis along z through a point.
+    Moment(Vec<u32>, [f64; D]),
+}
+
+/// The probes of the scene's solid of that index, in the scene's order.
+pub(crate) fn of_solid<const D: usize>(
+    scene: &Scene,
+    solid: usize,
+    model: &dyn SolidModel<D>,
+) -> Vec<Measurement<D>> {
+    let particles = model.particles();
+    let near = |at: &[f64; 3]| {
+        let near = nearest(particles.reference.iter().copied(), std::array::from_fn(|d| at[d]));
+        near.into_iter().map(|p| p as u32).collect()
+    };
+    let loaded = |within: Option<Block>, shape: Option<usize>| {
+        let bodies = shape.map(|_| geometry::layout::<D>(scene).with_solid(scene, solid).solid);
+        let of_shape = |p: u32| match (&bodies, shape) {
+            (Some(points), Some(shape)) => {
+                points.get(p as usize).is_some_and(|point| point.body as usize == shape)
+            }
+            _ => true,
+        };
+        let inside = |p: &u32| {
+            within.is_none_or(|b| holds(&b, &particles.reference[*p as usize], 0.0)) && of_shape(*p)
+        };
+        model.interface_set().iter().copied().filter(inside).collect()
+    };
+    let measurement = |kind: &ProbeKind| match kind {
+        ProbeKind::Displacement { at } => Some(Measurement::Displacement(near(at))),
+        ProbeKind::Position { at } => Some(Measurement::Position(near(at))),
+        ProbeKind::Stress { at } => Some(Measurement::Stress(near(at))),
+        ProbeKind::KineticEnergy { phase: Phase::Solid } => Some(Measurement::KineticEnergy),
+        ProbeKind::StrainEnergy => Some(Measurement::StrainEnergy),
+        ProbeKind::Centroid { phase: Phase::Solid } => Some(Measurement::Centroid),
+        ProbeKind::Force { within, shape } => Some(Measurement::Force(loaded(*within, *shape))),
+        ProbeKind::Moment { about, within, shape } => {
+            Some(Measurement::Moment(loaded(*within, *shape), std::array::from_fn(|d| about[d])))
+        }
+        _ => None,
+    };
+    scene.probes.iter().filter(|p| p.solid == Some(solid)).filter_map(|p| measurement(&p.kind)).collect()
+}
+
+impl<const D: usize> Measurement<D> {
+    /// Appends the values on the present state, under the load of the last exchange.
+    pub(crate) fn measure(&self, model: &dyn SolidModel<D>, load: &Load<D>, out: &mut Vec<f64>) {
+        let mut put = |value: f64| out.push(value);
+        let state = model.particles();
+        match self {
+            Self::Displacement(particles) => {
+                for d in 0..D {
+                    let sum: f64 = particles
+                        .iter()
+                        .map(|&p| state.position[p as usize][d] - state.reference[p as usize][d])
+                        .sum();
+                    put(sum / particles.len() as f64);
+                }
+            }
+            Self::Position(particles) => {
+                for d in 0..D {
+                    let sum: f64 = particles.iter().map(|&p| state.position[p as usize][d]).sum();
+                    put(sum / particles.len() as f64);
+                }
+            }
+            Self::Stress(particles) => {
+                let mut records = Vec::with_capacity(particles.len());
+                model.records(particles, &mut records);
+                let sum: f64 = records.iter().map(|r| von_mises(&r.deviatoric_stress)).sum();
+                put(sum / particles.len() as f64);
+            }
+            Self::KineticEnergy => put(state.kinetic_energy()),
+            Self::StrainEnergy => put(model.strain_energy()),
+            Self::Centroid => {
+                let mass: f64 = state.mass.iter().sum();
+                for d in 0..D {
+                    let moment: f64 = state.mass.iter().zip(state.position).map(|(m, x)| m * x[d]).sum();
+                    put(moment / mass);
+                }
+            }
+            Self::Force(particles) => {
+                for d in 0..D {
+                    put(particles.iter().map(|&p| load.force[p as usize][d]).sum());
+                }
+            }
+            Self::Moment(particles, about) => {
+                let of = |&p: &u32| {
+                    let (x, f) = (state.position[p as usize], load.force[p as usize]);
+                    (x[0] - about[0]) * f[1] - (x[1] - about[1]) * f[0]
+                };
+                put(particles.iter().map(of).sum());
+            }
+        }
+    }
+}
