@@ -11,7 +11,7 @@ use halfstep_wire::wide;
 use xxhash_rust::xxh3::Xxh3;
 
 impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
-    fn real_slots(&self) -> impl Iterator<Item = usize> + '_ {
+    pub(crate) fn real_slots(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.columns.slots()).filter(|&s| self.columns.id[s] != PADDING)
     }
 
@@ -50,26 +50,30 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
 
     /// Appends the values of the fluid's probes.
     pub(crate) fn measure(&self, out: &mut Vec<f64>) {
-        let mut put = |value: f64| out.push(value);
         let half = 0.5 * self.resolution;
         for probe in &self.probes {
             match *probe {
-                ProbeKind::Pressure { at } => put(self.pressure_at(std::array::from_fn(|d| at[d]))),
-                ProbeKind::WaterLevel { x } => put(self
+                ProbeKind::Pressure { at } => out.push(self.pressure_at(std::array::from_fn(|d| at[d]))),
+                ProbeKind::WaterLevel { x } => out.push(self
                     .real_slots()
                     .filter(|&s| (self.columns.now.position[0][s] - x).abs() <= 2.0 * half)
                     .map(|s| self.columns.now.position[1][s] + half)
                     .reduce(f64::max)
                     .unwrap_or(0.0)),
-                ProbeKind::Front => put(self
+                ProbeKind::Front => out.push(self
                     .real_slots()
                     .map(|s| self.columns.now.position[0][s] + half)
                     .fold(f64::NEG_INFINITY, f64::max)),
-                ProbeKind::KineticEnergy { phase: Phase::Fluid } => put(self.kinetic_energy()),
+                ProbeKind::KineticEnergy { phase: Phase::Fluid } => out.push(self.kinetic_energy()),
                 ProbeKind::Centroid { phase: Phase::Fluid } => {
                     let count = self.columns.particles.max(1) as f64;
                     for d in 0..D {
-                        put(self.real_slots().map(|s| self.columns.now.position[d][s]).sum::<f64>() / count);
+                        out.push(self.real_slots().map(|s| self.columns.now.position[d][s]).sum::<f64>() / count);
+                    }
+                }
+                ProbeKind::Energy { part, .. } => {
+                    if let Some(ledger) = &self.ledger {
+                        ledger.ledger.measure(part, out);
                     }
                 }
                 _ => {}

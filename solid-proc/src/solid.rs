@@ -1,14 +1,16 @@
 //! The solid as a [`Role`]: interface record, loads, sub-steps, probes.
 
 use crate::effects::takes_part;
+use crate::ledger::SolidLedger;
 use crate::model::{Load, OutOfBounds, OuterRates, SolidModel};
 use crate::models;
 use crate::sleep::{Rest, Sleep};
 use crate::sub_steps::SubStepping;
 use halfstep_interface::{Interface, Parameters};
+use halfstep_role::ledger::Ledger;
 use halfstep_role::role::{Costs, CoverageError, Peer, Role};
 use halfstep_scene::geometry::{holds, nearest};
-use halfstep_scene::{EffectName, Phase, ProbeKind, Scene, Treatment};
+use halfstep_scene::{EffectName, EnergyPart, Phase, ProbeKind, Scene, Treatment};
 use halfstep_sph::lane::Isa;
 use halfstep_wire::failure::Diverged;
 use halfstep_wire::frame::{Frame, FramePoint};
@@ -36,6 +38,8 @@ pub struct Solid<const D: usize> {
     limit: f64,
     cross_pairs: u64,
     sleep: Option<Sleep>,
+    /// Where the scene's probes ask for energies.
+    ledger: Option<SolidLedger<D>>,
 }
 
 enum Measurement {
@@ -45,6 +49,8 @@ enum Measurement {
     Centroid,
     /// Force of the fluid on these particles.
     Force(Vec<u32>),
+    /// The ledger or a part of it.
+    Energy(Option<EnergyPart>),
 }
 
 impl<const D: usize> Solid<D> {
@@ -54,7 +60,11 @@ impl<const D: usize> Solid<D> {
     }
 
     /// With any model.
-    pub fn with_model(scene: &Scene, solid: usize, isa: Isa, model: Box<dyn SolidModel<D>>) -> Self {
+    pub fn with_model(scene: &Scene, solid: usize, isa: Isa, mut model: Box<dyn SolidModel<D>>) -> Self {
+        if scene.keeps_energy_ledgers() {
+            model.keep_account();
+        }
+        let ledger = scene.keeps_energy_ledgers().then(|| SolidLedger::new(scene, &*model));
         let phase_blind = scene.interface.treatment == Treatment::PhaseBlind;
         let interface = Parameters::<D>::new(scene, solid, isa).filter(|_| phase_blind).map(Interface::new);
         let particles = model.particles();
@@ -75,6 +85,7 @@ impl<const D: usize> Solid<D> {
                         |p: &u32| within.is_none_or(|b| holds(&b, &particles.reference[*p as usize], 0.0));
                     Some(Measurement::Force(set.filter(inside).collect()))
                 }
+                ProbeKind::Energy { part, .. } => Some(Measurement::Energy(part)),
                 _ => None,
             })
             .collect();
@@ -99,6 +110,7 @@ impl<const D: usize> Solid<D> {
             taken: 1,
             density: material.map_or(1.0, |s| s.density),
             cross_pairs: 0,
+            ledger,
         }
     }
 
@@ -122,6 +134,9 @@ impl<const D: usize> State for Solid<D> {
         }
         if let Some(interface) = &mut self.interface {
             fields.part("interface", interface)?;
+        }
+        if let Some(own) = &mut self.ledger {
+            fields.part("energy", &mut own.ledger)?;
         }
         match self.model.state() {
             Some(model) => fields.part("model", model),
@@ -188,6 +203,9 @@ impl<const D: usize> Role for Solid<D> {
         }
         if half_step.stage == Stage::First {
             self.taken = self.sub_steps.choose(half_step.dt, self.limit);
+            if let Some(ledger) = &mut self.ledger {
+                ledger.leave(&*self.model);
+            }
         }
         let rest = match &mut self.sleep {
             Some(sleep) => sleep.decide(half_step, &self.load, &self.outer, self.model.particles()),
@@ -213,6 +231,9 @@ impl<const D: usize> Role for Solid<D> {
             position: o.position,
         })?;
         self.limit = self.model.sub_step_limit();
+        if let Some(ledger) = self.ledger.as_mut().filter(|_| half_step.stage == Stage::Second) {
+            ledger.arrive(&mut *self.model, forces);
+        }
         Ok(())
     }
 
@@ -221,7 +242,6 @@ impl<const D: usize> Role for Solid<D> {
     }
 
     fn probes(&self, out: &mut Vec<f64>) {
-        let mut put = |value: f64| out.push(value);
         let state = self.model.particles();
         for probe in &self.probes {
             match probe {
@@ -231,20 +251,25 @@ impl<const D: usize> Role for Solid<D> {
                             .iter()
                             .map(|&p| state.position[p as usize][d] - state.reference[p as usize][d])
                             .sum();
-                        put(sum / particles.len() as f64);
+                        out.push(sum / particles.len() as f64);
                     }
                 }
-                Measurement::KineticEnergy => put(state.kinetic_energy()),
+                Measurement::KineticEnergy => out.push(state.kinetic_energy()),
                 Measurement::Centroid => {
                     let mass: f64 = state.mass.iter().sum();
                     for d in 0..D {
                         let moment: f64 = state.mass.iter().zip(state.position).map(|(m, x)| m * x[d]).sum();
-                        put(moment / mass);
+                        out.push(moment / mass);
+                    }
+                }
+                Measurement::Energy(part) => {
+                    if let Some(own) = &self.ledger {
+                        own.ledger.measure(*part, out);
                     }
                 }
                 Measurement::Force(particles) => {
                     for d in 0..D {
-                        put(particles.iter().map(|&p| self.load.force[p as usize][d]).sum());
+                        out.push(particles.iter().map(|&p| self.load.force[p as usize][d]).sum());
                     }
                 }
             }
@@ -269,6 +294,10 @@ impl<const D: usize> Role for Solid<D> {
             gap: f64::INFINITY,
             stored_energy: self.model.strain_energy(),
         }
+    }
+
+    fn ledger(&self) -> Option<&Ledger> {
+        self.ledger.as_ref().map(|own| &own.ledger)
     }
 
     fn fill_frame(&self, time: f64, frame: &mut Frame) {

@@ -1,6 +1,6 @@
 //! What is measured, and the curves that it is compared with.
 
-use super::{Block, Phase};
+use super::{Block, EnergyPart, Phase};
 use serde::{Deserialize, Serialize};
 
 /// Something measured while the run goes on.
@@ -41,6 +41,14 @@ pub enum ProbeKind {
         #[serde(with = "crate::names::PhaseName")]
         phase: Phase,
     },
+    /// The energy ledger of the fluid or of a solid since the start, J (2D: J/m): what it holds, and what it was given.
+    Energy {
+        /// Fluid or solid.
+        #[serde(with = "crate::names::PhaseName")]
+        phase: Phase,
+        /// Only this part.
+        part: Option<EnergyPart>,
+    },
     /// Centre of mass of a phase; components x, y (, z), m.
     Centroid {
         /// Fluid or solid.
@@ -60,7 +68,7 @@ impl ProbeKind {
         match *self {
             Self::Displacement { .. } | Self::Force { .. } => Phase::Solid,
             Self::Pressure { .. } | Self::WaterLevel { .. } | Self::Front => Phase::Fluid,
-            Self::KineticEnergy { phase } | Self::Centroid { phase } => phase,
+            Self::KineticEnergy { phase } | Self::Centroid { phase } | Self::Energy { phase, .. } => phase,
         }
     }
     /// Components of the probe and their unit, in the order of the values.
@@ -72,6 +80,7 @@ impl ProbeKind {
             Self::WaterLevel { .. } => (&["level"], "m"),
             Self::Front => (&["x"], "m"),
             Self::KineticEnergy { .. } => (&["energy"], "J"),
+            Self::Energy { phase, part } => (EnergyPart::names(*phase, *part), "J"),
             Self::Force { .. } => (axes, "N"),
         }
     }

@@ -13,16 +13,18 @@ enum Kind {
     WaterLevel,
     Front,
     KineticEnergy,
+    Energy,
     Centroid,
     Force,
 }
 
-const KINDS: [(&str, Kind); 7] = [
+const KINDS: [(&str, Kind); 8] = [
     ("displacement", Kind::Displacement),
     ("pressure", Kind::Pressure),
     ("water-level", Kind::WaterLevel),
     ("front", Kind::Front),
     ("kinetic-energy", Kind::KineticEnergy),
+    ("energy", Kind::Energy),
     ("centroid", Kind::Centroid),
     ("force", Kind::Force),
 ];
@@ -45,6 +47,12 @@ pub(super) fn probe(
         Kind::WaterLevel => ProbeKind::WaterLevel { x: section.number("x", None, Range::ANY) },
         Kind::Front => ProbeKind::Front,
         Kind::KineticEnergy => ProbeKind::KineticEnergy { phase: section.choice("phase", None, &MOVING)? },
+        Kind::Energy => {
+            let phase = section.choice("phase", None, &MOVING)?;
+            let parts: Vec<_> = EnergyPart::of(phase).iter().map(|&part| (part.name(), part)).collect();
+            let part = section.node("part").and_then(|_| section.choice("part", None, &parts));
+            ProbeKind::Energy { phase, part }
+        }
         Kind::Centroid => ProbeKind::Centroid { phase: section.choice("phase", None, &MOVING)? },
         Kind::Force => {
             let within = section.section("within");

@@ -134,7 +134,10 @@ fn axis(name: &str, kind: &ProbeKind) -> String {
         ProbeKind::Centroid { .. } => format!("{name} centre of mass"),
         ProbeKind::Front => format!("{name} reach"),
         ProbeKind::Force { .. } => format!("{name} force"),
-        ProbeKind::Pressure { .. } | ProbeKind::WaterLevel { .. } | ProbeKind::KineticEnergy { .. } => {
+        ProbeKind::Pressure { .. }
+        | ProbeKind::WaterLevel { .. }
+        | ProbeKind::KineticEnergy { .. }
+        | ProbeKind::Energy { .. } => {
             // `p1.pressure` reads well; the component of these is the quantity.
             name.replacen('.', " ", 1)
         }
