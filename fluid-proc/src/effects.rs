@@ -6,10 +6,11 @@
 
 use crate::columns::PairParticles;
 use crate::composition::{NoShare, Shares};
+use crate::ledger::Measuring;
 use crate::rates::PairEffect;
 use crate::walls::Walls;
 use halfstep_role::role::fastest;
-use halfstep_scene::{Decision, Scene};
+use halfstep_scene::{Decision, EnergyPart, Scene};
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::{Isa, LANES};
 use halfstep_sph::neighbours::ClusterList;
@@ -104,6 +105,10 @@ pub trait Effects<const D: usize>: Send + Sync {
     /// Adds name and seconds of the own pass, in the mean of both stages, of each effect with a share of a pair of
     /// fluid particles.
     fn measure<K: Kernel<D>>(&mut self, around: &Neighbourhood<'_, K, D>, own: &mut Vec<(&'static str, f64)>);
+    /// Measures the power of each share of a pair of fluid particles.
+    fn measure_pairs<K: Kernel<D>>(&self, measuring: &mut Measuring<'_, K, D>);
+    /// Measures the power of each share of a pair of a fluid and a wall particle.
+    fn measure_walls<K: Kernel<D>>(&self, measuring: &mut Measuring<'_, K, D>);
     /// Bytes allocated.
     fn bytes(&self) -> usize;
 }
@@ -118,6 +123,8 @@ impl<const D: usize> Effects<D> for () {
     fn pairs_without(&self, _: &str) {}
     fn at_walls(&self) {}
     fn measure<K: Kernel<D>>(&mut self, _: &Neighbourhood<'_, K, D>, _: &mut Vec<(&'static str, f64)>) {}
+    fn measure_pairs<K: Kernel<D>>(&self, _: &mut Measuring<'_, K, D>) {}
+    fn measure_walls<K: Kernel<D>>(&self, _: &mut Measuring<'_, K, D>) {}
     fn bytes(&self) -> usize {
         0
     }
@@ -161,6 +168,18 @@ impl<const D: usize, E: FluidEffect<D>, R: Effects<D>> Effects<D> for (Option<E>
             own.push((E::NAME, 0.5 * (seconds[0] + seconds[1])));
         }
         self.1.measure(around, own);
+    }
+    fn measure_pairs<K: Kernel<D>>(&self, measuring: &mut Measuring<'_, K, D>) {
+        if let Some(share) = self.0.as_ref().and_then(E::pair) {
+            measuring.add(EnergyPart::of_effect(E::NAME), share);
+        }
+        self.1.measure_pairs(measuring);
+    }
+    fn measure_walls<K: Kernel<D>>(&self, measuring: &mut Measuring<'_, K, D>) {
+        if let Some(share) = self.0.as_ref().and_then(E::at_wall) {
+            measuring.add(EnergyPart::of_effect(E::NAME), share);
+        }
+        self.1.measure_walls(measuring);
     }
     fn bytes(&self) -> usize {
         self.0.as_ref().map_or(0, E::bytes) + self.1.bytes()

@@ -5,6 +5,7 @@ use crate::composition::Shares;
 use crate::effects::non_negative_wall_pressure::NonNegativeWallPressure;
 use crate::effects::{self, Effects, FluidEffect, List};
 use crate::interface::Coupling;
+use crate::ledger::FluidLedger;
 use crate::midpoint::{self, Conditions, Extremes};
 use crate::probes::{self, Gauge};
 use crate::rates::RateSum;
@@ -12,6 +13,7 @@ use crate::time_step::StepLimits;
 use crate::walls::Walls;
 use crate::walls::moving::motions;
 use halfstep_interface::Parameters;
+use halfstep_role::ledger::Ledger;
 use halfstep_role::role::{Costs, CoverageError, Peer, Role};
 use halfstep_scene::bounds::Bounds;
 use halfstep_scene::geometry;
@@ -66,6 +68,8 @@ pub struct Fluid<const D: usize, X: FluidEffect<D> = ()> {
     /// What the next state publishes was decided before an interruption.
     pub(crate) published: bool,
     pub(crate) pair_evaluations: u64,
+    /// Where the scene's probes ask for energies.
+    pub(crate) ledger: Option<FluidLedger<D>>,
 }
 
 impl<const D: usize> Fluid<D> {
@@ -128,6 +132,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
                 sorted: false,
                 published: false,
                 pair_evaluations: 0,
+                ledger: scene.keeps_energy_ledgers().then(FluidLedger::new),
             }
             .prepared(),
         )
@@ -138,21 +143,25 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         self.largest_acceleration = self.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
         let speeds = self.columns.now.sources.iter().map(|s| s.velocity.map(|v| v.powi(2)).iter().sum());
         self.largest_speed = speeds.fold(0.0, f64::max).sqrt();
+        self.close_ledger(0.0);
         self
     }
 
     /// Sorts the particles and renews the lists; particles outside the domain are taken out.
     fn sort(&mut self) {
         let (low, high) = self.domain;
+        let mut left = Vec::new();
         for slot in 0..self.columns.slots() {
             let outside = (0..D).any(|d| {
                 let x = self.columns.now.position[d][slot];
                 x < low[d] || x > high[d]
             });
             if outside && self.columns.id[slot] != PADDING {
+                left.push(slot);
                 self.columns.id[slot] = PADDING;
             }
         }
+        self.give_away(&left);
         // Rows two spacings high: four neighbours in a row are a square.
         self.rows.sort(&self.columns.now.position, &self.columns.id, 2.0 * self.resolution, low, high);
         self.columns.permute(&mut self.rows, &self.state);
@@ -253,12 +262,18 @@ impl<const D: usize, X: FluidEffect<D>> Role for Fluid<D, X> {
     }
 
     fn own_sums(&mut self) {
-        with_kernel!(self.kernel, self.smoothing_length, D, |kernel| self.sums(kernel));
+        with_kernel!(self.kernel, self.smoothing_length, D, |kernel| {
+            self.sums(kernel);
+            if self.stage == Stage::Second {
+                self.measure_powers(kernel);
+            }
+        });
     }
 
     fn cross_sums(&mut self, own: &[StateRecord], peers: &[Peer]) -> Result<(), CoverageError> {
         let Some(coupling) = &mut self.coupling else { return Ok(()) };
-        coupling.add_rates(&mut self.sums, own, peers, self.displacement)?;
+        let ledger = self.ledger.as_mut().filter(|_| self.stage == Stage::Second);
+        coupling.add_rates(&mut self.sums, own, peers, self.displacement, ledger)?;
         self.pair_evaluations += coupling.pairs() as u64;
         Ok(())
     }
@@ -273,10 +288,16 @@ impl<const D: usize, X: FluidEffect<D>> Role for Fluid<D, X> {
                 );
             }
         }
+        if half_step.stage == Stage::Second {
+            self.measure_cross_viscosity(forces);
+        }
         self.stage = half_step.next().stage;
         let conditions = Conditions::new(half_step, self.gravity, &self.state, &self.bounds);
         let extremes = midpoint::advance(&mut self.columns, &self.sums, conditions);
         self.remember(&extremes);
+        if half_step.stage == Stage::Second {
+            self.close_ledger(half_step.dt);
+        }
         match extremes.out_of_bounds.then(|| self.find_divergence(half_step)).flatten() {
             Some(diverged) => Err(diverged),
             None => Ok(()),
@@ -289,6 +310,10 @@ impl<const D: usize, X: FluidEffect<D>> Role for Fluid<D, X> {
 
     fn audit(&self) -> Audit {
         self.audit_values()
+    }
+
+    fn ledger(&self) -> Option<&Ledger> {
+        self.ledger.as_ref().map(|own| &own.ledger)
     }
 
     fn fill_frame(&self, time: f64, frame: &mut Frame) {

@@ -1,6 +1,7 @@
 //! The fluid's side of the interface: which particles it publishes, and what the solid does to them.
 
 use crate::columns::Columns;
+use crate::ledger::FluidLedger;
 use crate::rates::RateSum;
 use halfstep_interface::{Interface, Parameters};
 use halfstep_role::role::{CoverageError, Peer};
@@ -140,16 +141,17 @@ impl<const D: usize> Coupling<D> {
         }
     }
 
-    /// Adds what the solids do to the fluid's rates, in their order.
+    /// Adds what the solids do to the fluid's rates, in their order, and their powers to a ledger.
     ///
     /// # Errors
     /// The set may lack a particle within reach of a solid.
-    pub fn add_rates(
+    pub(crate) fn add_rates(
         &mut self,
         sums: &mut [RateSum<D>],
         own: &[StateRecord],
         peers: &[Peer],
         fluid_displacement: f64,
+        mut ledger: Option<&mut FluidLedger<D>>,
     ) -> Result<(), CoverageError> {
         let solid = self.solid_displacement(peers);
         if fluid_displacement + solid > self.skin {
@@ -163,6 +165,9 @@ impl<const D: usize> Coupling<D> {
             interface.act_on_fluid(|record, acceleration, density_rate| {
                 let slot = slots[record] as usize;
                 sums[slot / LANES].add(slot % LANES, acceleration, density_rate);
+                if let Some(ledger) = &mut ledger {
+                    ledger.push(&own[record], acceleration, density_rate);
+                }
             });
             self.gap = self.gap.min(interface.smallest_distance() / interface.parameters.spacing);
         }

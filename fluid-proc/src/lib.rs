@@ -24,6 +24,7 @@ pub mod fluid;
 mod fluid_tests;
 pub mod interface;
 pub mod measure;
+pub mod ledger;
 mod memory;
 pub mod midpoint;
 pub mod momentum;

@@ -3,7 +3,7 @@
 use crate::effects::FluidEffect;
 use crate::fluid::Fluid;
 use halfstep_scene::geometry::{WallPoint, holds};
-use halfstep_scene::{Block, Phase, ProbeKind, Scene};
+use halfstep_scene::{Block, EnergyPart, Phase, ProbeKind, Scene};
 use halfstep_sph::kernel;
 use halfstep_sph::neighbours::PADDING;
 
@@ -30,6 +30,8 @@ pub(crate) enum Gauge<const D: usize> {
     Force(Vec<bool>),
     /// Moment of the same forces about an axis along z through a point.
     Moment(Vec<bool>, [f64; D]),
+    /// The ledger or a part of it.
+    Energy(Option<EnergyPart>),
 }
 
 /// The fluid's probes in the scene's order, with the scene's wall particles.
@@ -60,6 +62,7 @@ pub(crate) fn of_fluid<const D: usize>(scene: &Scene, walls: &[WallPoint<D>]) ->
         ProbeKind::Moment { about, within, shape } => {
             Some(Gauge::Moment(chosen(*shape, within), narrow(*about)))
         }
+        ProbeKind::Energy { part, .. } => Some(Gauge::Energy(*part)),
         _ => None,
     };
     let of_fluid = scene.probes.iter().filter(|probe| probe.phase() == Phase::Fluid);
@@ -171,6 +174,11 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
                 }
                 Gauge::Force(chosen) => out.extend(self.force(&loads, chosen)),
                 Gauge::Moment(chosen, about) => out.push(self.moment(&loads, chosen, about)),
+                Gauge::Energy(part) => {
+                    if let Some(own) = &self.ledger {
+                        own.ledger.measure(*part, out);
+                    }
+                }
             }
         }
     }

@@ -28,6 +28,9 @@ impl<const D: usize, X: FluidEffect<D>> State for Fluid<D, X> {
         if let Some(coupling) = &mut self.coupling {
             fields.part("coupling", coupling)?;
         }
+        if let Some(own) = &mut self.ledger {
+            fields.part("energy", &mut own.ledger)?;
+        }
         Ok(())
     }
 

@@ -22,6 +22,7 @@
 mod columns;
 pub mod effects;
 pub mod hypoelastic;
+mod ledger;
 pub mod model;
 mod models;
 mod probes;

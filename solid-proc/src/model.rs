@@ -1,6 +1,7 @@
 //! The seam: what a solid model is to the rest of the program.
 
 use halfstep_role::role::Costs;
+use halfstep_scene::EnergyPart;
 use halfstep_sph::quantity::Quantity;
 use halfstep_wire::half_step::HalfStep;
 use halfstep_wire::protocol::StateRecord;
@@ -104,6 +105,11 @@ pub trait SolidModel<const D: usize>: Send {
     fn take_outer_rates(&mut self, _rates: &[OuterRates<D>]) {}
     /// Energy stored in the material, J (2D: J/m).
     fn strain_energy(&self) -> f64;
+    /// Keeps account from now on of what the model's effects give or take of its energy. A model that keeps none lets
+    /// that appear as an error of integration.
+    fn keep_account(&mut self) {}
+    /// Calls `give` with what was given over the last step, J (2D: J/m), after its second stage; negative: taken.
+    fn account(&mut self, _give: &mut dyn FnMut(EnergyPart, f64)) {}
     /// Pair evaluations so far.
     fn pair_evaluations(&self) -> u64;
     /// What the model keeps over an interruption; `None`: it cannot be saved, and no checkpoints are written.

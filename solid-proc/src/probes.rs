@@ -2,7 +2,8 @@
 
 use crate::model::{Load, SolidModel};
 use halfstep_scene::geometry::{self, holds, nearest};
-use halfstep_scene::{Block, Phase, ProbeKind, Scene};
+use halfstep_role::ledger::Ledger;
+use halfstep_scene::{Block, EnergyPart, Phase, ProbeKind, Scene};
 use halfstep_wire::frame::von_mises;
 
 /// A probe of a solid.
@@ -20,6 +21,8 @@ pub(crate) enum Measurement<const D: usize> {
     Force(Vec<u32>),
     /// Moment of the same forces about an axis along z through a point.
     Moment(Vec<u32>, [f64; D]),
+    /// The ledger or a part of it.
+    Energy(Option<EnergyPart>),
 }
 
 /// The probes of the scene's solid of that index, in the scene's order.
@@ -57,6 +60,7 @@ pub(crate) fn of_solid<const D: usize>(
         ProbeKind::Moment { about, within, shape } => {
             Some(Measurement::Moment(loaded(*within, *shape), std::array::from_fn(|d| about[d])))
         }
+        ProbeKind::Energy { part, .. } => Some(Measurement::Energy(*part)),
         _ => None,
     };
     scene.probes.iter().filter(|p| p.solid == Some(solid)).filter_map(|p| measurement(&p.kind)).collect()
@@ -64,7 +68,16 @@ pub(crate) fn of_solid<const D: usize>(
 
 impl<const D: usize> Measurement<D> {
     /// Appends the values on the present state, under the load of the last exchange.
-    pub(crate) fn measure(&self, model: &dyn SolidModel<D>, load: &Load<D>, out: &mut Vec<f64>) {
+    pub(crate) fn measure(
+        &self,
+        model: &dyn SolidModel<D>,
+        load: &Load<D>,
+        ledger: Option<&Ledger>,
+        out: &mut Vec<f64>,
+    ) {
+        if let (Self::Energy(part), Some(ledger)) = (self, ledger) {
+            return ledger.measure(*part, out);
+        }
         let mut put = |value: f64| out.push(value);
         let state = model.particles();
         match self {
@@ -110,6 +123,7 @@ impl<const D: usize> Measurement<D> {
                 };
                 put(particles.iter().map(of).sum());
             }
+            Self::Energy(_) => {}
         }
     }
 }

@@ -1,12 +1,14 @@
 //! The solid as a [`Role`]: interface record, loads, sub-steps, probes.
 
 use crate::effects::takes_part;
+use crate::ledger::SolidLedger;
 use crate::model::{Load, OutOfBounds, OuterRates, SolidModel};
 use crate::models;
 use crate::probes::{self, Measurement};
 use crate::sleep::{Rest, Sleep};
 use crate::sub_steps::SubStepping;
 use halfstep_interface::{Interface, Parameters};
+use halfstep_role::ledger::Ledger;
 use halfstep_role::role::{Costs, CoverageError, Peer, Role};
 use halfstep_scene::{EffectName, Phase, Scene, Treatment};
 use halfstep_sph::lane::Isa;
@@ -36,6 +38,8 @@ pub struct Solid<const D: usize> {
     limit: f64,
     cross_pairs: u64,
     sleep: Option<Sleep>,
+    /// Where the scene's probes ask for energies.
+    ledger: Option<SolidLedger<D>>,
 }
 
 impl<const D: usize> Solid<D> {
@@ -45,7 +49,11 @@ impl<const D: usize> Solid<D> {
     }
 
     /// With any model.
-    pub fn with_model(scene: &Scene, solid: usize, isa: Isa, model: Box<dyn SolidModel<D>>) -> Self {
+    pub fn with_model(scene: &Scene, solid: usize, isa: Isa, mut model: Box<dyn SolidModel<D>>) -> Self {
+        if scene.keeps_energy_ledgers() {
+            model.keep_account();
+        }
+        let ledger = scene.keeps_energy_ledgers().then(|| SolidLedger::new(scene, &*model));
         let phase_blind = scene.interface.treatment == Treatment::PhaseBlind;
         let interface = Parameters::<D>::new(scene, solid, isa).filter(|_| phase_blind).map(Interface::new);
         let particles = model.particles();
@@ -71,6 +79,7 @@ impl<const D: usize> Solid<D> {
             taken: 1,
             density: material.map_or(1.0, |s| s.density),
             cross_pairs: 0,
+            ledger,
         }
     }
 
@@ -94,6 +103,9 @@ impl<const D: usize> State for Solid<D> {
         }
         if let Some(interface) = &mut self.interface {
             fields.part("interface", interface)?;
+        }
+        if let Some(own) = &mut self.ledger {
+            fields.part("energy", &mut own.ledger)?;
         }
         match self.model.state() {
             Some(model) => fields.part("model", model),
@@ -160,6 +172,9 @@ impl<const D: usize> Role for Solid<D> {
         }
         if half_step.stage == Stage::First {
             self.taken = self.sub_steps.choose(half_step.dt, self.limit);
+            if let Some(ledger) = &mut self.ledger {
+                ledger.leave(&*self.model);
+            }
         }
         let rest = match &mut self.sleep {
             Some(sleep) => sleep.decide(half_step, &self.load, &self.outer, self.model.particles()),
@@ -185,6 +200,9 @@ impl<const D: usize> Role for Solid<D> {
             position: o.position,
         })?;
         self.limit = self.model.sub_step_limit();
+        if let Some(ledger) = self.ledger.as_mut().filter(|_| half_step.stage == Stage::Second) {
+            ledger.arrive(&mut *self.model, forces);
+        }
         Ok(())
     }
 
@@ -193,7 +211,8 @@ impl<const D: usize> Role for Solid<D> {
     }
 
     fn probes(&self, out: &mut Vec<f64>) {
-        self.probes.iter().for_each(|probe| probe.measure(self.model.as_ref(), &self.load, out));
+        let ledger = self.ledger.as_ref().map(|own| &own.ledger);
+        self.probes.iter().for_each(|probe| probe.measure(self.model.as_ref(), &self.load, ledger, out));
     }
 
     fn audit(&self) -> Audit {
@@ -214,6 +233,10 @@ impl<const D: usize> Role for Solid<D> {
             gap: f64::INFINITY,
             stored_energy: self.model.strain_energy(),
         }
+    }
+
+    fn ledger(&self) -> Option<&Ledger> {
+        self.ledger.as_ref().map(|own| &own.ledger)
     }
 
     fn fill_frame(&self, time: f64, frame: &mut Frame) {

@@ -209,6 +209,32 @@ impl<const D: usize> Walls<D> {
         pair::pass(isa, &law, &self.neighbours, &mut self.forces);
     }
 
+    /// Power of walls that move on all solid particles, in the state that was evaluated last, over a particle's mass,
+    /// W/kg. `id` are the numbers of the solid's slots.
+    pub(crate) fn power<K: Kernel<D>>(
+        &self,
+        isa: Isa,
+        kernel: K,
+        solid: Touching<'_, D>,
+        id: &[u32],
+    ) -> f64 {
+        if self.moving.is_none() {
+            return 0.0;
+        }
+        let law = PushPower(Push {
+            kernel,
+            solid,
+            position: &self.position,
+            velocity: &self.velocity,
+            pressure: &self.pressure,
+            density: &self.density,
+        });
+        let mut sums = vec![Power::default(); self.neighbours.clusters()];
+        pair::pass(isa, &law, &self.neighbours, &mut sums);
+        let real = (0..id.len()).filter(|&slot| id[slot] != PADDING);
+        real.map(|slot| sums[slot / LANES].0.0[slot % LANES]).sum()
+    }
+
     /// Acceleration of the solid particle at a slot, m/s².
     pub(crate) fn acceleration(&self, slot: usize) -> [f64; D] {
         self.forces[slot / LANES].0.map(|a| a.0[slot % LANES])
@@ -332,6 +358,44 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for Push<'_, K, D> {
             Lane::splat(-self.solid.wall_mass) * f * term + Lane::splat(self.solid.repulsion) * overlap / r;
         for d in 0..D {
             sum.0[d] = A::mul_add(coefficient, dx[d], sum.0[d]);
+        }
+    }
+}
+
+/// Power of four pushes by the walls' own velocities, over a particle's mass.
+#[derive(Clone, Copy)]
+struct Power(Lane);
+
+impl Default for Power {
+    fn default() -> Self {
+        Self(Lane::ZERO)
+    }
+}
+
+/// The power of [`Push`] that comes from the walls' motion.
+struct PushPower<'a, K, const D: usize>(Push<'a, K, D>);
+
+impl<K: Kernel<D>, const D: usize> PairLaw<D> for PushPower<'_, K, D> {
+    type Target = Target<D>;
+    type Sum = Power;
+    #[inline(always)]
+    fn target_positions(&self) -> &[Vec<f64>; D] {
+        self.0.target_positions()
+    }
+    #[inline(always)]
+    fn target(&self, slot: usize) -> Target<D> {
+        self.0.target(slot)
+    }
+    #[inline(always)]
+    fn source_position(&self, j: usize) -> [f64; D] {
+        self.0.source_position(j)
+    }
+    #[inline(always)]
+    fn add<A: Arch>(&self, i: &Target<D>, j: usize, dx: [Lane; D], r2: Lane, sum: &mut Power) {
+        let mut push = WallForce::default();
+        self.0.add::<A>(i, j, dx, r2, &mut push);
+        for d in 0..D {
+            sum.0 = A::mul_add(push.0[d], Lane::splat(self.0.velocity[d][j]), sum.0);
         }
     }
 }

@@ -90,6 +90,11 @@ impl ExternalSolid {
                         |r: &StateRecord| 0.5 * r.mass * r.velocity.iter().map(|v| v * v).sum::<f64>();
                     self.values.push(records.iter().map(energy).sum());
                 }
+                // What another program's solid holds is not known.
+                ProbeKind::Energy { .. } => {
+                    let parts = kind.components(self.dimension).0.len();
+                    self.values.extend(std::iter::repeat_n(f64::NAN, parts));
+                }
                 ProbeKind::Force { .. } => {
                     for d in 0..self.dimension {
                         let force = |&i: &usize| forces[i].force(records[i].mass)[d];

@@ -1,6 +1,7 @@
 //! `run.json`: what a run was and how it went.
 
 use super::{OutputError, atomic};
+use halfstep_scene::EnergyPart;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -42,6 +43,8 @@ pub struct RunReport {
     pub round_trip_us: Option<Percentiles>,
     /// What the run checked about itself.
     pub audit: Audit,
+    /// The energy ledgers; `null` where no probe asks for energies.
+    pub energy: Option<EnergyReport>,
     /// Owners of particles: the fluid, then the solids in the scene's order. `particles` and `roles` are their sums.
     pub participants: Vec<ParticipantReport>,
     /// The effects, with the reason for each.
@@ -86,6 +89,90 @@ pub struct ParticipantReport {
     pub capacity: Option<u32>,
     /// Where its time went, s.
     pub times: Option<RoleSeconds>,
+}
+
+/// The energy ledgers of all participants, J (2D: J/m).
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct EnergyReport {
+    /// Error of time integration: the largest at any step, sum over the participants.
+    pub residual: f64,
+    /// The same over the largest energy exchanged.
+    pub relative_residual: f64,
+    /// The largest change of a part of a ledger since the start.
+    pub largest: Option<LargestEnergy>,
+    /// What both sides of the interfaces were given together: energy that the exchange made, or lost if negative;
+    /// `null` where a side is another program's.
+    pub interface: Option<InterfaceEnergy>,
+    /// The ledgers, in the order of the participants.
+    pub participants: Vec<ParticipantEnergy>,
+}
+
+/// The largest energy exchanged.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LargestEnergy {
+    /// Whose.
+    pub participant: String,
+    /// Which part.
+    pub part: EnergyPart,
+    /// How much, J (2D: J/m).
+    pub joules: f64,
+}
+
+/// Energy of the exchange between fluid and solids, J (2D: J/m).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct InterfaceEnergy {
+    /// By pressure; phase-blind by stress.
+    pub pressure: f64,
+    /// By f_i.
+    pub cross_viscosity: f64,
+}
+
+/// A participant's energy ledger.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ParticipantEnergy {
+    /// Name of the participant.
+    pub name: String,
+    /// What it holds, what it was given since the start, and the rest.
+    pub parts: Vec<EnergyEntry>,
+}
+
+/// A part of an energy ledger, J (2D: J/m).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EnergyEntry {
+    /// Which.
+    pub part: EnergyPart,
+    /// Held at the end, or given since the start.
+    pub joules: f64,
+    /// Largest change since the start.
+    pub largest: f64,
+}
+
+impl EnergyReport {
+    /// From the ledgers of those participants that kept one; `complete`: all did. `None` where nobody did.
+    pub fn of(participants: Vec<ParticipantEnergy>, complete: bool) -> Option<Self> {
+        let all = || participants.iter().flat_map(|own| own.parts.iter().map(move |entry| (own, entry)));
+        let exchanged = all().filter(|(_, entry)| entry.part != EnergyPart::Integration);
+        let largest = exchanged.max_by(|a, b| a.1.largest.total_cmp(&b.1.largest)).map(|(own, entry)| {
+            LargestEnergy { participant: own.name.clone(), part: entry.part, joules: entry.largest }
+        })?;
+        let of = |part: EnergyPart| all().map(|(_, entry)| entry).filter(move |entry| entry.part == part);
+        let residual = of(EnergyPart::Integration).map(|entry| entry.largest).sum();
+        let given = |part| of(part).map(|entry| entry.joules).sum();
+        let relative_residual = if largest.joules > 0.0 { residual / largest.joules } else { 0.0 };
+        let interface = InterfaceEnergy {
+            pressure: given(EnergyPart::InterfacePressure),
+            cross_viscosity: given(EnergyPart::CrossViscosity),
+        };
+        let interface = (complete && participants.len() > 1).then_some(interface);
+        Some(Self { residual, relative_residual, largest: Some(largest), interface, participants })
+    }
+
+    /// A part of a participant's ledger, J (2D: J/m).
+    pub fn joules(&self, participant: &str, part: EnergyPart) -> Option<f64> {
+        let own = self.participants.iter().find(|own| own.name == participant)?;
+        own.parts.iter().find(|entry| entry.part == part).map(|entry| entry.joules)
+    }
 }
 
 /// How a run ended.

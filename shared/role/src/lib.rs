@@ -12,6 +12,7 @@
 
 mod error;
 mod latency;
+pub mod ledger;
 pub mod lockstep;
 mod member;
 mod published;

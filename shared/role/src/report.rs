@@ -1,5 +1,6 @@
 //! What a participant says about itself when it ends: where its time went and how much it computed.
 
+use crate::ledger::Entry;
 use halfstep_scene::EffectName;
 use serde::{Deserialize, Serialize};
 
@@ -27,4 +28,6 @@ pub struct Report {
     pub interface: f64,
     /// Effects that took measurable time.
     pub effects: Vec<(EffectName, f64)>,
+    /// Energy ledger, J; empty where the scene asks for none.
+    pub energy: Vec<Entry>,
 }

@@ -1,5 +1,6 @@
 //! What a process that owns particles does, seen from the lock-step: the seam between physics and co-simulation.
 
+use crate::ledger::Ledger;
 use halfstep_scene::EffectName;
 use halfstep_sph::Phase;
 use halfstep_wire::Name;
@@ -88,6 +89,10 @@ pub trait Role: Send {
     fn probes(&self, out: &mut Vec<f64>);
     /// Sums over all own particles.
     fn audit(&self) -> Audit;
+    /// Its energy ledger, where the scene asks for one.
+    fn ledger(&self) -> Option<&Ledger> {
+        None
+    }
     /// Copies the particles for output.
     fn fill_frame(&self, time: f64, frame: &mut Frame);
     /// Hash over the own particles' state in id order.

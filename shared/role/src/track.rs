@@ -2,6 +2,7 @@
 
 use crate::error::RoleError;
 use crate::latency::Latency;
+use crate::ledger::Ledger;
 use crate::member::Member;
 use crate::published::Published;
 use crate::report::Report;
@@ -224,6 +225,7 @@ impl Track {
             walls: costs.walls,
             interface: self.cross.as_secs_f64(),
             effects: effects.filter(|(_, seconds)| *seconds > 0.0).collect(),
+            energy: self.member.role.ledger().map_or_else(Vec::new, Ledger::entries),
         }
     }
 }

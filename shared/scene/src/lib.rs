@@ -24,6 +24,7 @@ mod check_solid;
 mod dimension;
 mod document;
 mod effect;
+mod energy;
 mod error;
 mod file;
 pub mod geometry;
@@ -48,6 +49,7 @@ mod spacing;
 mod velocity_field;
 
 pub use effect::{Decision, Derived, EffectName, Switch};
+pub use energy::EnergyPart;
 pub use error::{Place, SceneError, SceneErrors};
 pub use halfstep_sph::Phase;
 pub use halfstep_sph::kernel::KernelName;

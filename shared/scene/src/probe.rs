@@ -1,6 +1,6 @@
 //! What is measured, and the curves that it is compared with.
 
-use super::{Block, Phase};
+use super::{Block, EnergyPart, Phase};
 use serde::{Deserialize, Serialize};
 
 /// Something measured while the run goes on.
@@ -71,6 +71,14 @@ pub enum ProbeKind {
         #[serde(with = "crate::names::PhaseName")]
         phase: Phase,
     },
+    /// The energy ledger of the fluid or of a solid since the start, J (2D: J/m): what it holds, and what it was given.
+    Energy {
+        /// Fluid or solid.
+        #[serde(with = "crate::names::PhaseName")]
+        phase: Phase,
+        /// Only this part.
+        part: Option<EnergyPart>,
+    },
     /// Centre of mass of a phase; components x, y (, z), m.
     Centroid {
         /// Fluid or solid.
@@ -112,6 +120,9 @@ impl ProbeKind {
             Self::WaterLevel { x } => ((1..=x.len()).map(|k| format!("level-{k}")).collect(), "m"),
             Self::Front => (one("x"), "m"),
             Self::KineticEnergy { .. } | Self::StrainEnergy => (one("energy"), "J"),
+            Self::Energy { phase, part } => {
+                (EnergyPart::names(*phase, *part).iter().map(|&name| name.to_owned()).collect(), "J")
+            }
             Self::Force { .. } => (axes(), "N"),
             Self::Moment { .. } => (one("moment"), "N m"),
         }
@@ -138,7 +149,9 @@ impl Probe {
             | ProbeKind::Flux { .. }
             | ProbeKind::WaterLevel { .. }
             | ProbeKind::Front => Phase::Fluid,
-            ProbeKind::KineticEnergy { phase } | ProbeKind::Centroid { phase } => phase,
+            ProbeKind::KineticEnergy { phase }
+            | ProbeKind::Centroid { phase }
+            | ProbeKind::Energy { phase, .. } => phase,
         }
     }
 

@@ -18,12 +18,13 @@ enum Kind {
     WaterLevel,
     Front,
     KineticEnergy,
+    Energy,
     Centroid,
     Force,
     Moment,
 }
 
-const KINDS: [(&str, Kind); 13] = [
+const KINDS: [(&str, Kind); 14] = [
     ("displacement", Kind::Displacement),
     ("position", Kind::Position),
     ("stress", Kind::Stress),
@@ -34,6 +35,7 @@ const KINDS: [(&str, Kind); 13] = [
     ("water-level", Kind::WaterLevel),
     ("front", Kind::Front),
     ("kinetic-energy", Kind::KineticEnergy),
+    ("energy", Kind::Energy),
     ("centroid", Kind::Centroid),
     ("force", Kind::Force),
     ("moment", Kind::Moment),
@@ -63,6 +65,12 @@ pub(super) fn probe(
         Kind::WaterLevel => ProbeKind::WaterLevel { x: gauges(&section)? },
         Kind::Front => ProbeKind::Front,
         Kind::KineticEnergy => ProbeKind::KineticEnergy { phase: section.choice("phase", None, &MOVING)? },
+        Kind::Energy => {
+            let phase = section.choice("phase", None, &MOVING)?;
+            let parts: Vec<_> = EnergyPart::of(phase).iter().map(|&part| (part.name(), part)).collect();
+            let part = section.node("part").and_then(|_| section.choice("part", None, &parts));
+            ProbeKind::Energy { phase, part }
+        }
         Kind::Centroid => ProbeKind::Centroid { phase: section.choice("phase", None, &MOVING)? },
         Kind::Force => {
             let (shape, within) = loaded(&section, dimension, shapes)?;

@@ -11,12 +11,13 @@ use crate::effects::takes_part;
 use crate::surface::surface_set;
 use crate::wall::{Touching, Walls, repulsion};
 use halfstep_scene::geometry::{self, Layout, SolidPoint};
-use halfstep_scene::{EffectName, Scene, Solid};
+use halfstep_scene::{EffectName, KernelName, Scene, Solid};
 use halfstep_sph::columns::{copy, fit, moved_farther};
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::{Arch, Isa, LANES, Lane};
 use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_sph::pair::{self, PairLaw, distance};
+use halfstep_sph::with_kernel;
 use halfstep_wire::order;
 use halfstep_wire::state::StateError;
 
@@ -244,23 +245,28 @@ impl<const D: usize> Contact<D> {
             let law = Repel { position: &self.position, body: &self.body, spacing: self.spacing };
             pair::pass(isa, &law, &self.list, &mut self.sums);
         }
-        if let Some(walls) = &mut self.walls {
-            let viscosity = solid.artificial_viscosity;
-            let touching = Touching {
-                position: &self.position,
-                velocity: &self.velocity,
-                density: &self.density,
-                pressure: &self.pressure,
-                wall_mass: self.wall_mass,
-                reference_density: solid.density,
-                bulk_modulus: solid.bulk_modulus(),
-                // The wall begins to push a body by stopping it: a solid without viscosity would not be stopped.
-                linear: viscosity.linear.max(1.0) * solid.sound_speed(),
-                quadratic: viscosity.quadratic,
-                spacing: self.wall_spacing,
-                repulsion: repulsion(solid.pressure_wave_speed(), self.spacing),
-            };
-            walls.act(isa, kernel, self.gravity, touching);
+        if let Some(mut walls) = self.walls.take() {
+            walls.act(isa, kernel, self.gravity, self.touching(solid));
+            self.walls = Some(walls);
+        }
+    }
+
+    /// The particles as walls see them.
+    fn touching(&self, solid: &Solid) -> Touching<'_, D> {
+        let viscosity = solid.artificial_viscosity;
+        Touching {
+            position: &self.position,
+            velocity: &self.velocity,
+            density: &self.density,
+            pressure: &self.pressure,
+            wall_mass: self.wall_mass,
+            reference_density: solid.density,
+            bulk_modulus: solid.bulk_modulus(),
+            // The wall begins to push a body by stopping it: a solid without viscosity would not be stopped.
+            linear: viscosity.linear.max(1.0) * solid.sound_speed(),
+            quadratic: viscosity.quadratic,
+            spacing: self.wall_spacing,
+            repulsion: repulsion(solid.pressure_wave_speed(), self.spacing),
         }
     }
 
@@ -277,6 +283,22 @@ impl<const D: usize> Contact<D> {
             }
             add(self.id[slot], a);
         }
+    }
+
+    /// Calls `add` with each particle's number and its acceleration by walls, m/s².
+    pub(super) fn wall_accelerations(&self, mut add: impl FnMut(u32, [f64; D])) {
+        let Some(walls) = &self.walls else { return };
+        for slot in (0..self.id.len()).filter(|&s| self.id[s] != PADDING) {
+            add(self.id[slot], walls.acceleration(slot));
+        }
+    }
+
+    /// Power of walls that move on the solid, over a particle's mass, W/kg.
+    pub(super) fn power_of_walls(&self, isa: Isa, kernel: KernelName, solid: &Solid) -> f64 {
+        let Some(walls) = &self.walls else { return 0.0 };
+        with_kernel!(kernel, self.smoothing_length, D, |kernel| {
+            walls.power(isa, kernel, self.touching(solid), &self.id)
+        })
     }
 
     /// Energy in the contacts between bodies, J.

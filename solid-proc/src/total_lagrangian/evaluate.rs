@@ -7,7 +7,7 @@ use super::pass::{Damping, Deformation, DeformationSum, Moment, MomentSum, Momen
 use super::relaxation::{Arms, Relaxation};
 use halfstep_role::role::{Costs, fastest};
 use halfstep_scene::bounds::Excess;
-use halfstep_scene::{ArtificialViscosity, EffectName};
+use halfstep_scene::{ArtificialViscosity, EffectName, EnergyPart};
 use halfstep_sph::lane::LANES;
 use halfstep_sph::neighbours::PADDING;
 use halfstep_sph::{pair, tensor, with_kernel};
@@ -59,7 +59,7 @@ impl<const D: usize> TotalLagrangian<D> {
 
     /// F of every particle from the sums of the first pass, and the second pass' brackets. Of the first evaluation
     /// in which volumes leave their bounds, the one farthest out is kept in `failure`.
-    fn stresses<R: Relaxation<D>>(&mut self, mut relaxation: R) {
+    fn stresses<R: Relaxation<D>>(&mut self, relaxation: &mut R) {
         let mut worst: Option<(u32, Excess)> = None;
         for slot in 0..self.id.len() {
             if self.id[slot] == PADDING {
@@ -100,28 +100,27 @@ impl<const D: usize> TotalLagrangian<D> {
     pub(super) fn evaluate(&mut self, elapsed: f64) {
         self.deformation();
         if self.arms.is_empty() {
-            self.stresses(());
+            self.stresses(&mut ());
         } else {
             let mut memory = std::mem::take(&mut self.now.memory);
             let arms = std::mem::take(&mut self.arms);
             let shear_modulus = self.material.shear_modulus();
-            self.stresses(Arms::over(elapsed, &arms, shear_modulus, &mut memory));
+            let mut relaxation = Arms::over(elapsed, &arms, shear_modulus, &mut memory);
+            let accounted = self.account.as_ref().is_some_and(|account| account.open);
+            if accounted {
+                relaxation = relaxation.with_account(elapsed, &arms);
+            }
+            self.stresses(&mut relaxation);
+            let lost = self.volume * relaxation.lost();
+            if let Some(account) = self.account.as_mut().filter(|_| accounted) {
+                account.give(EnergyPart::Relaxation, -lost);
+            }
             (self.now.memory, self.arms) = (memory, arms);
         }
         let mut sums = std::mem::take(&mut self.sums);
-        let viscosity = self.material.artificial_viscosity;
-        let damped = viscosity.linear > 0.0 || viscosity.quadratic > 0.0;
-        if damped {
-            let viscous = Viscous {
-                velocity: &self.now.velocity,
-                smoothing_length: self.smoothing_length,
-                density: self.material.density,
-                linear: viscosity.linear * self.material.sound_speed(),
-                quadratic: viscosity.quadratic,
-            };
-            self.momentum(viscous, &mut sums);
-        } else {
-            self.momentum((), &mut sums);
+        match self.damping() {
+            Some(viscous) => self.momentum(viscous, &mut sums),
+            None => self.momentum((), &mut sums),
         }
         for slot in 0..self.id.len() {
             let free = self.id[slot] != PADDING && self.fixed.clamped[slot] == 0.0;
@@ -134,6 +133,18 @@ impl<const D: usize> TotalLagrangian<D> {
         if let Some(contact) = self.contact.take() {
             self.contact = Some(self.touch(contact));
         }
+    }
+
+    /// The artificial viscosity of the present velocities.
+    pub(super) fn damping(&self) -> Option<Viscous<'_, D>> {
+        let viscosity = self.material.artificial_viscosity;
+        (viscosity.linear > 0.0 || viscosity.quadratic > 0.0).then(|| Viscous {
+            velocity: &self.now.velocity,
+            smoothing_length: self.smoothing_length,
+            density: self.material.density,
+            linear: viscosity.linear * self.material.sound_speed(),
+            quadratic: viscosity.quadratic,
+        })
     }
 
     fn touch(&mut self, mut contact: Contact<D>) -> Contact<D> {

@@ -2,6 +2,7 @@
 //! once. A hyperelastic law turns the deformation gradient into stress (Bonet and Lok 1999; Vignjevic, Reveles and
 //! Campbell 2006).
 
+mod account;
 mod bounds;
 mod clamp;
 mod contact;

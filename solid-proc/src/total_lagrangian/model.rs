@@ -3,6 +3,7 @@
 //! Velocity Verlet (kick, drift, kick), which keeps the energy of an undamped solid: the midpoint scheme would amplify
 //! it by 1 + (omega dt)⁴/8 a step. One evaluation a sub-step, since the acceleration at its start is known.
 
+use super::account::Account;
 use super::bounds::VolumeBounds;
 use super::clamp;
 use super::contact::Contact;
@@ -19,7 +20,7 @@ use crate::surface::surface_set;
 use halfstep_role::role::Costs;
 use halfstep_scene::bounds::Excess;
 use halfstep_scene::geometry::{self, SolidPoint};
-use halfstep_scene::{EffectName, KernelName, ModelKeys, Motion, Plane, Scene, Solid};
+use halfstep_scene::{EffectName, EnergyPart, KernelName, ModelKeys, Motion, Plane, Scene, Solid};
 use halfstep_sph::lane::{Isa, LANES};
 use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_sph::pair::FixedPairs;
@@ -60,7 +61,9 @@ pub struct TotalLagrangian<const D: usize> {
     /// Maxwell arms; none where stress does not relax.
     pub(super) arms: Vec<Arm>,
     /// Slots that clamps move, and how.
-    driven: Vec<(usize, Motion)>,
+    pub(super) driven: Vec<(usize, Motion)>,
+    /// Loads on these slots, m/s², where account is kept.
+    pub(super) driven_load: Vec<[f64; D]>,
     /// Deceleration by side friction, m/s².
     side_friction: Option<f64>,
     pub(super) kernel: KernelName,
@@ -68,11 +71,11 @@ pub struct TotalLagrangian<const D: usize> {
     pub(super) smoothing_length: f64,
     /// dx of its own, m.
     spacing: f64,
-    gravity: [f64; D],
+    pub(super) gravity: [f64; D],
     courant: f64,
     /// V0 of a particle.
     pub(super) volume: f64,
-    mass: f64,
+    pub(super) mass: f64,
     /// alpha G, Pa.
     pub(super) hourglass_modulus: f64,
     /// Beyond the face of a clamp there is no strain.
@@ -110,6 +113,8 @@ pub struct TotalLagrangian<const D: usize> {
     /// The particle whose volume left its bounds first, or of several the one farthest out.
     pub(super) failure: Option<(u32, Excess)>,
     pub(super) pair_evaluations: u64,
+    /// Where account is kept of what effects give.
+    pub(super) account: Option<Account<D>>,
 }
 
 impl<const D: usize> TotalLagrangian<D> {
@@ -173,6 +178,7 @@ impl<const D: usize> TotalLagrangian<D> {
             law: Law::new(&material, keys.material, keys.plane),
             arms,
             driven: driven(scene, &layout.solid, &slot_of),
+            driven_load: Vec::new(),
             side_friction: takes_part(scene, solid, EffectName::SideFriction)
                 .then(|| material.side_friction / material.density),
             kernel: scene.numerics.kernel,
@@ -208,6 +214,7 @@ impl<const D: usize> TotalLagrangian<D> {
             bounds: VolumeBounds::new(scene, solid)?,
             failure: None,
             pair_evaluations: 0,
+            account: None,
         };
         model.correct();
         model.drive(0.0);
@@ -229,6 +236,10 @@ impl<const D: usize> TotalLagrangian<D> {
                 self.load[d][slot] = if free { self.gravity[d] + force() } else { 0.0 };
             }
         }
+        if self.account.is_some() {
+            let of = |(slot, _): &(usize, _)| load.force[self.id[*slot] as usize].map(|f| f / self.mass);
+            self.driven_load = self.driven.iter().map(of).collect();
+        }
     }
 
     fn kick(&mut self, dt: f64) {
@@ -239,8 +250,22 @@ impl<const D: usize> TotalLagrangian<D> {
             }
         }
         if let Some(friction) = self.side_friction {
+            let before = self.accounted_kinetic_energy();
             side_friction::slow(&mut self.now.velocity, dt * friction);
+            if let (Some(before), Some(after)) = (before, self.accounted_kinetic_energy())
+                && let Some(account) = &mut self.account
+            {
+                account.give(EnergyPart::SideFriction, after - before);
+            }
         }
+    }
+
+    /// Kinetic energy of the particles that no clamp holds, J (2D: J/m), where account is kept.
+    fn accounted_kinetic_energy(&self) -> Option<f64> {
+        self.account.as_ref().filter(|account| account.open)?;
+        let free = |&slot: &usize| self.id[slot] != PADDING && self.fixed.clamped[slot] == 0.0;
+        let square = |slot: usize| (0..D).map(|d| self.now.velocity[d][slot].powi(2)).sum::<f64>();
+        Some(0.5 * self.mass * (0..self.id.len()).filter(free).map(square).sum::<f64>())
     }
 
     fn drift(&mut self, dt: f64) {
@@ -270,10 +295,18 @@ impl<const D: usize> TotalLagrangian<D> {
                 contact.set_time(time + f64::from(k) * each);
             }
             self.kick(0.5 * each);
+            let driven = self.driven_from();
             self.drift(each);
             self.drive(time + f64::from(k) * each);
             self.evaluate(each);
+            self.note_sub_step(each, &driven);
             self.kick(0.5 * each);
+        }
+    }
+
+    fn set_account_open(&mut self, open: bool) {
+        if let Some(account) = &mut self.account {
+            account.open = open;
         }
     }
 
@@ -383,7 +416,9 @@ impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {
             }
             Stage::Second => {
                 self.now.copy_from(&self.at_n);
+                self.set_account_open(true);
                 self.sub_step(sub_steps, span, half_step.time);
+                self.set_account_open(false);
             }
         }
         let (slot_of, now) = (&self.slot_of, &self.now);
@@ -391,6 +426,16 @@ impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {
         self.shown_velocity.arrive(half_step, sub_steps, place, |p| vector(&now.velocity, slot_of[p]));
         self.show_particles();
         self.check()
+    }
+
+    fn keep_account(&mut self) {
+        self.open_account();
+    }
+
+    fn account(&mut self, give: &mut dyn FnMut(EnergyPart, f64)) {
+        if let Some(account) = &mut self.account {
+            account.hand_over(give);
+        }
     }
 
     fn strain_energy(&self) -> f64 {

@@ -207,6 +207,39 @@ pub(super) struct Stressed<O, const D: usize> {
     own: O,
 }
 
+/// The damping of the second pass alone.
+pub(super) struct Viscosity<'a, V, const D: usize> {
+    pub damping: V,
+    pub displacement: &'a Vectors<D>,
+    /// V0 / rho0.
+    pub scale: f64,
+}
+
+impl<V: Damping<D>, const D: usize> FixedLaw<D> for Viscosity<'_, V, D> {
+    type Target = ([Lane; D], V::Own);
+    type Sum = Acceleration<D>;
+    #[inline(always)]
+    fn target(&self, slot: usize) -> Self::Target {
+        (std::array::from_fn(|d| Lane::load(&self.displacement[d], slot)), self.damping.own(slot))
+    }
+    #[inline(always)]
+    fn add<A: Arch>(
+        &self,
+        (displacement, own): &Self::Target,
+        j: usize,
+        dx: [Lane; D],
+        slope: Lane,
+        sum: &mut Acceleration<D>,
+    ) {
+        let x: [Lane; D] =
+            std::array::from_fn(|a| dx[a] + displacement[a] - Lane::splat(self.displacement[a][j]));
+        let viscous = Lane::splat(self.scale) * slope * self.damping.coefficient::<A>(own, j, x);
+        for a in 0..D {
+            sum.0[a] = A::mul_add(viscous, x[a], sum.0[a]);
+        }
+    }
+}
+
 /// Acceleration of four particles.
 #[derive(Clone, Copy)]
 pub(super) struct Acceleration<const D: usize>(pub [Lane; D]);

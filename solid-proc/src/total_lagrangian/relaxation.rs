@@ -8,6 +8,7 @@
 //!   h_i <- exp(-dt / tau_i) h_i + g_i (tau_i / dt) (1 - exp(-dt / tau_i)) (s(n + 1) - s(n)).
 //! An arm holds the energy h : h / (4 g_i G) per reference volume. In 2D: plane strain, and h_zz = -(h_xx + h_yy).
 
+use super::account::lost_by_arm;
 use super::material::{Cauchy, Matrix, green};
 use halfstep_wire::state::{Fields, State, StateError};
 
@@ -134,12 +135,34 @@ pub(super) struct Arms<'a, const D: usize> {
     advances: Vec<Advance>,
     /// 2 G, Pa.
     modulus: f64,
+    lost: Option<Loss<'a>>,
+}
+
+/// What arms lose over a sub-step.
+struct Loss<'a> {
+    arms: &'a [Arm],
+    /// s.
+    dt: f64,
+    /// Sum over the particles per reference volume, J/m³.
+    energy: f64,
 }
 
 impl<'a, const D: usize> Arms<'a, D> {
     /// Over `dt`, s.
     pub(super) fn over(dt: f64, arms: &[Arm], shear_modulus: f64, memory: &'a mut Memory<D>) -> Self {
-        Self { memory, advances: arms.iter().map(|arm| arm.over(dt)).collect(), modulus: 2.0 * shear_modulus }
+        let advances = arms.iter().map(|arm| arm.over(dt)).collect();
+        Self { memory, advances, modulus: 2.0 * shear_modulus, lost: None }
+    }
+
+    /// The same, with account kept of what the arms lose.
+    pub(super) fn with_account(mut self, dt: f64, arms: &'a [Arm]) -> Self {
+        self.lost = (dt > 0.0).then_some(Loss { arms, dt, energy: 0.0 });
+        self
+    }
+
+    /// Energy lost, sum over the particles per reference volume, J/m³.
+    pub(super) fn lost(&self) -> f64 {
+        self.lost.as_ref().map_or(0.0, |loss| loss.energy)
     }
 }
 
@@ -151,9 +174,14 @@ impl<const D: usize> Relaxation<D> for Arms<'_, D> {
         let change = s - self.memory.elastic[slot];
         self.memory.elastic[slot] = s;
         let mut sum = Matrix::zeros();
-        for (arm, advance) in self.memory.arms.iter_mut().zip(&self.advances) {
-            arm[slot] = advance.of(&arm[slot], &change);
+        for (k, (arm, advance)) in self.memory.arms.iter_mut().zip(&self.advances).enumerate() {
+            let before = arm[slot];
+            arm[slot] = advance.of(&before, &change);
             sum += arm[slot];
+            if let Some(Loss { arms, dt, energy }) = &mut self.lost {
+                let Arm { share, time } = arms[k];
+                *energy += lost_by_arm((share, time), *dt, self.modulus, &change, [&before, &arm[slot]]);
+            }
         }
         sum
     }

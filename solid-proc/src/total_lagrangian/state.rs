@@ -23,6 +23,9 @@ impl<const D: usize> State for TotalLagrangian<D> {
         fields.count("pair_evaluations", &mut self.pair_evaluations)?;
         let now = [&self.now.displacement, &self.now.velocity, &self.now.acceleration];
         now.into_iter().flatten().try_for_each(|column| fields.length("particles", slots, column.len()))?;
+        if let Some(account) = &mut self.account {
+            fields.part("account", account)?;
+        }
         match &mut self.contact {
             Some(contact) => fields.part("contact", contact),
             None => Ok(()),

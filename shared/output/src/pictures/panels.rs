@@ -140,6 +140,7 @@ fn axis(name: &str, kind: &ProbeKind) -> String {
         | ProbeKind::WaterLevel { .. }
         | ProbeKind::KineticEnergy { .. }
         | ProbeKind::StrainEnergy
+        | ProbeKind::Energy { .. }
         | ProbeKind::Stress { .. }
         | ProbeKind::Flux { .. }
         | ProbeKind::Moment { .. } => {

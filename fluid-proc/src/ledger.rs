@@ -1,0 +1,252 @@
+//! The fluid's energy ledger: powers at n + 1/2, by the effects one after the other.
+//!
+//! An effect that gives the accelerations a and the density rates r has the power sum m v . a + sum m p / rho² r: the
+//! second sum is what it adds to the energy of compression, whose slope by the density is m p / rho². At walls v is
+//! relative to the wall; the force on the fluid times the wall's own velocity is the work of walls that move.
+//!
+//! Only scenes whose probes ask for energies pay for these passes, one for each share of a pair.
+
+use crate::columns::{PairParticles, Vectors};
+use crate::effects::{Effects, FluidEffect};
+use crate::fluid::Fluid;
+use crate::momentum::pressure_and_continuity;
+use crate::rates::{FluidPair, PairEffect, PairRates};
+use halfstep_role::ledger::Ledger;
+use halfstep_scene::{EnergyPart, Phase};
+use halfstep_sph::kernel::Kernel;
+use halfstep_sph::lane::{Arch, Isa, LANES, Lane};
+use halfstep_sph::neighbours::{ClusterList, PADDING};
+use halfstep_sph::pair::{self, PairLaw, distance, dot};
+use halfstep_wire::half_step::Stage;
+use halfstep_wire::protocol::{ForceRecord, StateRecord};
+
+/// The ledger with the powers of the step that is under way.
+#[derive(Clone, Debug)]
+pub(crate) struct FluidLedger<const D: usize> {
+    pub(crate) ledger: Ledger,
+    /// At n + 1/2, by [`EnergyPart`], W (2D: W/m).
+    powers: Vec<f64>,
+    sums: Vec<Power>,
+}
+
+/// Power of an effect on four particles, per mass, W/kg.
+#[derive(Clone, Copy, Debug)]
+struct Power {
+    /// By the accelerations, relative to walls, and by the density rates.
+    given: Lane,
+    /// By the walls' motion.
+    walls: Lane,
+}
+
+impl Default for Power {
+    fn default() -> Self {
+        Self { given: Lane::ZERO, walls: Lane::ZERO }
+    }
+}
+
+/// Pressure and continuity as a share of a pair.
+#[derive(Clone, Copy, Debug)]
+struct Pressure;
+
+impl<const D: usize> PairEffect<D> for Pressure {
+    type Own = ();
+    #[inline(always)]
+    fn own(&self, _: usize) {}
+    #[inline(always)]
+    fn add<A: Arch>(&self, _: &(), _: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
+        let own = pressure_and_continuity(pair);
+        rates.bracket = rates.bracket + own.bracket;
+        rates.density = rates.density + own.density;
+    }
+}
+
+/// The power of one share of a pair.
+struct PowerLaw<'a, K, E, const D: usize> {
+    kernel: K,
+    effect: E,
+    targets: &'a PairParticles<D>,
+    sources: &'a PairParticles<D>,
+    /// Own velocity of walls, m/s; none between fluid particles.
+    walls: Option<&'a Vectors<D>>,
+}
+
+#[derive(Clone, Copy)]
+struct Target<O, const D: usize> {
+    velocity: [Lane; D],
+    density: Lane,
+    pressure_term: Lane,
+    own: O,
+}
+
+impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for PowerLaw<'_, K, E, D> {
+    type Target = Target<E::Own, D>;
+    type Sum = Power;
+
+    #[inline(always)]
+    fn target_positions(&self) -> &[Vec<f64>; D] {
+        &self.targets.position
+    }
+    #[inline(always)]
+    fn target(&self, slot: usize) -> Self::Target {
+        Target {
+            velocity: self.targets.velocities(slot),
+            density: self.targets.densities(slot),
+            pressure_term: self.targets.pressure_terms(slot),
+            own: self.effect.own(slot),
+        }
+    }
+    #[inline(always)]
+    fn source_position(&self, j: usize) -> [f64; D] {
+        self.sources.sources[j].position
+    }
+    #[inline(always)]
+    fn add<A: Arch>(&self, i: &Self::Target, j: usize, dx: [Lane; D], r2: Lane, sum: &mut Power) {
+        let s = &self.sources.sources[j];
+        let f = self.kernel.gradient_over_r::<A>(distance(r2, self.kernel.smoothing_length()));
+        let dv = std::array::from_fn(|d| i.velocity[d] - Lane::splat(s.velocity[d]));
+        let pair = FluidPair {
+            dx,
+            r2,
+            dv,
+            approach: dot::<D, A>(dv, dx),
+            density_i: i.density,
+            density_j: Lane::splat(s.density),
+            pressure_term_i: i.pressure_term,
+            pressure_term_j: Lane::splat(s.pressure_term),
+        };
+        let mut rates = PairRates { bracket: Lane::ZERO, density: Lane::ZERO, vector: [Lane::ZERO; D] };
+        self.effect.add::<A>(&i.own, j, &pair, &mut rates);
+        let mf = Lane::splat(self.sources.mass) * f;
+        let a: [Lane; D] = std::array::from_fn(|d| mf * (rates.bracket * dx[d] + rates.vector[d]));
+        let wall = |d: usize| Lane::splat(self.walls.map_or(0.0, |walls| walls[d][j]));
+        for d in 0..D {
+            sum.given = sum.given + a[d] * (i.velocity[d] - wall(d));
+            sum.walls = sum.walls + a[d] * wall(d);
+        }
+        sum.given = sum.given + i.pressure_term * Lane::splat(s.volume) * f * rates.density;
+    }
+}
+
+/// Measures one share after the other.
+pub struct Measuring<'a, K, const D: usize> {
+    kernel: K,
+    isa: Isa,
+    id: &'a [u32],
+    fluid: &'a PairParticles<D>,
+    sources: &'a PairParticles<D>,
+    walls: Option<&'a Vectors<D>>,
+    list: &'a ClusterList,
+    sums: &'a mut Vec<Power>,
+    powers: &'a mut [f64],
+}
+
+impl<K: Kernel<D>, const D: usize> Measuring<'_, K, D> {
+    /// Adds the power of a share to its part.
+    pub(crate) fn add<E: PairEffect<D>>(&mut self, part: EnergyPart, effect: E) {
+        let Self { kernel, fluid, sources, walls, .. } = *self;
+        let law = PowerLaw { kernel, effect, targets: fluid, sources, walls };
+        self.sums.resize(self.list.clusters(), Power::default());
+        pair::pass(self.isa, &law, self.list, self.sums);
+        let (mut given, mut moving) = (0.0, 0.0);
+        for slot in (0..self.id.len()).filter(|&slot| self.id[slot] != PADDING) {
+            let (sum, k) = (&self.sums[slot / LANES], slot % LANES);
+            given += sum.given.0[k];
+            moving += sum.walls.0[k];
+        }
+        self.powers[part as usize] += self.fluid.mass * given;
+        self.powers[EnergyPart::MovingWalls as usize] += self.fluid.mass * moving;
+    }
+}
+
+impl<const D: usize> FluidLedger<D> {
+    pub(crate) fn new() -> Self {
+        Self {
+            ledger: Ledger::new(Phase::Fluid),
+            powers: vec![0.0; EnergyPart::ALL.len()],
+            sums: Vec::new(),
+        }
+    }
+
+    /// Adds what a solid's pressure does to a particle that published this record.
+    pub(crate) fn push(&mut self, own: &StateRecord, acceleration: [f64; D], density_rate: f64) {
+        let work: f64 = (0..D).map(|d| own.velocity[d] * acceleration[d]).sum();
+        let compression = own.pressure / own.density.powi(2) * density_rate;
+        self.powers[EnergyPart::InterfacePressure as usize] += own.mass * (work + compression);
+    }
+}
+
+impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
+    /// Notes the powers of all shares at n + 1/2.
+    pub(crate) fn measure_powers<K: Kernel<D>>(&mut self, kernel: K) {
+        let Some(FluidLedger { powers, sums, .. }) = &mut self.ledger else { return };
+        powers.fill(0.0);
+        let fluid = &self.columns.now;
+        let (id, isa) = (self.columns.id.as_slice(), self.isa);
+        let (list, walls) = (&self.fluid_list, None);
+        let mut among =
+            Measuring { kernel, isa, id, fluid, sources: fluid, walls, list, sums, powers: powers.as_mut() };
+        among.add(EnergyPart::Continuity, Pressure);
+        self.effects.measure_pairs(&mut among);
+        let Some(walls) = &self.walls else { return };
+        let (sources, list) = (&walls.shown, &self.wall_list);
+        let walls = Some(&walls.own_velocity);
+        let mut at_walls = Measuring { kernel, isa, id, fluid, sources, walls, list, sums, powers };
+        at_walls.add(EnergyPart::WallPressure, Pressure);
+        self.effects.measure_walls(&mut at_walls);
+    }
+
+    /// Notes the power of f_i at n + 1/2.
+    pub(crate) fn measure_cross_viscosity(&mut self, forces: &[ForceRecord]) {
+        let (Some(own), Some(coupling)) = (&mut self.ledger, &self.coupling) else { return };
+        let pushed = coupling.slots().iter().zip(forces).map(|(&slot, force)| {
+            let velocity = self.columns.now.sources[slot as usize].velocity;
+            (0..D).map(|d| velocity[d] * force.cross_viscosity[d]).sum::<f64>()
+        });
+        own.powers[EnergyPart::CrossViscosity as usize] = self.columns.now.mass * pushed.sum::<f64>();
+    }
+
+    /// Kinetic energy, that of compression, and potential energy of the particles at these slots, J (2D: J/m).
+    fn held(&self, slots: impl Iterator<Item = usize>) -> [f64; 3] {
+        let c = &self.columns;
+        // Between the stages of a step the particles hold what they held at n.
+        let within = self.stage == Stage::Second;
+        let mut held = [0.0; 3];
+        for s in slots {
+            let now = &c.now.sources[s];
+            let at_n = |columns: &Vectors<D>| std::array::from_fn(|d| columns[d][s]);
+            let (x, v, rho): ([f64; D], [f64; D], f64) = if within {
+                (at_n(&c.position_n), at_n(&c.velocity_n), c.density_n[s])
+            } else {
+                (at_n(&c.now.position), now.velocity, now.density)
+            };
+            held[0] += 0.5 * v.map(|v| v * v).iter().sum::<f64>();
+            held[1] += self.state.energy(rho);
+            held[2] -= (0..D).map(|d| self.gravity[d] * x[d]).sum::<f64>();
+        }
+        held.map(|energy| c.now.mass * energy)
+    }
+
+    /// Notes what is held at n, after a step of this length, s, or at the start.
+    pub(crate) fn close_ledger(&mut self, dt: f64) {
+        if self.ledger.is_none() {
+            return;
+        }
+        let held = self.held(self.real_slots());
+        let Some(FluidLedger { ledger, powers, .. }) = &mut self.ledger else { return };
+        for (&part, power) in EnergyPart::ALL.iter().zip(powers) {
+            ledger.give(part, dt * *power);
+        }
+        ledger.hold(held);
+    }
+
+    /// Notes that the particles at these slots leave.
+    pub(crate) fn give_away(&mut self, slots: &[usize]) {
+        if self.ledger.is_none() || slots.is_empty() {
+            return;
+        }
+        let taken: f64 = self.held(slots.iter().copied()).iter().sum();
+        if let Some(own) = &mut self.ledger {
+            own.ledger.give(EnergyPart::Outflow, -taken);
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! The parts of an energy ledger: what a participant holds, what it is given, and where energy is lost.
+
+use super::{Phase, ProbeKind, Scene};
+use serde::{Deserialize, Serialize};
+
+macro_rules! parts {
+    ($($(#[$doc:meta])* $part:ident $name:literal,)*) => {
+        /// A part of a participant's energy ledger.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+        #[serde(rename_all = "kebab-case")]
+        pub enum EnergyPart {
+            $($(#[$doc])* $part,)*
+        }
+
+        impl EnergyPart {
+            /// All parts, of fluid and solids.
+            pub const ALL: &'static [Self] = &[$(Self::$part,)*];
+            const NAMES: &'static [&'static str] = &[$($name,)*];
+        }
+    };
+}
+
+parts! {
+    /// Held: kinetic energy.
+    Kinetic "kinetic",
+    /// Held by the fluid: work that compressed it, from the equation of state.
+    Compression "compression",
+    /// Held by a solid: strain energy, that of Maxwell arms, of the hourglass force and of contacts between bodies.
+    Strain "strain",
+    /// Held: potential energy of gravity, above that of the first state.
+    Potential "potential",
+    /// Given by the artificial viscosity.
+    ArtificialViscosity "artificial-viscosity",
+    /// Given by the wall guard.
+    WallGuard "wall-guard",
+    /// Given by the viscosity.
+    Viscosity "viscosity",
+    /// Given by the density diffusion.
+    DensityDiffusion "density-diffusion",
+    /// Given by an effect that is not on the program's list.
+    FurtherEffect "further-effect",
+    /// Given by the pressure of walls, beside the work of their motion: an error of the walls' extrapolation.
+    WallPressure "wall-pressure",
+    /// Given by walls that move: the force on the participant along the walls' motion.
+    MovingWalls "moving-walls",
+    /// Given across the interface by pressure; phase-blind by stress.
+    InterfacePressure "interface-pressure",
+    /// Given across the interface by f_i.
+    CrossViscosity "cross-viscosity",
+    /// Given by pressure and continuity between fluid particles, whose sums do not cancel where densities differ.
+    Continuity "continuity",
+    /// Taken along by particles that left the domain.
+    Outflow "outflow",
+    /// Given by the Maxwell arms.
+    Relaxation "relaxation",
+    /// Given by side friction.
+    SideFriction "side-friction",
+    /// Given by contact with walls, beside the work of their motion.
+    WallContact "wall-contact",
+    /// Given by clamps that move.
+    Clamps "clamps",
+    /// Given by the stress of a solid whose strain energy does not follow from a deformation.
+    Stress "stress",
+    /// Given by nobody: the error of time integration.
+    Integration "integration",
+}
+
+/// Number of parts that are held; they come first.
+pub(crate) const HELD: usize = 3;
+
+const FLUID: [EnergyPart; 15] = {
+    use EnergyPart::*;
+    [
+        Kinetic,
+        Compression,
+        Potential,
+        ArtificialViscosity,
+        WallGuard,
+        Viscosity,
+        DensityDiffusion,
+        FurtherEffect,
+        WallPressure,
+        MovingWalls,
+        InterfacePressure,
+        CrossViscosity,
+        Continuity,
+        Outflow,
+        Integration,
+    ]
+};
+
+const SOLID: [EnergyPart; 13] = {
+    use EnergyPart::*;
+    [
+        Kinetic,
+        Strain,
+        Potential,
+        ArtificialViscosity,
+        Relaxation,
+        SideFriction,
+        WallContact,
+        MovingWalls,
+        Clamps,
+        Stress,
+        InterfacePressure,
+        CrossViscosity,
+        Integration,
+    ]
+};
+
+const fn names<const N: usize>(parts: [EnergyPart; N]) -> [&'static str; N] {
+    let mut names = [""; N];
+    let mut k = 0;
+    while k < N {
+        names[k] = parts[k].name();
+        k += 1;
+    }
+    names
+}
+
+static NAMES_OF_FLUID: [&str; FLUID.len()] = names(FLUID);
+static NAMES_OF_SOLID: [&str; SOLID.len()] = names(SOLID);
+
+impl EnergyPart {
+    /// Name of the part in scenes and reports.
+    pub const fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
+
+    /// The parts of a phase's ledger: what it holds, what it is given, and the rest.
+    pub const fn of(phase: Phase) -> &'static [Self] {
+        match phase {
+            Phase::Solid => &SOLID,
+            _ => &FLUID,
+        }
+    }
+
+    /// Names of the parts of a phase's ledger, or of one of them.
+    pub(crate) fn names(phase: Phase, part: Option<Self>) -> &'static [&'static str] {
+        let all: &'static [&'static str] = match phase {
+            Phase::Solid => &NAMES_OF_SOLID,
+            _ => &NAMES_OF_FLUID,
+        };
+        match part.and_then(|part| Self::of(phase).iter().position(|&other| other == part)) {
+            Some(place) => &all[place..=place],
+            None => all,
+        }
+    }
+
+    /// What an effect of the fluid of this name gives.
+    pub fn of_effect(name: &str) -> Self {
+        let effects = [Self::ArtificialViscosity, Self::WallGuard, Self::Viscosity, Self::DensityDiffusion];
+        effects.into_iter().find(|part| part.name() == name).unwrap_or(Self::FurtherEffect)
+    }
+
+    /// The participant holds this energy; else it is given it.
+    pub const fn is_held(self) -> bool {
+        matches!(self, Self::Kinetic | Self::Compression | Self::Strain | Self::Potential)
+    }
+}
+
+impl Scene {
+    /// A probe asks for energies: all participants then keep their ledgers.
+    pub fn keeps_energy_ledgers(&self) -> bool {
+        self.probes.iter().any(|probe| matches!(probe.kind, ProbeKind::Energy { .. }))
+    }
+}
+
+const _: () = assert!(FLUID[HELD - 1].is_held() && !FLUID[HELD].is_held());
+const _: () = assert!(SOLID[HELD - 1].is_held() && !SOLID[HELD].is_held());
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_those_of_scenes_and_files() {
+        for part in EnergyPart::ALL {
+            assert_eq!(serde_json::to_string(part).unwrap(), format!("\"{}\"", part.name()));
+        }
+        assert_eq!(EnergyPart::names(Phase::Solid, Some(EnergyPart::Strain)), ["strain"]);
+        assert_eq!(EnergyPart::names(Phase::Fluid, None)[..3], ["kinetic", "compression", "potential"]);
+    }
+}
