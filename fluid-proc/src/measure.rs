@@ -54,21 +54,25 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         for probe in &self.probes {
             match *probe {
                 ProbeKind::Pressure { at } => out.push(self.pressure_at(std::array::from_fn(|d| at[d]))),
-                ProbeKind::WaterLevel { x } => out.push(self
-                    .real_slots()
-                    .filter(|&s| (self.columns.now.position[0][s] - x).abs() <= 2.0 * half)
-                    .map(|s| self.columns.now.position[1][s] + half)
-                    .reduce(f64::max)
-                    .unwrap_or(0.0)),
-                ProbeKind::Front => out.push(self
-                    .real_slots()
-                    .map(|s| self.columns.now.position[0][s] + half)
-                    .fold(f64::NEG_INFINITY, f64::max)),
+                ProbeKind::WaterLevel { x } => out.push(
+                    self.real_slots()
+                        .filter(|&s| (self.columns.now.position[0][s] - x).abs() <= 2.0 * half)
+                        .map(|s| self.columns.now.position[1][s] + half)
+                        .reduce(f64::max)
+                        .unwrap_or(0.0),
+                ),
+                ProbeKind::Front => out.push(
+                    self.real_slots()
+                        .map(|s| self.columns.now.position[0][s] + half)
+                        .fold(f64::NEG_INFINITY, f64::max),
+                ),
                 ProbeKind::KineticEnergy { phase: Phase::Fluid } => out.push(self.kinetic_energy()),
                 ProbeKind::Centroid { phase: Phase::Fluid } => {
                     let count = self.columns.particles.max(1) as f64;
                     for d in 0..D {
-                        out.push(self.real_slots().map(|s| self.columns.now.position[d][s]).sum::<f64>() / count);
+                        out.push(
+                            self.real_slots().map(|s| self.columns.now.position[d][s]).sum::<f64>() / count,
+                        );
                     }
                 }
                 ProbeKind::Energy { part, .. } => {
