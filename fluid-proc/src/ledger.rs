@@ -160,11 +160,7 @@ impl<K: Kernel<D>, const D: usize> Measuring<'_, K, D> {
 
 impl<const D: usize> FluidLedger<D> {
     pub(crate) fn new() -> Self {
-        Self {
-            ledger: Ledger::new(Phase::Fluid),
-            powers: vec![0.0; EnergyPart::ALL.len()],
-            sums: Vec::new(),
-        }
+        Self { ledger: Ledger::new(Phase::Fluid), powers: vec![0.0; EnergyPart::ALL.len()], sums: Vec::new() }
     }
 
     /// Adds what a solid's pressure does to a particle that published this record.

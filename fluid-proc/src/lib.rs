@@ -23,8 +23,8 @@ pub mod fluid;
 #[cfg(test)]
 mod fluid_tests;
 pub mod interface;
-pub mod measure;
 pub mod ledger;
+pub mod measure;
 mod memory;
 pub mod midpoint;
 pub mod momentum;

@@ -72,8 +72,10 @@ fn derive(scene: &Scene, k: usize, effect: EffectName) -> Derived {
             Derived::Impossible("a clamp moves".into())
         }
         EffectName::SleepingSolid => Derived::On(format!(
-            "until fluid reaches it, while it has moved by less than {} % of the spacing for half its slowest period",
-            100.0 * TOLERANCE
+            "until fluid reaches it, while it has moved by less than {} % of the spacing for half its slowest period: \
+             swings of up to {:.1e} m are left out, and with them 1 % of a peak after an impact (measured)",
+            100.0 * TOLERANCE,
+            TOLERANCE * scene.solid_spacing(k)
         )),
         _ if scene.shapes.iter().any(|s| s.contact) => Derived::On("a wall has contact = true".into()),
         _ => Derived::Impossible("no wall has contact = true".into()),

@@ -6,6 +6,34 @@ use halfstep_scene::{EnergyPart, Phase, Scene};
 use halfstep_wire::protocol::ForceRecord;
 use halfstep_wire::wide;
 
+/// What a model's effects gave over the present step.
+#[derive(Clone, Debug)]
+pub(crate) struct Given {
+    /// What is noted belongs to a step that is kept.
+    pub(crate) open: bool,
+    /// By [`EnergyPart`], J (2D: J/m).
+    joules: Vec<f64>,
+}
+
+impl Default for Given {
+    fn default() -> Self {
+        Self { open: false, joules: vec![0.0; EnergyPart::ALL.len()] }
+    }
+}
+
+impl Given {
+    pub(crate) fn give(&mut self, part: EnergyPart, joules: f64) {
+        self.joules[part as usize] += joules;
+    }
+
+    /// Hands over what was given and begins anew.
+    pub(crate) fn hand_over(&mut self, give: &mut dyn FnMut(EnergyPart, f64)) {
+        for (&part, joules) in EnergyPart::ALL.iter().zip(&mut self.joules) {
+            give(part, std::mem::take(joules));
+        }
+    }
+}
+
 /// Ledger of a solid.
 pub(crate) struct SolidLedger<const D: usize> {
     pub(crate) ledger: Ledger,

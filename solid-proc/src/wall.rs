@@ -13,7 +13,7 @@ use halfstep_sph::artificial_viscosity::damping;
 use halfstep_sph::columns::{bounds, fit};
 use halfstep_sph::extrapolation::{Extrapolation, ExtrapolationSum};
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Arch, Isa, LANES, Lane};
+use halfstep_sph::lane::{Arch, Isa, LANES, Lane, Unfused};
 use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_sph::pair::{self, PairLaw, distance, dot};
 
@@ -209,15 +209,34 @@ impl<const D: usize> Walls<D> {
         pair::pass(isa, &law, &self.neighbours, &mut self.forces);
     }
 
-    /// Power of walls that move on all solid particles, in the state that was evaluated last, over a particle's mass,
-    /// W/kg. `id` are the numbers of the solid's slots.
-    pub(crate) fn power<K: Kernel<D>>(
+    /// What walls add to the square of a particle's frequency, 1/s², and its damping, 1/s.
+    pub(crate) fn stiffness<K: Kernel<D>>(
         &self,
-        isa: Isa,
         kernel: K,
         solid: Touching<'_, D>,
-        id: &[u32],
-    ) -> f64 {
+        slot: usize,
+    ) -> (f64, f64) {
+        if self.acceleration(slot) == [0.0; D] {
+            return (0.0, 0.0);
+        }
+        let h = kernel.smoothing_length();
+        let (mut spring, mut damping) = (0.0, 0.0);
+        for &j in self.neighbours.of(slot / LANES) {
+            let j = j as usize;
+            let r2: f64 = (0..D).map(|d| (solid.position[d][slot] - self.position[d][j]).powi(2)).sum();
+            if r2 < solid.spacing * solid.spacing {
+                spring += solid.repulsion;
+            }
+            let slope = kernel.gradient_over_r::<Unfused>(distance(Lane::splat(r2), h)).0[0];
+            let viscosity = 2.0 * solid.linear * h / (solid.density[slot] + self.density[j]);
+            damping -= solid.wall_mass * slope * viscosity * r2 / (r2 + 0.01 * h * h);
+        }
+        (spring, damping)
+    }
+
+    /// Power of walls that move on all solid particles, in the state that was evaluated last, over a particle's mass,
+    /// W/kg. `id` are the numbers of the solid's slots.
+    pub(crate) fn power<K: Kernel<D>>(&self, isa: Isa, kernel: K, solid: Touching<'_, D>, id: &[u32]) -> f64 {
         if self.moving.is_none() {
             return 0.0;
         }

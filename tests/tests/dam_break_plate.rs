@@ -37,22 +37,25 @@ fn tip(what: &str, run: &Finished) -> (Curve, (f64, f64)) {
     (curve, peak)
 }
 
-/// Before the jet arrives nothing moves; then the tip goes downstream, no farther than elasticity allows.
-fn stiff(curve: &Curve, (time, peak): (f64, f64)) {
+/// Before the jet arrives nothing moves; then the tip goes downstream, as far as was measured, mm, to a tenth: an
+/// impact is that irregular. With the total-Lagrangian plate that is 0.8 to 0.9 of the jet's load at rest.
+fn stiff(curve: &Curve, (time, peak): (f64, f64), expected: f64) {
     assert!(curve.between(0.0, IMPACT).values.iter().all(|x| x.abs() < 0.01), "it moved before it was hit");
-    assert!((0.1..3.0).contains(&peak), "{peak} mm");
-    assert!((IMPACT..0.2).contains(&time), "{time} s");
-    assert!(curve.between(0.15, 0.2).mean() > 0.0);
+    assert!((peak / expected - 1.0).abs() < 0.1, "{peak} mm, measured {expected} mm");
+    assert!((0.15..0.2).contains(&time), "{time} s");
+    // A plate that the jet holds bent, and not one that rings about its place: 0.6 to 0.7 measured.
+    let mean = curve.between(0.15, 0.2).mean() / peak;
+    assert!((0.4..0.8).contains(&mean), "{mean}");
 }
 
 #[test]
 fn a_stiff_plate_hardly_moves_and_a_softer_one_moves_more() {
     let (curve, peak) = tip("E 0.22 GPa, 4 mm", &plate(0.004, 0.22e9).until(0.2).run());
-    stiff(&curve, peak);
+    stiff(&curve, peak, 0.50);
     let (soft, soft_peak) = tip("E 12 MPa, 4 mm", &plate(0.004, 12e6).until(0.2).run());
-    assert!(soft.between(0.0, IMPACT).values.iter().all(|x| x.abs() < 0.1));
-    // Eighteen times softer; not as far as the literature's plate, which is softer still.
-    assert!(soft_peak.1 > 5.0 * peak.1 && soft_peak.1 < 41.0, "{soft_peak:?}");
+    assert!(soft.between(0.0, IMPACT).values.iter().all(|x| x.abs() < 0.01));
+    // Eighteen times softer: 6.9 mm measured, 14 times as far, since it gives way to the jet.
+    assert!((6.5..7.5).contains(&soft_peak.1), "{soft_peak:?}");
 }
 
 /// The literature's plate: seven computations peak at 41.4 to 49.1 mm.
@@ -104,20 +107,21 @@ fn plates_with_the_paper_scheme_at_full_resolution() {
     };
     let (curve, peak) = tip("paper's scheme, E 0.22 GPa, 2 mm", &paper(0.22e9, 5e-6).until(0.2).run());
     println!("beam theory {:.2} mm", beam(0.22e9, 0.01));
-    stiff(&curve, peak);
+    stiff(&curve, peak, 2.16);
     let (_, peak) = tip("paper's scheme, E 12 MPa, 2 mm", &paper(12e6, 1e-5).until(0.21).run());
     println!("beam theory {:.1} mm", beam(12e6, 0.01));
-    // More than the load at rest, less than the literature's plate, which is twelve times softer.
-    assert!((beam(12e6, 0.012)..41.0).contains(&peak.1), "{peak:?}");
+    // 22.5 mm measured: the hypoelastic plate of five rows is 1.2 to 1.4 times too soft.
+    assert!((21.0..24.0).contains(&peak.1), "{peak:?}");
 }
 
 #[test]
 #[ignore = "minutes: full resolution"]
 fn plates_at_full_resolution() {
     let (curve, peak) = tip("E 0.22 GPa, 2 mm", &plate(0.002, 0.22e9).until(0.25).run());
-    stiff(&curve, peak);
+    stiff(&curve, peak, 0.46);
     let (_, peak) = tip("E 12 MPa, 2 mm", &plate(0.002, 12e6).until(0.25).run());
-    assert!((1.0..41.0).contains(&peak.1), "{peak:?}");
+    // 7.7 mm measured; 6.9 mm at 4 mm.
+    assert!((7.2..8.2).contains(&peak.1), "{peak:?}");
     let run = plate(0.002, 1e6).set("solid.poissons_ratio", 0).until(0.3).run();
     let (curve, _) = tip("E 1 MPa, 2 mm", &run);
     let published = Curve::reference("dam-break-plate", "published-peaks.csv", "x [mm]");

@@ -127,9 +127,9 @@ fn the_phase_blind_gate_opens() {
     let x = tip(&run, "x");
     println!("phase-blind, 2.5 mm: x {:.2} mm at 0.02 s, experiment 12.5 mm at 0.04 s", x.at(0.02));
     assert!(run.report.audit.action_reaction.unwrap() <= 1e-12);
-    // Away from the water, and faster and faster; by 0.02 s not as far as the experiment's plate by 0.04 s.
+    // Away from the water, and faster and faster: 3.84 mm measured by 0.02 s, and nothing there to compare with.
     assert!(x.at(0.005) < x.at(0.01) && x.at(0.01) < x.at(0.015) && x.at(0.015) < x.at(0.02));
-    assert!((0.5..12.5).contains(&x.at(0.02)), "{}", x.at(0.02));
+    assert!((3.7..4.0).contains(&x.at(0.02)), "{}", x.at(0.02));
 }
 
 /// Root mean square of x over the experiment's points in a window, mm.

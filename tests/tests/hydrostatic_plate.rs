@@ -34,15 +34,17 @@ fn ratios(what: &str, run: &Finished) -> (f64, f64) {
 }
 
 #[test]
-fn a_coarse_hypoelastic_plate_bends_down_by_the_right_order_of_magnitude() {
+fn a_coarse_hypoelastic_plate_is_two_and_a_half_times_too_soft() {
     let run = scene("hydrostatic-plate")
         .set("resolution", 0.025)
         .set("solid.model", "hypoelastic")
         .until(0.2)
         .run();
     let (deflection, pressure) = ratios("hypoelastic, 2 across", &run);
-    assert!((1.0 / 3.0..3.0).contains(&deflection), "{deflection}");
-    assert!((pressure - 1.0).abs() < 0.05, "{pressure}");
+    // 2.68 measured over this time, 2.8 over a longer one: too soft, and no softer than that.
+    assert!((2.6..2.9).contains(&deflection), "{deflection}");
+    // 1.010 measured: what is left of the first swing.
+    assert!((pressure - 1.0).abs() < 0.02, "{pressure}");
 }
 
 #[test]

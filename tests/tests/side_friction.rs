@@ -1,7 +1,7 @@
 //! Side friction: a block on a spring loses 4 F / k of amplitude a period, then sticks (dry friction, as every textbook
 //! on vibrations has it).
 
-use halfstep_scene::{Scene, parse};
+use halfstep_scene::{EnergyPart, Scene, parse};
 use halfstep_solid::hypoelastic::Hypoelastic;
 use halfstep_solid::total_lagrangian::TotalLagrangian;
 use halfstep_solid::{Load, SolidModel};
@@ -26,8 +26,11 @@ fn block(model: &str) -> Scene {
     parse(&text, Path::new("block.toml"), &[]).expect("a right scene")
 }
 
-/// Turning points of the block, m: every particle hangs on a spring of its own, so the block does not strain.
-fn turning_points(mut model: Box<dyn SolidModel<2>>, dt: f64) -> Vec<f64> {
+/// Turning points of the block, m, and what friction took, J: every particle hangs on a spring of its own, so the block
+/// does not strain.
+fn turning_points(mut model: Box<dyn SolidModel<2>>, dt: f64) -> (Vec<f64>, f64) {
+    model.keep_account();
+    let mut taken = 0.0;
     let mut load = Load::none(model.particles().len());
     let (mut points, mut last) = (Vec::new(), [0.0, SPEED]);
     for step in 0..(1.0 / dt) as u64 {
@@ -39,6 +42,10 @@ fn turning_points(mut model: Box<dyn SolidModel<2>>, dt: f64) -> Vec<f64> {
             }
             model.advance(&half_step, 1, &load).expect("within bounds");
         }
+        model.account(&mut |part, joules| match part {
+            EnergyPart::SideFriction => taken -= joules,
+            _ => assert!(joules.abs() < 1e-10, "{part:?} gave {joules} J"),
+        });
         let now = model.particles();
         let at = [now.position[7][0] - now.reference[7][0], now.velocity[7][0]];
         if last[1] != 0.0 && at[1] * last[1] <= 0.0 {
@@ -47,13 +54,13 @@ fn turning_points(mut model: Box<dyn SolidModel<2>>, dt: f64) -> Vec<f64> {
         last = at;
     }
     assert_eq!(last[1], 0.0, "it sticks in the end");
-    points
+    (points, taken)
 }
 
 fn loses_what_theory_says(name: &str, build: fn(&Scene) -> Option<Box<dyn SolidModel<2>>>) {
     let scene = block(name);
     let model = build(&scene).expect("a solid");
-    let points = turning_points(model, 1e-4);
+    let (points, taken) = turning_points(model, 1e-4);
     // F / k, and the first turning point from the energy: k x² / 2 + F x = m v² / 2.
     let reach = FRICTION / (OMEGA * OMEGA);
     let first = (reach * reach + (SPEED / OMEGA).powi(2)).sqrt() - reach;
@@ -63,6 +70,15 @@ fn loses_what_theory_says(name: &str, build: fn(&Scene) -> Option<Box<dyn SolidM
         let theory = sign * (first - 2.0 * reach * k as f64);
         assert!((point - theory).abs() < 0.02 * reach, "turn {k}: {point} m, theory {theory} m");
     }
+    // Friction takes F times the way, and so 4 F / k of the amplitude in each period: what the ledger says.
+    let mass = 1000.0 * 0.1 * 0.05;
+    let rest = points.last().expect("it turns");
+    let ways = std::iter::once(0.0).chain(points.iter().copied());
+    let way: f64 = ways.zip(&points).map(|(from, to)| (to - from).abs()).sum();
+    let lost = 0.5 * mass * (SPEED * SPEED - (OMEGA * rest).powi(2));
+    println!("friction took {taken:.6} J; F times the way {:.6} J, lost {lost:.6} J", mass * FRICTION * way);
+    assert!((taken / (mass * FRICTION * way) - 1.0).abs() < 1e-3);
+    assert!((taken / lost - 1.0).abs() < 1e-3);
     // Until the spring no longer overcomes the friction.
     assert_eq!(points.len(), ((first / reach + 1.0) / 2.0).ceil() as usize);
     assert!(points.last().unwrap().abs() < reach);

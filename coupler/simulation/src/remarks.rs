@@ -29,6 +29,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     bodies::clamps(scene, &mut all);
     bodies::free(scene, &mut all);
     bodies::joined(scene, &mut all);
+    bodies::standing(scene, layout, &mut all);
     shapes::sizes(scene, placed, &mut all);
     shapes::overlaps(placed, &mut all);
     water::hanging(scene, layout, &mut all);

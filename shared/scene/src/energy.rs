@@ -57,6 +57,8 @@ parts! {
     SideFriction "side-friction",
     /// Given by contact with walls, beside the work of their motion.
     WallContact "wall-contact",
+    /// Given by the artificial stress.
+    ArtificialStress "artificial-stress",
     /// Given by clamps that move.
     Clamps "clamps",
     /// Given by the stress of a solid whose strain energy does not follow from a deformation.
@@ -89,13 +91,14 @@ const FLUID: [EnergyPart; 15] = {
     ]
 };
 
-const SOLID: [EnergyPart; 13] = {
+const SOLID: [EnergyPart; 14] = {
     use EnergyPart::*;
     [
         Kinetic,
         Strain,
         Potential,
         ArtificialViscosity,
+        ArtificialStress,
         Relaxation,
         SideFriction,
         WallContact,

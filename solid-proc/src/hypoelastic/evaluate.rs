@@ -50,7 +50,12 @@ impl<const D: usize> Hypoelastic<D> {
         }
     }
 
-    fn pass<K: Kernel<D>, T: TensileCorrection<D>, M: Moment>(&mut self, kernel: K, correction: T, _: M) {
+    pub(super) fn pass<K: Kernel<D>, T: TensileCorrection<D>, M: Moment>(
+        &mut self,
+        kernel: K,
+        correction: T,
+        _: M,
+    ) {
         // The correction borrows from self; the sums do not.
         let mut sums = std::mem::take(&mut self.sums);
         let law = SolidLaw {
@@ -70,11 +75,7 @@ impl<const D: usize> Hypoelastic<D> {
 
     fn sums<K: Kernel<D>>(&mut self, kernel: K) {
         let artificial = std::mem::take(&mut self.artificial);
-        let correction = self.artificial_stress.map(|stress| ArtificialStress {
-            tensors: &artificial,
-            inverse_w0: 1.0 / kernel.at(self.spacing),
-            exponent: stress.exponent.round() as u32,
-        });
+        let correction = ArtificialStress::of(self.artificial_stress, &artificial, kernel, self.spacing);
         match (correction, self.renormalised) {
             (None, false) => self.pass(kernel, (), Plain),
             (None, true) => self.pass(kernel, (), Renormalised),
@@ -85,24 +86,29 @@ impl<const D: usize> Hypoelastic<D> {
     }
 
     fn touch_walls(&mut self) {
-        if let Some(walls) = &mut self.walls {
-            let solid = Touching {
-                position: &self.now.position,
-                velocity: &self.now.velocity,
-                density: &self.now.density,
-                pressure: &self.pressure,
-                wall_mass: self.wall_mass,
-                reference_density: self.material.density,
-                bulk_modulus: self.material.bulk_modulus(),
-                linear: self.material.artificial_viscosity.linear * self.material.sound_speed(),
-                quadratic: self.material.artificial_viscosity.quadratic,
-                spacing: self.wall_spacing,
-                repulsion: repulsion(self.material.pressure_wave_speed(), self.spacing),
-            };
+        if let Some(mut walls) = self.walls.take() {
             with_kernel!(self.kernel, self.wall_smoothing_length, D, |kernel| {
-                walls.act(self.isa, kernel, self.gravity, solid);
+                walls.act(self.isa, kernel, self.gravity, self.touching());
             });
             self.pair_evaluations += walls.pairs() as u64;
+            self.walls = Some(walls);
+        }
+    }
+
+    /// The particles as walls see them.
+    pub(super) fn touching(&self) -> Touching<'_, D> {
+        Touching {
+            position: &self.now.position,
+            velocity: &self.now.velocity,
+            density: &self.now.density,
+            pressure: &self.pressure,
+            wall_mass: self.wall_mass,
+            reference_density: self.material.density,
+            bulk_modulus: self.material.bulk_modulus(),
+            linear: self.material.artificial_viscosity.linear * self.material.sound_speed(),
+            quadratic: self.material.artificial_viscosity.quadratic,
+            spacing: self.wall_spacing,
+            repulsion: repulsion(self.material.pressure_wave_speed(), self.spacing),
         }
     }
 

@@ -1,6 +1,7 @@
 //! Kayaki's solid: Hooke's law in rate form with the Jaumann rate (Gray, Monaghan and Swift 2001), density by
 //! continuity, artificial viscosity and artificial stress.
 
+mod account;
 mod artificial_stress;
 mod bounds;
 mod columns;

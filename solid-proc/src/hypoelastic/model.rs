@@ -1,5 +1,6 @@
 //! The model behind [`SolidModel`]: time integration and neighbour lists.
 
+use super::account::Account;
 use super::columns::{Rates, Source, State};
 use super::rates::SolidSum;
 use super::wall_clamp::WallClamp;
@@ -13,7 +14,7 @@ use crate::wall::Walls;
 use halfstep_role::role::Costs;
 use halfstep_scene::bounds::Bounds;
 use halfstep_scene::geometry::{self, SolidPoint};
-use halfstep_scene::{ArtificialStress, EffectName, KernelName, ModelKeys, Scene, Solid};
+use halfstep_scene::{ArtificialStress, EffectName, EnergyPart, KernelName, ModelKeys, Scene, Solid};
 use halfstep_sph::columns::{copy, fit, moved_farther};
 use halfstep_sph::lane::Isa;
 use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
@@ -75,6 +76,8 @@ pub struct Hypoelastic<const D: usize> {
     pub(super) sums: Vec<SolidSum<D>>,
     pub(super) walls: Option<Walls<D>>,
     pub(super) pair_evaluations: u64,
+    /// Where account is kept of what effects give.
+    pub(super) account: Option<Account>,
 }
 
 impl<const D: usize> Hypoelastic<D> {
@@ -137,6 +140,7 @@ impl<const D: usize> Hypoelastic<D> {
             sums: Vec::new(),
             walls,
             pair_evaluations: 0,
+            account: None,
         };
         model.sort();
         model.apply_state_equation();
@@ -194,8 +198,8 @@ impl<const D: usize> Hypoelastic<D> {
         walls_moved || moved_farther(&self.now.position, &self.reference, &self.id, 0.5 * self.skin)
     }
 
-    /// now = from + dt rates, for every advanced column; `from` is `at_n`.
-    fn integrate(&mut self, dt: f64) {
+    /// now = from + dt rates, for every advanced column; `from` is `at_n`. `kept`: the whole of a sub-step.
+    fn integrate(&mut self, dt: f64, kept: bool) {
         fn axpy(out: &mut [f64], from: &[f64], rate: &[f64], dt: f64) {
             for ((o, f), r) in out.iter_mut().zip(from).zip(rate) {
                 *o = f + dt * r;
@@ -210,7 +214,11 @@ impl<const D: usize> Hypoelastic<D> {
         }
         axpy(&mut self.now.density, &self.at_n.density, &self.rates.density, dt);
         if let Some(friction) = self.side_friction {
+            let before = (kept && self.account.is_some()).then(|| self.now.velocity.clone());
             side_friction::slow(&mut self.now.velocity, dt * friction);
+            if let Some(before) = before {
+                self.note_friction(&before);
+            }
         }
         self.apply_state_equation();
     }
@@ -226,10 +234,11 @@ impl<const D: usize> Hypoelastic<D> {
     fn midpoint(&mut self, dt: f64, time: f64, load: &Load<D>) {
         self.move_walls(time);
         self.compute_rates(load);
-        self.integrate(0.5 * dt);
+        self.integrate(0.5 * dt, false);
         self.move_walls(time + 0.5 * dt);
         self.compute_rates(load);
-        self.integrate(dt);
+        self.note_rates(dt);
+        self.integrate(dt, true);
     }
 
     /// `count` midpoint sub-steps over `dt` from the present state at `time`.
@@ -302,16 +311,19 @@ impl<const D: usize> SolidModel<D> for Hypoelastic<D> {
     fn advance(&mut self, half_step: &HalfStep, sub_steps: u32, load: &Load<D>) -> Result<(), OutOfBounds> {
         let first = half_step.stage == Stage::First;
         if first {
+            self.open_account();
             let (slot_of, now) = (&self.slot_of, &self.now.position);
             self.shown_velocity.leave(|p| vector(now, slot_of[p]));
         }
+        self.keep_rates(!first);
         if sub_steps == 1 {
             if first {
                 self.at_n.copy_from(&self.now);
             }
             self.move_walls(half_step.before());
             self.compute_rates(load);
-            self.integrate(half_step.span());
+            self.note_rates(half_step.span());
+            self.integrate(half_step.span(), !first);
         } else if first {
             self.step_start.copy_from(&self.now);
             self.sub_step(sub_steps / 2, half_step.span(), half_step.time, load);
@@ -320,11 +332,25 @@ impl<const D: usize> SolidModel<D> for Hypoelastic<D> {
             self.apply_state_equation();
             self.sub_step(sub_steps, half_step.span(), half_step.time, load);
         }
+        self.keep_rates(false);
+        if !first {
+            self.close_account();
+        }
         let (slot_of, now) = (&self.slot_of, &self.now);
         let place = |p: usize| vector(&now.position, slot_of[p]);
         self.shown_velocity.arrive(half_step, sub_steps, place, |p| vector(&now.velocity, slot_of[p]));
         self.show_particles();
         self.check()
+    }
+
+    fn keep_account(&mut self) {
+        self.account = Some(Account::default());
+    }
+
+    fn account(&mut self, give: &mut dyn FnMut(EnergyPart, f64)) {
+        if let Some(account) = &mut self.account {
+            account.given.hand_over(give);
+        }
     }
 
     fn strain_energy(&self) -> f64 {

@@ -4,6 +4,7 @@
 //!   D v_i / Dt = sum_j m_j [sigma_i/rho_i² + sigma_j/rho_j² - Pi_ij I + (R_i + R_j) f^n] . grad W    (eqs. 22 to 26)
 
 use super::columns::{Source, State};
+use halfstep_scene::ArtificialStress as Keys;
 use halfstep_sph::artificial_viscosity::damping;
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::{Arch, LANES, Lane};
@@ -34,6 +35,19 @@ pub(super) struct ArtificialStress<'a, const D: usize> {
     /// 1 / W(d0).
     pub inverse_w0: f64,
     pub exponent: u32,
+}
+
+impl<'a, const D: usize> ArtificialStress<'a, D> {
+    /// From the scene's keys, where the effect takes part, with the tensors of all slots.
+    pub(super) fn of<K: Kernel<D>>(
+        keys: Option<Keys>,
+        tensors: &'a [[[f64; D]; D]],
+        kernel: K,
+        spacing: f64,
+    ) -> Option<Self> {
+        let exponent = keys?.exponent.round() as u32;
+        Some(Self { tensors, inverse_w0: 1.0 / kernel.at(spacing), exponent })
+    }
 }
 
 /// A tensor of four consecutive slots.

@@ -5,6 +5,7 @@ use super::material::Matrix;
 use super::model::TotalLagrangian;
 use super::pass::Viscosity;
 use crate::columns::{Vectors, vectors};
+use crate::ledger::Given;
 use halfstep_scene::EnergyPart;
 use halfstep_sph::lane::LANES;
 use halfstep_sph::neighbours::PADDING;
@@ -27,11 +28,8 @@ struct Sinks<const D: usize> {
 /// What was given over the present step, and what that takes to know.
 #[derive(Clone, Debug)]
 pub(super) struct Account<const D: usize> {
-    /// The evaluations count: they belong to a step that is kept.
-    pub(super) open: bool,
+    pub(super) given: Given,
     last: Sinks<D>,
-    /// By [`EnergyPart`], J (2D: J/m).
-    given: Vec<f64>,
 }
 
 impl<const D: usize> Account<D> {
@@ -42,18 +40,7 @@ impl<const D: usize> Account<D> {
             moving_walls: 0.0,
             driven: vec![[0.0; D]; driven],
         };
-        Self { open: false, last: none, given: vec![0.0; EnergyPart::ALL.len()] }
-    }
-
-    pub(super) fn give(&mut self, part: EnergyPart, joules: f64) {
-        self.given[part as usize] += joules;
-    }
-
-    /// Hands over what was given and begins anew.
-    pub(super) fn hand_over(&mut self, give: &mut dyn FnMut(EnergyPart, f64)) {
-        for (&part, joules) in EnergyPart::ALL.iter().zip(&mut self.given) {
-            give(part, std::mem::take(joules));
-        }
+        Self { given: Given::default(), last: none }
     }
 }
 
@@ -108,7 +95,7 @@ impl<const D: usize> TotalLagrangian<D> {
     /// Notes what was given over the sub-step of this length, s, that led to the present state; `before` is what
     /// clamps moved from.
     pub(super) fn note_sub_step(&mut self, dt: f64, before: &[Driven<D>]) {
-        if !self.account.as_ref().is_some_and(|account| account.open) {
+        if !self.account.as_ref().is_some_and(|account| account.given.open) {
             return;
         }
         let sinks = self.sinks();
@@ -124,9 +111,9 @@ impl<const D: usize> TotalLagrangian<D> {
         let viscous = work(&account.last.viscous, &sinks.viscous);
         let contact = work(&account.last.walls, &sinks.walls);
         let moving = 0.5 * dt * (account.last.moving_walls + sinks.moving_walls);
-        account.give(EnergyPart::ArtificialViscosity, viscous);
-        account.give(EnergyPart::WallContact, contact - moving);
-        account.give(EnergyPart::MovingWalls, moving);
+        account.given.give(EnergyPart::ArtificialViscosity, viscous);
+        account.given.give(EnergyPart::WallContact, contact - moving);
+        account.given.give(EnergyPart::MovingWalls, moving);
         let mut clamps = 0.0;
         for (((slot, _), before), (a, b)) in
             self.driven.iter().zip(before).zip(account.last.driven.iter().zip(&sinks.driven))
@@ -137,7 +124,7 @@ impl<const D: usize> TotalLagrangian<D> {
                 clamps += kinetic - (0.5 * (a[d] + b[d]) + self.gravity[d] + before.load[d]) * way;
             }
         }
-        account.give(EnergyPart::Clamps, self.mass * clamps);
+        account.given.give(EnergyPart::Clamps, self.mass * clamps);
         account.last = sinks;
     }
 
@@ -152,7 +139,7 @@ impl<const D: usize> TotalLagrangian<D> {
 
     /// Where clamps move particles from; nothing where no account is open.
     pub(super) fn driven_from(&self) -> Vec<Driven<D>> {
-        if !self.account.as_ref().is_some_and(|account| account.open) {
+        if !self.account.as_ref().is_some_and(|account| account.given.open) {
             return Vec::new();
         }
         let of = |columns: &Vectors<D>, slot: usize| std::array::from_fn(|d| columns[d][slot]);

@@ -301,6 +301,38 @@ impl<const D: usize> Contact<D> {
         })
     }
 
+    /// What contacts add to the square of a particle's highest frequency, 1/s², and its damping by walls, 1/s: the
+    /// largest of any particle in the state that was evaluated last.
+    pub(super) fn stiffness(&self, kernel: KernelName, solid: &Solid) -> (f64, f64) {
+        let (mut springs, mut damping) = (0.0_f64, 0.0_f64);
+        for slot in (0..self.id.len()).filter(|&s| self.id[s] != PADDING) {
+            // The other particle gives way, too.
+            let bodies = 2.0 * self.stiffness / self.mass * self.touched(slot) as f64;
+            let (spring, viscous) = match &self.walls {
+                Some(walls) => with_kernel!(kernel, self.smoothing_length, D, |kernel| {
+                    walls.stiffness(kernel, self.touching(solid), slot)
+                }),
+                None => (0.0, 0.0),
+            };
+            springs = springs.max(bodies + spring);
+            damping = damping.max(viscous);
+        }
+        (springs, damping)
+    }
+
+    /// Number of particles of other bodies that push a particle.
+    fn touched(&self, slot: usize) -> usize {
+        if !self.several || self.sums[slot / LANES].square.0[slot % LANES] == 0.0 {
+            return 0;
+        }
+        let pushes = |&&j: &&u32| {
+            let j = j as usize;
+            let r2: f64 = (0..D).map(|d| (self.position[d][slot] - self.position[d][j]).powi(2)).sum();
+            self.body[j] != self.body[slot] && r2 < self.spacing * self.spacing
+        };
+        self.list.of(slot / LANES).iter().filter(pushes).count()
+    }
+
     /// Energy in the contacts between bodies, J.
     pub(super) fn energy(&self) -> f64 {
         let slots = (0..self.id.len()).filter(|&s| self.several && self.id[s] != PADDING);

@@ -106,14 +106,14 @@ impl<const D: usize> TotalLagrangian<D> {
             let arms = std::mem::take(&mut self.arms);
             let shear_modulus = self.material.shear_modulus();
             let mut relaxation = Arms::over(elapsed, &arms, shear_modulus, &mut memory);
-            let accounted = self.account.as_ref().is_some_and(|account| account.open);
+            let accounted = self.account.as_ref().is_some_and(|account| account.given.open);
             if accounted {
                 relaxation = relaxation.with_account(elapsed, &arms);
             }
             self.stresses(&mut relaxation);
             let lost = self.volume * relaxation.lost();
             if let Some(account) = self.account.as_mut().filter(|_| accounted) {
-                account.give(EnergyPart::Relaxation, -lost);
+                account.given.give(EnergyPart::Relaxation, -lost);
             }
             (self.now.memory, self.arms) = (memory, arms);
         }

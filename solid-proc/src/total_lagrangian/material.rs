@@ -42,6 +42,22 @@ impl Law {
         Self { material, plane, lambda: solid.bulk_modulus() - 2.0 / 3.0 * mu, mu }
     }
 
+    /// lambda and mu, Pa.
+    pub(super) fn constants(&self) -> (f64, f64) {
+        (self.lambda, self.mu)
+    }
+
+    /// Which law.
+    pub(super) fn material(&self) -> Material {
+        self.material
+    }
+
+    /// Of plane strain with lambda and mu, Pa.
+    #[cfg(test)]
+    pub(super) fn of_constants(material: Material, lambda: f64, mu: f64) -> Self {
+        Self { material, plane: Plane::Strain, lambda, mu }
+    }
+
     /// J, with what happens across the plane.
     pub(super) fn volume_ratio<const D: usize>(&self, f: &Matrix<D>) -> f64 {
         let in_plane = tensor::determinant(f);

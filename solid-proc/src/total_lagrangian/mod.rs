@@ -14,6 +14,7 @@ mod model;
 mod pass;
 mod relaxation;
 mod state;
+mod step_limit;
 #[cfg(test)]
 mod tests;
 

@@ -16,7 +16,7 @@ use halfstep_wire::state::{Fields, State, StateError};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Arm {
     /// g: its shear modulus over G.
-    share: f64,
+    pub(super) share: f64,
     /// tau, s.
     time: f64,
 }
@@ -72,7 +72,7 @@ impl<const D: usize> Memory<D> {
     }
 
     /// sum h of a particle, Pa; `None` without arms.
-    fn stress(&self, slot: usize) -> Option<Matrix<D>> {
+    pub(super) fn stress(&self, slot: usize) -> Option<Matrix<D>> {
         let (first, others) = self.arms.split_first()?;
         Some(others.iter().fold(first[slot], |sum, arm| sum + arm[slot]))
     }

@@ -1,5 +1,6 @@
 //! Remarks on bodies: what holds them, what they stand on, what they are joined with.
 
+use halfstep_scene::geometry::Layout;
 use halfstep_scene::{Block, EffectName, Phase, Scene, Shape, Switch, geometry};
 
 /// Clamps keep their place while a wall around them moves away.
@@ -62,6 +63,39 @@ pub(super) fn joined(scene: &Scene, all: &mut Vec<String>) {
             "{} touch and are one connected piece{what}: they never part (a [[solid]] of its own parts them)",
             names(scene, &body)
         ));
+    }
+}
+
+/// Bodies lighter than the fluid that stand on a wall: no fluid fits below them that could lift them.
+pub(super) fn standing<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
+    let size = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+    let Some(fluid) = scene.fluid.as_ref().filter(|_| size > 0.0) else { return };
+    let down = |x: &[f64; D]| (0..D).map(|d| x[d] * scene.gravity[d]).sum::<f64>() / size;
+    for body in scene.bodies().into_iter().filter(|body| !scene.is_held(body)) {
+        let Some(solid) = scene.shapes[body[0]].solid else { continue };
+        if scene.solids[solid].density >= fluid.density {
+            continue;
+        }
+        let own = |p: &&geometry::SolidPoint<D>| body.contains(&(p.body as usize));
+        let lowest =
+            layout.solid.iter().filter(own).map(|p| down(&p.position)).fold(f64::NEG_INFINITY, f64::max);
+        let reach = 1.1 * scene.interface_spacing(solid);
+        let foot: Vec<_> =
+            layout.solid.iter().filter(own).filter(|p| down(&p.position) > lowest - 0.5 * reach).collect();
+        let below = |wall: &&geometry::WallPoint<D>| {
+            foot.iter().any(|p| {
+                let apart: [f64; D] = std::array::from_fn(|d| wall.position[d] - p.position[d]);
+                apart.iter().map(|x| x * x).sum::<f64>() < reach * reach && down(&apart) > 0.5 * reach
+            })
+        };
+        if let Some(wall) = layout.wall.iter().find(below) {
+            all.push(format!(
+                "{} is lighter than the fluid and stands on `{}`: no fluid fits below it, so the fluid presses it down \
+                 and does not lift it",
+                names(scene, &body),
+                scene.shapes[wall.shape as usize].name
+            ));
+        }
     }
 }
 

@@ -44,6 +44,27 @@ fn every_shipped_scene_means_what_it_says() {
 }
 
 #[test]
+fn a_light_body_on_the_floor() {
+    let block = |bottom: f64, density: &str| {
+        let text = format!(
+            "resolution = 0.005\nend_time = 1.0\n[fluid]\ndensity = 1000.0\n[solid]\ndensity = {density}\n\
+             youngs_modulus = 12e6\npoissons_ratio = 0.4\n{TANK}{WATER}[[shape]]\nname = \"block\"\n\
+             phase = \"solid\"\nbox = {{ min = [0.2, {bottom}], max = [0.26, {}] }}\n",
+            bottom + 0.04
+        );
+        remarks(&parse(&text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}")))
+    };
+    let found = block(0.0, "500.0");
+    assert!(
+        found.len() == 1 && found[0].contains("`block` is lighter than the fluid and stands on `tank`"),
+        "{found:?}"
+    );
+    // Heavier than water, or with water below it.
+    assert_eq!(block(0.0, "1100.0"), [""; 0]);
+    assert_eq!(block(0.02, "500.0"), [""; 0]);
+}
+
+#[test]
 fn a_clamp_in_a_wall_that_moves() {
     let moving = TANK
         .replace("phase = \"wall\"", "phase = \"wall\"\nmotion = { amplitude = [0.01, 0.0], period = 1.0 }");

@@ -1,0 +1,183 @@
+//! The energy ledger: it closes, it says what theory says, and no bit of a run depends on it.
+
+use halfstep_scene::EnergyPart;
+use halfstep_tests::run::{repository, scene_at};
+use halfstep_tests::{Finished, RunBuilder};
+use std::path::Path;
+
+/// A scene's text with energy probes, without the curves of other files, as a run.
+fn with_ledgers(folder: &Path, text: &str, phases: &[&str]) -> RunBuilder {
+    let own = |block: &&str| !block.starts_with("reference") && !block.starts_with("metric");
+    let mut text = text.split("\n[[").filter(own).collect::<Vec<_>>().join("\n[[");
+    for phase in phases {
+        text += &format!("\n[[probe]]\nname = \"ledger-{phase}\"\nkind = \"energy\"\nphase = \"{phase}\"\n");
+    }
+    let path = folder.join(format!("ledger-{}.toml", phases.len()));
+    std::fs::write(&path, text).expect("a scene");
+    scene_at(&path)
+}
+
+/// The text of a shipped scene.
+fn shipped(name: &str) -> String {
+    std::fs::read_to_string(repository().join("scenes").join(name).with_extension("toml")).expect("a scene")
+}
+
+/// A part of a participant's ledger at the end, J.
+fn joules(run: &Finished, participant: &str, part: EnergyPart) -> f64 {
+    run.report.energy.as_ref().and_then(|energy| energy.joules(participant, part)).expect("a ledger")
+}
+
+/// Holds the rest of all ledgers below a part of the largest energy exchanged.
+fn closes(what: &str, run: &Finished, limit: f64) {
+    let energy = run.report.energy.as_ref().expect("ledgers");
+    let rest = energy.relative_residual;
+    println!("{what}: rest {rest:.2e} of {:?}", energy.largest);
+    assert!(rest < limit, "{what}: rest {rest} of {:?}", energy.largest);
+}
+
+fn within(what: &str, value: f64, expected: f64, share: f64) {
+    println!("{what}: {value:.6e}, expected {expected:.6e}");
+    assert!((value / expected - 1.0).abs() < share, "{what}: {value}, expected {expected} to {share}");
+}
+
+// ---- Coupled --------------------------------------------------------------------------------------------------------
+
+/// The ledgers close far below the 1 % that they are for, no bit of the run depends on them, and they are the same for
+/// processes and after an interruption.
+#[test]
+fn the_elastic_gates_ledgers_close_and_change_no_bit() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let gate = |phases: &[&str]| {
+        let gate = with_ledgers(folder.path(), &shipped("elastic-gate"), phases);
+        gate.set("resolution", 0.0025).set("output.frame_interval", 0.05)
+    };
+    let both = ["fluid", "solid"];
+    let whole = gate(&both).until(0.05).in_process().run();
+    let without = gate(&[]).until(0.05).in_process().run();
+    assert_eq!(whole.state_hash(), without.state_hash());
+    assert_eq!(whole.report.steps, without.report.steps);
+    assert_eq!(without.report.energy, None, "nobody asks");
+    // 9e-5 measured: the midpoint scheme's error.
+    closes("elastic gate, 2.5 mm", &whole, 2e-4);
+
+    let dir = folder.path().join("run");
+    let short = gate(&both).set("output.checkpoint_interval", 0.01);
+    short.until(0.04).out(&dir).run();
+    let resumed = scene_at(&folder.path().join("ledger-2.toml")).resume(&dir).until(0.05).run();
+    assert_eq!(resumed.state_hash(), whole.state_hash());
+    assert_eq!(resumed.report.energy, whole.report.energy);
+
+    // What the water loses, the plate gets, but for what f_i turns into heat.
+    let give = |who, part| joules(&whole, who, part);
+    let pressure = give("solid", EnergyPart::InterfacePressure);
+    within("pressure", -give("fluid", EnergyPart::InterfacePressure), pressure, 0.03);
+    let exchanged = whole.report.energy.as_ref().and_then(|energy| energy.interface).expect("both sides");
+    assert!(exchanged.cross_viscosity < 0.0, "{exchanged:?}");
+    let held = give("solid", EnergyPart::Strain) + give("solid", EnergyPart::Kinetic);
+    within("the plate's energy", held, pressure + give("solid", EnergyPart::CrossViscosity), 0.05);
+}
+
+#[test]
+fn the_ledgers_of_a_dam_break_on_a_plate_close() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let plate = with_ledgers(folder.path(), &shipped("dam-break-plate"), &["fluid", "solid"]);
+    let run = plate.set("resolution", 0.004).until(0.2).in_process().run();
+    // 2.5e-4 measured.
+    closes("dam break on a plate, 4 mm", &run, 5e-4);
+    for part in [EnergyPart::ArtificialViscosity, EnergyPart::WallGuard, EnergyPart::DensityDiffusion] {
+        assert!(joules(&run, "fluid", part) < 0.0, "{part:?} takes energy");
+    }
+}
+
+/// Phase-blind, with the hypoelastic solid, whose stress has a part of its own.
+#[test]
+fn the_papers_gate_closes() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let gate = with_ledgers(folder.path(), &shipped("elastic-gate"), &["fluid", "solid"]);
+    let gate = gate.set("preset", "kayaki").set("resolution", 0.0025).set("time_step", "auto");
+    let run = gate.until(0.02).in_process().run();
+    closes("the paper's gate, 2.5 mm", &run, 1e-5);
+}
+
+// ---- The fluid alone ------------------------------------------------------------------------------------------------
+
+/// Taylor and Green's vortex loses 4 nu k² of its kinetic energy in a second to viscosity. The ledger says what the
+/// decay alone does not: viscosity takes 6 % less than that, since the stress of a wall's neighbour is that of a
+/// gradient which the wall's particles show, and the walls' pressure takes what is missing.
+#[test]
+fn taylor_and_greens_vortex_loses_its_energy_to_viscosity() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let run = with_ledgers(folder.path(), &shipped("taylor-green"), &["fluid"]).until(0.1).in_process().run();
+    closes("Taylor and Green", &run, 1e-4);
+    let nu = run.report.scene["fluid"]["viscosity"].as_f64().expect("a number") / 1000.0;
+    let (k, kinetic) = (std::f64::consts::PI, run.curve("ledger-fluid.kinetic").mean());
+    let by = |part| -joules(&run, "fluid", part);
+    let theory = 4.0 * nu * k * k * kinetic * run.report.time;
+    within("viscosity", by(EnergyPart::Viscosity), 0.944 * theory, 0.005);
+    within("pressure of the walls", by(EnergyPart::WallPressure), 0.077 * theory, 0.05);
+}
+
+/// A piston that goes 0.1 m in 2 s turns 0.5 m x 0.2 m of water into 0.4 m x 0.25 m: its work is what the water weighs
+/// times how far that rises, rho g (0.4 x 0.25² - 0.5 x 0.2²) / 2.
+#[test]
+fn a_slow_pistons_work_lifts_the_water() {
+    let text = "resolution = 0.02\nend_time = 2.0\ngravity = [0.0, -9.81]\n[fluid]\ndensity = 1000.0\n\
+        [[shape]]\nname = \"water\"\nphase = \"fluid\"\nbox = { min = [0.0, 0.0], max = [0.5, 0.2] }\n\
+        pressure = \"hydrostatic\"\n[[shape]]\nname = \"piston\"\nphase = \"wall\"\n\
+        box = { min = [-0.06, 0.0], max = [0.0, 0.4] }\nmotion = { velocity = [0.05, 0.0], end = 2.0 }\n\
+        [[shape]]\nname = \"tank\"\nphase = \"wall\"\n\
+        tank = { min = [-0.2, 0.0], max = [0.5, 0.4], open = [\"left\", \"top\"] }";
+    let folder = tempfile::tempdir().expect("a folder");
+    let run = with_ledgers(folder.path(), text, &["fluid"]).in_process().run();
+    closes("a slow piston", &run, 2e-4);
+    let expected = 0.5 * 1000.0 * 9.81 * (0.4 * 0.25_f64.powi(2) - 0.5 * 0.2_f64.powi(2));
+    within("work of the piston", joules(&run, "fluid", EnergyPart::MovingWalls), expected, 0.035);
+    within("potential energy", joules(&run, "fluid", EnergyPart::Potential), expected, 0.015);
+}
+
+// ---- The solid alone ------------------------------------------------------------------------------------------------
+
+/// An undamped plate swings from kinetic to strain energy and back; a damped one loses what its viscosity takes.
+#[test]
+fn the_oscillating_plates_ledger_closes() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let plate = || with_ledgers(folder.path(), &shipped("oscillating-plate"), &["solid"]).in_process();
+    let run = plate().until(0.03).run();
+    closes("oscillating plate", &run, 3e-5);
+    let undamped = plate().set("solid.artificial_viscosity.linear", 0).until(0.03).run();
+    closes("undamped", &undamped, 3e-5);
+    assert_eq!(joules(&undamped, "solid", EnergyPart::ArtificialViscosity), 0.0);
+    let relaxing = plate().set("solid.prony", "[[0.5, 0.01]]").until(0.03).run();
+    closes("relaxing", &relaxing, 3e-5);
+    assert!(joules(&relaxing, "solid", EnergyPart::Relaxation) < 0.0);
+    let hypoelastic = plate().set("solid.model", "hypoelastic").until(0.02).run();
+    closes("hypoelastic", &hypoelastic, 1e-4);
+}
+
+/// A beam whose clamp swings, and a block on a floor that throws it up.
+#[test]
+fn clamps_and_floors_that_move_do_the_work() {
+    let solid = "resolution = 0.005\nend_time = 0.5\n[solid]\ndensity = 1000.0\nyoungs_modulus = 2e6\n\
+        poissons_ratio = 0.3\n[[shape]]\nname = \"body\"\nphase = \"solid\"\n\
+        box = { min = [-0.02, 0.0], max = [0.1, 0.02] }\n";
+    let beam = "clamp = { min = [-0.02, 0.0], max = [0.0, 0.02], with = \"base\" }\n[[shape]]\nname = \"base\"\n\
+        phase = \"wall\"\nbox = { min = [-0.05, -0.03], max = [-0.03, 0.05] }\n\
+        motion = { amplitude = [0.0, 1e-2], period = 0.2 }";
+    let floor = "[[shape]]\nname = \"floor\"\nphase = \"wall\"\ncontact = true\n\
+        box = { min = [-0.05, -0.06], max = [0.15, 0.0] }\n\
+        motion = { amplitude = [0.0, 0.01], period = 0.1, ramp = 0.05 }";
+    for (what, more, part) in [("beam", beam, EnergyPart::Clamps), ("block", floor, EnergyPart::MovingWalls)]
+    {
+        for model in ["total-lagrangian", "hypoelastic"] {
+            if (what, model) == ("beam", "hypoelastic") {
+                continue;
+            }
+            let folder = tempfile::tempdir().expect("a folder");
+            let run = with_ledgers(folder.path(), &format!("{solid}{more}"), &["solid"]);
+            let run = run.set("solid.model", model).in_process().until(0.2).run();
+            closes(&format!("{what}, {model}"), &run, 5e-4);
+            let (work, held) = (joules(&run, "solid", part), joules(&run, "solid", EnergyPart::Potential));
+            assert!(work > held, "{what}, {model}: work {work} J, lifted {held} J");
+        }
+    }
+}
