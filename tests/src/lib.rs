@@ -10,9 +10,9 @@ pub mod linear_waves;
 pub mod patch;
 pub mod process;
 pub mod run;
+pub mod soak;
 pub mod sources;
 pub mod stability;
-pub mod soak;
 pub mod torture;
 
 pub use curve::Curve;

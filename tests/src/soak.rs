@@ -58,7 +58,10 @@ pub fn soak(time: Duration, at_once: usize, steps: u64, told: impl Fn(&str) + Sy
             scope.spawn(move || {
                 let mut runs = 0;
                 while started.elapsed() < time {
-                    faults.lock().expect("no panic").extend(short_run((place + runs) % SHORT.len(), hashes).err());
+                    faults
+                        .lock()
+                        .expect("no panic")
+                        .extend(short_run((place + runs) % SHORT.len(), hashes).err());
                     runs += 1;
                 }
                 told(&format!("place {place}: {runs} runs"));
@@ -123,7 +126,10 @@ fn long_run(steps: u64, told: &impl Fn(&str)) -> Vec<String> {
     let outcome = running.wait();
     let report = outcome.report();
     if report.status != Some(RunStatus::Finished) || report.steps < steps {
-        return vec![format!("the long run: {:?} after {} steps: {}", report.status, report.steps, outcome.stderr)];
+        return vec![format!(
+            "the long run: {:?} after {} steps: {}",
+            report.status, report.steps, outcome.stderr
+        )];
     }
     told(&format!("long run: {} steps, {} s", report.steps, report.wall_seconds));
     growth(&samples, steps)

@@ -3,10 +3,10 @@
 
 use crate::process::{is_alive, leftovers, with_variable};
 use crate::run::{RunBuilder, Running, repository, scene};
+use fastrand::Rng;
 use halfstep_output::checkpoint::{FOLDERS, MANIFEST};
 use halfstep_output::run_json::RunStatus;
 use halfstep_output::{RunReport, read_probes, series::Series, vtkhdf};
-use fastrand::Rng;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;

@@ -3,6 +3,7 @@
 //! and `run.json` keeps them.
 
 mod bodies;
+mod clamp_faces;
 mod magnitudes;
 mod outcome;
 mod shapes;
@@ -30,6 +31,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     bodies::free(scene, &mut all);
     bodies::joined(scene, &mut all);
     bodies::standing(scene, layout, &mut all);
+    clamp_faces::clamp_faces(scene, &mut all);
     shapes::sizes(scene, placed, &mut all);
     shapes::overlaps(placed, &mut all);
     water::hanging(scene, layout, &mut all);

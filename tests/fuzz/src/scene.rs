@@ -55,7 +55,11 @@ fn judge(text: &str, path: &Path, overrides: &[String]) {
             assert!((0..scene.dimension).all(|d| domain.min[d] <= domain.max[d]), "{domain:?}");
             if counts.total() <= PLACED {
                 let placed = layout::<2>(&scene).counts().total();
-                assert!(placed <= counts.total(), "{placed} particles, at most {} were expected", counts.total());
+                assert!(
+                    placed <= counts.total(),
+                    "{placed} particles, at most {} were expected",
+                    counts.total()
+                );
             }
             let json = scene.to_json().expect("a scene is JSON");
             assert_eq!(Scene::from_json(&json).expect("the JSON of a scene is one"), scene);

@@ -130,7 +130,7 @@ impl fmt::Display for Placed {
 }
 
 /// A number with four digits that count.
-fn length(x: f64) -> String {
+pub(super) fn length(x: f64) -> String {
     let rounded: f64 = format!("{x:.3e}").parse().unwrap_or(x);
     format!("{rounded}")
 }

@@ -195,3 +195,22 @@ fn units_that_are_hardly_meant() {
         ["the largest shape is 2000 m long: lengths are in metres"]
     );
 }
+
+/// Rows of 5 mm from 0: the face of a clamp at 12.5 mm runs through the middle of one, at 10 mm between two.
+#[test]
+fn the_face_of_a_clamp_that_cuts_a_row() {
+    let cut = PLATE.replace("max = [0.22, 0.01]", "max = [0.22, 0.0125]");
+    let found = plain(&[TANK, WATER, &cut]);
+    assert_eq!(
+        found,
+        [
+            "a face of the clamp of `plate`, at y = 0.0125 m, cuts a row of its particles: it is held more softly than \
+          there. Between rows are 0.01 and 0.015 m"
+        ]
+    );
+    // Nodal rows lie at whole spacings, so the boundaries between them do not.
+    let nodal = "[numerics]\nlattice = \"nodal\"\n";
+    assert_eq!(plain(&[TANK, WATER, &cut, nodal]).len(), 0);
+    assert_eq!(plain(&[TANK, WATER, PLATE, nodal]).len(), 1);
+    assert_eq!(plain(&[TANK, WATER, &cut, "[effects]\nclamp-face = \"off\"\n"]), [""; 0]);
+}
