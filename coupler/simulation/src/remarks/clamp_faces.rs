@@ -13,7 +13,7 @@ pub(super) fn clamp_faces(scene: &Scene, all: &mut Vec<String>) {
         return;
     }
     for shape in &scene.shapes {
-        let model = shape.solid.and_then(|k| scene.solids.get(k)).map(|solid| solid.model);
+        let model = shape.solid.and_then(|k| scene.solids.get(k)).map(|solid| solid.model.name());
         let Geometry::Box(body) = &shape.geometry else { continue };
         if model != Some(SolidModelName::TotalLagrangian) {
             continue;
