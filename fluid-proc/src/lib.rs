@@ -28,6 +28,8 @@ pub mod measure;
 mod memory;
 pub mod midpoint;
 pub mod momentum;
+#[cfg(test)]
+mod motion_tests;
 mod passes;
 #[cfg(test)]
 mod probe_tests;

@@ -4,6 +4,7 @@ use crate::columns::{Columns, PairParticles};
 use crate::effects::{Effects, FluidEffect};
 use crate::fluid::Fluid;
 use crate::walls::Walls;
+use crate::walls::moving::Moving;
 
 fn of<T>(column: &Vec<T>) -> usize {
     column.capacity() * size_of::<T>()
@@ -37,8 +38,14 @@ impl<const D: usize> Walls<D> {
             + of_each(&self.own_velocity)
             + of_each(&self.normal)
             + of(&self.reverse_all)
-            + self.moving.as_ref().map_or(0, |m| of(&m.shape) + of_each(&m.initial) + of_each(&m.surface))
+            + self.moving.as_ref().map_or(0, Moving::bytes)
             + self.rows.bytes()
+    }
+}
+
+impl<const D: usize> Moving<D> {
+    fn bytes(&self) -> usize {
+        of(&self.shape) + [&self.initial, &self.surface, &self.normal].map(of_each).iter().sum::<usize>()
     }
 }
 

@@ -110,9 +110,7 @@ impl<const D: usize> Columns<D> {
 impl<const D: usize> State for Walls<D> {
     fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
         let Some(moving) = &mut self.moving else { return Ok(()) };
-        let shapes = moving.at_sort.len();
-        fields.points("displacement_at_sort", &mut moving.at_sort)?;
-        fields.length("displacement_at_sort", shapes, moving.at_sort.len())
+        fields.real("sorted_at", &mut moving.sorted_at)
     }
 
     fn restored(&mut self) -> Result<(), StateError> {

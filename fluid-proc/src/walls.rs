@@ -20,7 +20,7 @@ use halfstep_sph::lane::{Arch, LANES, Lane};
 use halfstep_sph::neighbours::Rows;
 use halfstep_sph::pair::PairLaw;
 use halfstep_sph::state_equation::StateEquation;
-use moving::Moving;
+use moving::{Moving, Seen};
 
 /// The wall particles, sorted once, or with the fluid where some of them move.
 #[derive(Clone, Debug)]
@@ -97,7 +97,8 @@ impl<const D: usize> Walls<D> {
     /// Brings the walls that move to where they are at a time.
     pub fn set_time(&mut self, time: f64) {
         let Some(moving) = &mut self.moving else { return };
-        moving.place(time, &mut self.shown.position, &mut self.own_velocity);
+        let (position, velocity) = (&mut self.shown.position, &mut self.own_velocity);
+        moving.place(time, Seen { position, velocity, normal: &mut self.normal });
     }
 
     /// Where a point of the scene is that goes along with the wall of a shape.

@@ -68,7 +68,9 @@ fn derive(scene: &Scene, k: usize, effect: EffectName) -> Derived {
         EffectName::SleepingSolid if scene.shapes.iter().any(|s| s.contact && s.motion.is_some()) => {
             Derived::Impossible("a wall that it may touch moves".into())
         }
-        EffectName::SleepingSolid if shapes(scene, k).any(|s| !s.clamp_with.is_empty()) => {
+        EffectName::SleepingSolid
+            if shapes(scene, k).any(|s| s.motion.is_some() || !s.clamp_with.is_empty()) =>
+        {
             Derived::Impossible("a clamp moves".into())
         }
         EffectName::SleepingSolid => Derived::On(format!(

@@ -39,8 +39,10 @@ pub(crate) struct Walls<const D: usize> {
 struct Moving<const D: usize> {
     /// By shape.
     motions: Vec<Option<Motion>>,
-    /// Displacement of each shape when the lists were made, m.
-    listed: Vec<[f64; 3]>,
+    /// Where each shape was when the lists were made.
+    listed: Vec<Placement>,
+    /// Distance of each shape's farthest particle from the pivot about which it turns, m.
+    radius: Vec<f64>,
     /// When the lists were made, s.
     listed_at: f64,
     /// Now, s.
@@ -52,11 +54,19 @@ struct Moving<const D: usize> {
 
 impl<const D: usize> Moving<D> {
     fn new(points: &[&WallPoint<D>], scene: &Scene) -> Option<Self> {
-        let motion = |shape: u32| scene.shapes[shape as usize].motion;
+        let motion = |shape: u32| scene.shapes[shape as usize].motion.as_ref();
         points.iter().find(|p| motion(p.shape).is_some())?;
+        let mut radius = vec![0.0_f64; scene.shapes.len()];
+        for p in points {
+            if let Some(pivot) = motion(p.shape).and_then(Motion::pivot) {
+                let away = ((p.position[0] - pivot[0]).powi(2) + (p.position[1] - pivot[1]).powi(2)).sqrt();
+                radius[p.shape as usize] = radius[p.shape as usize].max(away);
+            }
+        }
         Some(Self {
-            motions: scene.shapes.iter().map(|shape| shape.motion).collect(),
-            listed: vec![[0.0; 3]; scene.shapes.len()],
+            motions: scene.shapes.iter().map(|shape| shape.motion.clone()).collect(),
+            listed: vec![Placement::default(); scene.shapes.len()],
+            radius,
             listed_at: 0.0,
             time: 0.0,
             shape: points.iter().map(|p| p.shape).collect(),
@@ -66,16 +76,14 @@ impl<const D: usize> Moving<D> {
 
     /// Where a shape's surface is now, and how fast.
     fn of(&self, shape: usize) -> Placement {
-        self.motions[shape].map_or_else(Placement::default, |motion| motion.at(self.time))
+        self.motions[shape].as_ref().map_or_else(Placement::default, |motion| motion.at(self.time))
     }
 
     /// Largest displacement since the lists were made, m.
     fn displacement(&self) -> f64 {
-        let of = |(shape, listed): (usize, &[f64; 3])| {
-            let now = self.of(shape).displacement;
-            (0..3).map(|d| (now[d] - listed[d]).powi(2)).sum::<f64>()
-        };
-        self.listed.iter().enumerate().map(of).fold(0.0, f64::max).sqrt()
+        let of =
+            |(shape, listed): (usize, &Placement)| self.of(shape).moved_since(listed, self.radius[shape]);
+        self.listed.iter().enumerate().map(of).fold(0.0, f64::max)
     }
 }
 
@@ -132,9 +140,11 @@ impl<const D: usize> Walls<D> {
             // A padding slot repeats the particle before it.
             last = if id == PADDING { last } else { id as usize };
             let now = &placements[moving.shape[last] as usize];
+            let place = moving.initial[last];
+            let (x, v) = (now.position_of(place), now.velocity_of(place));
             for d in 0..D {
-                self.position[d][slot] = moving.initial[last][d] + now.displacement[d];
-                self.velocity[d][slot] = now.velocity[d];
+                self.position[d][slot] = x[d];
+                self.velocity[d][slot] = v[d];
             }
         }
     }
@@ -160,7 +170,7 @@ impl<const D: usize> Walls<D> {
     pub(crate) fn relist(&mut self, solid: &Vectors<D>, rows: &Rows<D>, reach: f64) {
         if let Some(moving) = &mut self.moving {
             moving.listed_at = moving.time;
-            moving.listed = (0..moving.motions.len()).map(|shape| moving.of(shape).displacement).collect();
+            moving.listed = (0..moving.motions.len()).map(|shape| moving.of(shape)).collect();
             let n = moving.shape.len();
             self.id = (0..n as u32).collect();
             self.position.iter_mut().for_each(|column| column.resize(n, 0.0));

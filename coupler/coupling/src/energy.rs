@@ -103,7 +103,10 @@ pub struct EnergyBalance {
 
 /// Names of the solids with clamps that move.
 fn driven(scene: &Scene) -> Vec<String> {
-    let moves = |k: usize| scene.shapes.iter().any(|s| s.solid == Some(k) && !s.clamp_with.is_empty());
+    let moves = |k: usize| {
+        let of = |s: &&halfstep_scene::Shape| s.solid == Some(k);
+        scene.shapes.iter().filter(of).any(|s| s.motion.is_some() || !s.clamp_with.is_empty())
+    };
     let solids = scene.solids.iter().enumerate().filter(|(k, _)| moves(*k));
     solids.map(|(_, solid)| solid.name.clone()).collect()
 }

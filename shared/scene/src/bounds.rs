@@ -76,6 +76,8 @@ pub fn flow_speed(scene: &Scene) -> f64 {
     let domain = geometry::domain(scene);
     let fall: f64 = (0..3).map(|a| scene.gravity[a].abs() * (domain.max[a] - domain.min[a])).sum();
     let sound = scene.fluid.as_ref().map_or(0.0, |f| 0.1 * f.sound_speed);
+    let moving =
+        |s: &crate::Shape| s.motion.as_ref().map_or(0.0, |m| m.fastest(&geometry::bounding_box(s, scene)));
     let swings = scene.shapes.iter().filter_map(|shape| {
         let (mode, solid) = (shape.cantilever_mode?, scene.solids.get(shape.solid?)?);
         Some(solid.sound_speed() * mode.fraction.abs())
@@ -84,7 +86,7 @@ pub fn flow_speed(scene: &Scene) -> f64 {
     scene
         .shapes
         .iter()
-        .map(|s| length(&s.velocity) + s.motion.map_or(0.0, |m| m.fastest()) + swing)
+        .map(|s| length(&s.velocity) + moving(s) + swing)
         .fold((2.0 * fall).sqrt().max(sound), f64::max)
 }
 

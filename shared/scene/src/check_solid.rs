@@ -4,6 +4,9 @@ use super::check::{Check, PHASE_BLIND_BY};
 use super::document::Value;
 use super::*;
 
+/// How far from its place in the scene a motion may begin, in particle spacings.
+const START: f64 = 1e-3;
+
 impl Check<'_> {
     pub(super) fn solids(&self) {
         let names: Vec<&str> = self.scene.solids.iter().map(|s| s.name.as_str()).collect();
@@ -55,9 +58,10 @@ impl Check<'_> {
         }
     }
 
-    /// A clamp moves with a wall that moves, of a model that can follow.
+    /// A clamp moves with a wall that moves, or by its shape's own motion, of a model that can follow.
     fn clamps(&self) {
         for (index, shape) in self.scene.shapes.iter().enumerate() {
+            self.own_motion(index, shape);
             for (clamp, name) in shape.clamp_with.iter().enumerate() {
                 let Some(name) = name else { continue };
                 let key = format!("{}.clamp", self.shape_key(index));
@@ -78,6 +82,33 @@ impl Check<'_> {
                 };
                 self.report.among(self.root, &format!("{key}.with"), &[], reason);
             }
+        }
+    }
+
+    /// What moves by prescription begins where the scene has it; of a solid only clamps move.
+    fn own_motion(&self, index: usize, shape: &Shape) {
+        let key = format!("{}.motion", self.shape_key(index));
+        let Some(motion) = shape.motion.as_ref().filter(|_| !self.report.has_any(&["shape", "resolution"]))
+        else {
+            return;
+        };
+        let model = shape.solid.and_then(|k| self.model(k));
+        if shape.phase == Phase::Solid && shape.clamp.is_empty() {
+            return self.wrong(&key, "moves the clamps of a solid, and the shape has none");
+        }
+        if model == Some(SolidModelName::Hypoelastic) {
+            return self.wrong(&key, "only the total-lagrangian model has clamps that move");
+        }
+        let around = geometry::bounding_box(shape, self.scene);
+        let start = motion.at(0.0);
+        let radius = motion.pivot().map_or(0.0, |pivot| motion::farthest(&pivot, &around));
+        let off = start.moved_since(&Placement::default(), radius);
+        if off > START * self.scene.resolution {
+            let reason = format!(
+                "begins {} m away from where the scene has the shape: at 0 s it is there",
+                off as f32
+            );
+            self.wrong(&key, reason);
         }
     }
 

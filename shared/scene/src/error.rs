@@ -3,6 +3,7 @@
 use super::document::{Node, Origin, SourceText};
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
 use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -148,6 +149,8 @@ fn around(text: &str, origin: Origin) -> Option<&str> {
 pub(super) struct Report {
     sources: Vec<(SourceText, Arc<NamedSource<Arc<str>>>)>,
     problems: RefCell<Vec<SceneError>>,
+    /// Where formulas stand, with their numbers.
+    computed: RefCell<BTreeMap<Origin, f64>>,
 }
 
 impl Report {
@@ -157,13 +160,22 @@ impl Report {
             let named = NamedSource::new(title, s.text.clone());
             (s, Arc::new(named))
         };
-        Self { sources: sources.into_iter().map(named).collect(), problems: RefCell::default() }
+        let sources = sources.into_iter().map(named).collect();
+        Self { sources, problems: RefCell::default(), computed: RefCell::default() }
+    }
+
+    /// Notes the number of a formula: what is wrong with it is said with both.
+    pub(super) fn computed(&self, origin: Origin, value: f64) {
+        self.computed.borrow_mut().insert(origin, value);
     }
 
     /// Notes that the value written at `origin` is wrong.
     pub(super) fn value(&self, key: &str, origin: Origin, reason: impl Into<String>) -> Note<'_> {
-        let shown = self.snippet(origin);
-        self.note(key, origin, shown, reason.into())
+        let mut reason = reason.into();
+        if let Some(number) = self.computed.borrow().get(&origin) {
+            reason.push_str(&format!(" (the formula gives {number})"));
+        }
+        self.note(key, origin, self.snippet(origin), reason)
     }
 
     /// Notes that the value of a key is wrong because of other keys: at the one of them that an override changed last,

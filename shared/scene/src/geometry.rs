@@ -190,14 +190,19 @@ pub fn domain(scene: &Scene) -> Block {
         return block;
     }
     let mut block = Block { min: [0.0; 3], max: [0.0; 3] };
+    let mut all = block;
     for axis in 0..scene.dimension {
         let bounds = scene.shapes.iter().map(|s| bounding_box(s, scene));
-        let (low, high) = bounds.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), b| {
+        (all.min[axis], all.max[axis]) = bounds.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), b| {
             (low.min(b.min[axis]), high.max(b.max[axis]))
         });
-        let reaches = scene.shapes.iter().filter_map(|s| s.motion.map(|m| m.reach(scene.end_time)[axis]));
+    }
+    for axis in 0..scene.dimension {
+        let (low, high) = (all.min[axis], all.max[axis]);
+        let swept = |m: &Motion| m.swept(&all, scene.end_time);
+        let swept = scene.shapes.iter().filter_map(|s| s.motion.as_ref().map(swept));
         let (low, high) =
-            reaches.fold((low, high), |(l, h), (back, forth)| (l.min(low + back), h.max(high + forth)));
+            swept.fold((low, high), |(l, h), swept| (l.min(swept.min[axis]), h.max(swept.max[axis])));
         (block.min[axis], block.max[axis]) = (low - (high - low), high + (high - low));
     }
     block
@@ -242,13 +247,15 @@ pub fn distance(geometry: &Geometry, at: &[f64; 3]) -> f64 {
     }
 }
 
-/// How a clamp moves the particle of a solid: `None` where no clamp holds it, or the first that does stands still.
+/// How a clamp moves the particle of a solid, with a wall or by its shape's own motion: `None` where it stands still.
 pub fn clamp_motion<const D: usize>(scene: &Scene, point: &SolidPoint<D>) -> Option<Motion> {
     let shape = scene.shapes.get(point.body as usize)?;
     let tolerance = TOLERANCE * scene.spacing(shape);
     let clamp = shape.clamp.iter().position(|block| holds(block, &point.position, tolerance))?;
-    let name = shape.clamp_with.get(clamp)?.as_ref()?;
-    scene.shapes.iter().find(|wall| wall.name == *name)?.motion
+    let Some(name) = shape.clamp_with.get(clamp).and_then(Option::as_ref) else {
+        return shape.motion.clone();
+    };
+    scene.shapes.iter().find(|wall| wall.name == *name)?.motion.clone()
 }
 
 /// Whether each clamp of a solid shape holds one of its particles.

@@ -33,11 +33,13 @@ mod metric;
 mod motion;
 mod names;
 mod overrides;
+mod parameters;
 mod participant;
 mod preset;
 mod probe;
 mod read;
 mod read_metric;
+mod read_motion;
 mod read_probe;
 mod read_shape;
 mod read_solid;
@@ -55,7 +57,7 @@ pub use halfstep_sph::Phase;
 pub use halfstep_sph::kernel::KernelName;
 pub use load::{load, load_with, parse, parse_with};
 pub use metric::{Metric, MetricKind, MetricReference};
-pub use motion::{Motion, Placement};
+pub use motion::{Composed, Course, Motion, Part, Placement, Spline, Turn};
 pub use participant::Participant;
 pub use probe::{Probe, ProbeKind, Reference};
 pub use resources::{expected_speed, memory_available, memory_needed};
@@ -245,7 +247,7 @@ pub struct Shape {
     /// Solid only: the wall that each clamp moves with, by its name; empty where none moves.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub clamp_with: Vec<Option<String>>,
-    /// Wall only: prescribed motion.
+    /// Prescribed motion of a wall, or of a solid's clamps.
     #[serde(default)]
     pub motion: Option<Motion>,
     /// Wall only: the solid may touch this wall.

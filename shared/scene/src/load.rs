@@ -3,7 +3,7 @@
 use super::check::Check;
 use super::document::{self, SourceText};
 use super::error::{Report, SceneErrors};
-use super::{EffectName, Scene, Switch, file, overrides, read, resources};
+use super::{EffectName, Scene, Switch, file, overrides, parameters, read, resources};
 use std::path::Path;
 
 /// Reads a scene's file, applies the overrides (`key=value`, as after `--set`) and checks everything.
@@ -61,6 +61,7 @@ pub fn parse_with(
     for (index, text) in overrides.iter().enumerate() {
         overrides::apply(&mut root, text, index + 1, &report);
     }
+    parameters::resolve(&mut root, &report);
     let mut draft = read::scene(&root, path, &report, own_effects);
     Check { scene: &draft.scene, root: &root, report: &report }.all();
     if report.is_empty() && draft.sound_speed_auto {

@@ -1,10 +1,20 @@
-//! Prescribed motion of a wall: a gate that opens, a wave paddle.
+//! Prescribed motion of a wall: a gate that opens, a wave paddle, a tank that rolls.
 
+mod course;
+mod placement;
+mod spline;
+
+pub use course::{Composed, Course, Part};
+pub use placement::{Placement, Turn};
+pub use spline::Spline;
+
+use crate::Block;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::sync::Arc;
 
 /// How a wall moves.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Motion {
     /// At constant velocity from `start` to `end`.
@@ -28,30 +38,38 @@ pub enum Motion {
         /// How long it takes to reach its amplitude, s; 0: at once.
         ramp: f64,
     },
+    /// A sum of translations and rotations about one pivot.
+    Composed(#[serde(with = "shared")] Arc<Composed>),
 }
 
-/// Where a moving wall is, relative to its place in the scene.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Placement {
-    /// Displacement, m.
-    pub displacement: [f64; 3],
-    /// Velocity, m/s.
-    pub velocity: [f64; 3],
-    /// Acceleration, m/s².
-    pub acceleration: [f64; 3],
+/// What many particles share, written as if it were theirs alone.
+mod shared {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+    use std::sync::Arc;
+
+    pub(super) fn serialize<T: Serialize, S: Serializer>(value: &Arc<T>, to: S) -> Result<S::Ok, S::Error> {
+        (**value).serialize(to)
+    }
+
+    pub(super) fn deserialize<'a, T: Deserialize<'a>, D: Deserializer<'a>>(
+        from: D,
+    ) -> Result<Arc<T>, D::Error> {
+        T::deserialize(from).map(Arc::new)
+    }
 }
 
 impl Motion {
     /// Where the wall is at a time, s.
     pub fn at(&self, time: f64) -> Placement {
         match *self {
+            Self::Composed(ref composed) => composed.at(time),
             Self::Steady { velocity, start, end } => {
                 let moved = (time.min(end) - start).max(0.0);
                 let moves = time >= start && time < end;
                 Placement {
                     displacement: velocity.map(|v| v * moved),
                     velocity: if moves { velocity } else { [0.0; 3] },
-                    acceleration: [0.0; 3],
+                    ..Placement::default()
                 }
             }
             Self::Oscillating { amplitude, period, start, ramp } => {
@@ -69,21 +87,39 @@ impl Motion {
                     displacement: amplitude.map(|k| k * x),
                     velocity: amplitude.map(|k| k * v),
                     acceleration: amplitude.map(|k| k * a),
+                    turn: None,
                 }
             }
         }
     }
 
-    /// Least and largest displacement until `end_time` along each axis, m: bounds.
+    /// Least and largest displacement until `end_time` along each axis, m, of what does not turn: bounds.
     pub fn reach(&self, end_time: f64) -> [(f64, f64); 3] {
         match self {
             Self::Steady { .. } => self.at(end_time).displacement.map(|x| (x.min(0.0), x.max(0.0))),
             Self::Oscillating { amplitude, .. } => amplitude.map(|x| (-x.abs(), x.abs())),
+            Self::Composed(composed) => composed.reach(end_time),
         }
     }
 
-    /// An upper bound of its speed, m/s.
-    pub fn fastest(&self) -> f64 {
+    /// A box that holds all that begins in a box, wherever the motion takes it until `end_time`.
+    pub fn swept(&self, around: &Block, end_time: f64) -> Block {
+        let mut block = *around;
+        if let Some(pivot) = self.pivot() {
+            let radius = farthest(&pivot, around);
+            for axis in 0..2 {
+                (block.min[axis], block.max[axis]) = (pivot[axis] - radius, pivot[axis] + radius);
+            }
+        }
+        for (axis, (back, forth)) in self.reach(end_time).into_iter().enumerate() {
+            block.min[axis] += back;
+            block.max[axis] += forth;
+        }
+        block
+    }
+
+    /// An upper bound of the speed of what begins in a box, m/s.
+    pub fn fastest(&self, around: &Block) -> f64 {
         let length = |v: &[f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
         match self {
             Self::Steady { velocity, .. } => length(velocity),
@@ -91,8 +127,26 @@ impl Motion {
                 let rise = if *ramp > 0.0 { FRAC_PI_2 / ramp } else { 0.0 };
                 length(amplitude) * (2.0 * PI / period + rise)
             }
+            Self::Composed(composed) => {
+                composed.fastest(farthest(&composed.pivot.unwrap_or_default(), around))
+            }
         }
     }
+
+    /// The point about which it turns, m; `None` where it does not.
+    pub fn pivot(&self) -> Option<[f64; 3]> {
+        match self {
+            Self::Composed(composed) => composed.pivot,
+            _ => None,
+        }
+    }
+}
+
+/// Distance of a box's farthest corner from an axis along z, m.
+pub(crate) fn farthest(pivot: &[f64; 3], around: &Block) -> f64 {
+    let along =
+        |axis: usize| (around.min[axis] - pivot[axis]).abs().max((around.max[axis] - pivot[axis]).abs());
+    (along(0) * along(0) + along(1) * along(1)).sqrt()
 }
 
 /// The envelope and its first two derivatives.
@@ -110,6 +164,8 @@ fn envelope(t: f64, ramp: f64) -> (f64, f64, f64) {
 mod tests {
     use super::*;
 
+    const ANYWHERE: Block = Block { min: [0.0; 3], max: [1.0; 3] };
+
     #[test]
     fn a_gate_opens_by_hand() {
         let gate = Motion::Steady { velocity: [0.0, 2.0, 0.0], start: 0.1, end: 0.4 };
@@ -118,7 +174,7 @@ mod tests {
         assert_eq!(gate.at(0.2).velocity, [0.0, 2.0, 0.0]);
         assert!((gate.at(9.0).displacement[1] - 0.6).abs() < 1e-15);
         assert_eq!(gate.at(9.0).velocity, [0.0; 3]);
-        assert_eq!(gate.fastest(), 2.0);
+        assert_eq!(gate.fastest(&ANYWHERE), 2.0);
         assert_eq!(gate.reach(0.05), [(0.0, 0.0); 3]);
         assert!((gate.reach(0.2)[1].1 - 0.2).abs() < 1e-15 && gate.reach(0.2)[1].0 == 0.0);
     }
@@ -148,7 +204,7 @@ mod tests {
                 // The envelope's second derivative jumps where the ramp ends, at 1.4 s.
                 assert!((v - at.velocity[d]).abs() < 1e-6, "{t}: {v} {}", at.velocity[d]);
                 assert!((a - at.acceleration[d]).abs() < 1e-3, "{t}: {a} {}", at.acceleration[d]);
-                assert!(at.velocity[d].abs() <= paddle.fastest());
+                assert!(at.velocity[d].abs() <= paddle.fastest(&ANYWHERE));
             }
         }
     }

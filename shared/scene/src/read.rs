@@ -51,8 +51,9 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&s
     let names: Vec<&str> = solids.iter().map(|s| s.name.as_str()).collect();
     let tables = top.tables("shape");
     let contact_said: Vec<bool> = tables.iter().map(|shape| shape.node("contact").is_some()).collect();
-    let shapes: Vec<Shape> =
-        tables.into_iter().map(|s| read_shape::shape(s, dimension, &names, numerics.lattice)).collect();
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let shape = |s| read_shape::shape(s, dimension, &names, numerics.lattice, folder);
+    let shapes: Vec<Shape> = tables.into_iter().map(shape).collect();
     let probe = |p| read_probe::probe(p, dimension, &names, &shapes);
     let probes = top.tables("probe").into_iter().filter_map(probe).collect();
     let (effects, own_effects) = effects(&top, &defaults, own_effects);
@@ -76,10 +77,11 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&s
         output: output(top.section("output"), end_time),
         shapes,
         probes,
-        references: {
-            let folder = path.parent().unwrap_or(Path::new(""));
-            top.tables("reference").into_iter().filter_map(|r| read_probe::reference(r, folder)).collect()
-        },
+        references: top
+            .tables("reference")
+            .into_iter()
+            .filter_map(|r| read_probe::reference(r, folder))
+            .collect(),
         metrics: top.tables("metric").into_iter().filter_map(read_metric::metric).collect(),
         effects,
         own_effects,
@@ -87,6 +89,8 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&s
     };
     scene.share_spacings();
     scene.touch_free_bodies(&contact_said);
+    // Its values stand where formulas were.
+    top.node("parameters");
     top.finish();
     Draft { scene, sound_speed_auto, linear_auto }
 }

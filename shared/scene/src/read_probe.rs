@@ -280,30 +280,36 @@ fn columns<'n>(section: &Section<'n>) -> Option<[&'n str; 2]> {
 
 /// Two columns of a file with comments (`#`) and a line of titles; rows without the value are left out.
 fn read_csv(path: &Path, time: &str, value: &str) -> Result<Vec<[f64; 2]>, String> {
+    let rows = read_columns(path, &[time, value])?;
+    Ok(rows.into_iter().map(|row| [row[0], row[1]]).collect())
+}
+
+/// Some columns of a file with comments (`#`) and a line of titles; rows without the second one are left out.
+pub(super) fn read_columns(path: &Path, wanted: &[&str]) -> Result<Vec<Vec<f64>>, String> {
     let text = file::read(path)?;
     let mut reader =
         csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(text.as_bytes());
     let titles = reader.headers().map_err(|e| e.to_string())?.clone();
-    let index = |title: &str| {
-        titles.iter().position(|t| t == title).ok_or_else(|| {
+    let index = |title: &&str| {
+        titles.iter().position(|t| t == *title).ok_or_else(|| {
             let all = super::error::listed(titles.iter(), "and");
             format!("has no column `{title}`; its columns are {all}")
         })
     };
-    let (time, value) = (index(time)?, index(value)?);
+    let columns = wanted.iter().map(index).collect::<Result<Vec<usize>, String>>()?;
     let mut points = Vec::new();
     for row in reader.records() {
         let row = row.map_err(|e| e.to_string())?;
-        let number = |column: usize| {
-            let text = row.get(column).unwrap_or_default();
+        let number = |column: &usize| {
+            let text = row.get(*column).unwrap_or_default();
             let line = row.position().map_or(0, |p| p.line());
             match text.parse::<f64>() {
                 Ok(x) if x.is_finite() => Ok(x),
                 _ => Err(format!("line {line}: `{text}` is no number")),
             }
         };
-        if !row.get(value).unwrap_or_default().is_empty() {
-            points.push([number(time)?, number(value)?]);
+        if !row.get(columns[1]).unwrap_or_default().is_empty() {
+            points.push(columns.iter().map(number).collect::<Result<Vec<f64>, String>>()?);
         }
     }
     if points.is_empty() { Err("has no row".into()) } else { Ok(points) }

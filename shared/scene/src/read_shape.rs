@@ -4,6 +4,7 @@ use super::document::Value;
 use super::error::listed;
 use super::section::{Range, Section};
 use super::*;
+use std::path::Path;
 
 pub(super) const PHASES: [(&str, Phase); 3] =
     [("fluid", Phase::Fluid), ("solid", Phase::Solid), ("wall", Phase::Wall)];
@@ -22,7 +23,13 @@ const GEOMETRIES: [&str; 4] = ["box", "disc", "ring", "tank"];
 /// Most particles across a shape.
 const MAX_ACROSS: u32 = 100_000;
 
-pub(super) fn shape(section: Section<'_>, dimension: usize, solids: &[&str], lattice: Lattice) -> Shape {
+pub(super) fn shape(
+    section: Section<'_>,
+    dimension: usize,
+    solids: &[&str],
+    lattice: Lattice,
+    folder: &Path,
+) -> Shape {
     let phase = section.choice("phase", None, &PHASES);
     let geometry = geometry(&section, dimension, phase);
     let (clamp, clamp_with) = clamp(&section, dimension);
@@ -37,7 +44,7 @@ pub(super) fn shape(section: Section<'_>, dimension: usize, solids: &[&str], lat
         velocity_field: velocity_field(&section, dimension),
         clamp,
         clamp_with,
-        motion: motion(&section, dimension),
+        motion: read_motion::motion(&section, dimension, folder),
         contact: section.boolean("contact", false),
         free_slip: section.choice("slip", Some(true), &[("free", true), ("none", false)]).unwrap_or(true),
         hydrostatic: section
@@ -51,7 +58,6 @@ pub(super) fn shape(section: Section<'_>, dimension: usize, solids: &[&str], lat
         ("spacing", Phase::Solid, "a solid"),
         ("across", Phase::Solid, "a solid"),
         ("velocity_field", Phase::Fluid, "a fluid"),
-        ("motion", Phase::Wall, "a wall"),
         ("contact", Phase::Wall, "a wall"),
         ("slip", Phase::Wall, "a wall"),
         ("pressure", Phase::Fluid, "a fluid"),
@@ -61,6 +67,9 @@ pub(super) fn shape(section: Section<'_>, dimension: usize, solids: &[&str], lat
         {
             section.wrong(key, node, format!("only {article} has `{key}`"));
         }
+    }
+    if let (Some(node), Some(Phase::Fluid)) = (section.node("motion"), phase) {
+        section.wrong("motion", node, "only a wall, or a solid with a clamp, has `motion`");
     }
     if phase == Some(Phase::Solid) {
         needs_solid(&section, solids, "a solid shape");
@@ -103,38 +112,6 @@ pub(super) fn needs_solid(section: &Section<'_>, solids: &[&str], who: &str) {
         let names = listed(solids.iter().copied(), "or");
         section.whole(format!("says no `solid`: where there are several, {who} names its own, {names}"));
     }
-}
-
-fn motion(section: &Section<'_>, dimension: usize) -> Option<Motion> {
-    let table = section.section("motion");
-    if !table.is_present() {
-        return None;
-    }
-    let instant = Range::at_least(0.0).up_to(1e12);
-    let start = table.number("start", Some(0.0), instant);
-    let motion = match (table.node("velocity"), table.node("amplitude")) {
-        (Some(_), None) => {
-            let end = table.number("end", Some(1e12), instant);
-            if end <= start {
-                table.whole(format!("must have an `end` after its `start`, {start} s"));
-            }
-            Motion::Steady { velocity: table.vector("velocity", dimension, None), start, end }
-        }
-        (None, Some(_)) => Motion::Oscillating {
-            amplitude: table.vector("amplitude", dimension, None),
-            period: table.number("period", None, Range::at_least(1e-9).up_to(1e12)),
-            start,
-            ramp: table.number("ramp", Some(0.0), instant),
-        },
-        _ => {
-            table.whole(
-                "needs either `velocity` (a steady motion) or `amplitude` and `period` (an oscillation)",
-            );
-            Motion::Steady { velocity: [0.0; 3], start, end: 1e12 }
-        }
-    };
-    table.finish();
-    Some(motion)
 }
 
 /// The name of a shape or a probe: a part of dotted keys and of column titles.

@@ -124,11 +124,8 @@ pub fn expected_speed(scene: &Scene) -> f64 {
     let g = speed(&scene.gravity);
     let height = if g > 0.0 { fall(scene, scene.gravity.map(|c| c / g)) } else { 0.0 };
     let field = |s: &Shape| s.velocity_field.map_or(0.0, |field| field.fastest(g));
-    let fastest = scene
-        .shapes
-        .iter()
-        .map(|s| speed(&s.velocity) + field(s) + s.motion.map_or(0.0, |m| m.fastest()))
-        .fold(0.0, f64::max);
+    let moving = |s: &Shape| s.motion.as_ref().map_or(0.0, |m| m.fastest(&geometry::bounding_box(s, scene)));
+    let fastest = scene.shapes.iter().map(|s| speed(&s.velocity) + field(s) + moving(s)).fold(0.0, f64::max);
     (2.0 * g * height).sqrt().max(fastest)
 }
 

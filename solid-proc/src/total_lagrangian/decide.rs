@@ -2,7 +2,7 @@
 
 use crate::effects::is_clamped;
 use crate::models::OwnEffects;
-use halfstep_scene::{Derived, EffectName, ModelKeys, Scene};
+use halfstep_scene::{Derived, EffectName, ModelKeys, Scene, Shape};
 
 pub(crate) const EFFECTS: OwnEffects = OwnEffects {
     list: &[
@@ -18,9 +18,20 @@ pub(crate) const EFFECTS: OwnEffects = OwnEffects {
 fn derive(scene: &Scene, solid: usize, effect: EffectName) -> Derived {
     match effect {
         EffectName::Relaxation => relaxation(scene, solid),
+        _ if turns(scene, solid) => {
+            Derived::Impossible("a clamp turns, and clamps at faces know no rotation".into())
+        }
         _ if is_clamped(scene, solid) => Derived::On("clamps hold at their boxes' faces".into()),
         _ => Derived::Impossible("nothing is clamped".into()),
     }
+}
+
+/// A clamp of the solid turns, by itself or with a wall.
+fn turns(scene: &Scene, solid: usize) -> bool {
+    let turning = |shape: &Shape| shape.motion.as_ref().is_some_and(|motion| motion.pivot().is_some());
+    let with = |shape: &Shape, wall: &Shape| shape.clamp_with.iter().flatten().any(|name| *name == wall.name);
+    let mut shapes = scene.shapes.iter().filter(|shape| shape.solid == Some(solid));
+    shapes.any(|s| turning(s) || scene.shapes.iter().any(|wall| turning(wall) && with(s, wall)))
 }
 
 fn relaxation(scene: &Scene, solid: usize) -> Derived {

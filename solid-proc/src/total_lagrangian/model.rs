@@ -284,9 +284,11 @@ impl<const D: usize> TotalLagrangian<D> {
     fn drive(&mut self, time: f64) {
         for (slot, motion) in &self.driven {
             let placement = motion.at(time);
+            let place: [f64; D] = std::array::from_fn(|d| self.pairs.position()[d][*slot]);
+            let (moved, velocity) = (placement.displacement_of(place), placement.velocity_of(place));
             for d in 0..D {
-                self.now.displacement[d][*slot] = placement.displacement[d];
-                self.now.velocity[d][*slot] = placement.velocity[d];
+                self.now.displacement[d][*slot] = moved[d];
+                self.now.velocity[d][*slot] = velocity[d];
             }
         }
     }

@@ -5,13 +5,19 @@ use halfstep_scene::{Block, EffectName, Phase, Scene, Shape, Switch, geometry};
 
 /// Clamps keep their place while a wall around them moves away.
 pub(super) fn clamps(scene: &Scene, all: &mut Vec<String>) {
-    let moving = |wall: &&Shape| wall.phase == Phase::Wall && wall.motion.is_some_and(|m| m.fastest() > 0.0);
+    let moves = |wall: &Shape| {
+        let around = geometry::bounding_box(wall, scene);
+        wall.motion.as_ref().is_some_and(|m| m.fastest(&around) > 0.0)
+    };
+    let moving = |wall: &&Shape| wall.phase == Phase::Wall && moves(wall);
     for shape in &scene.shapes {
         for wall in scene.shapes.iter().filter(moving) {
             let around = geometry::bounding_box(wall, scene);
             let stays =
                 |k: usize| shape.clamp_with.get(k).is_none_or(|with| with.as_ref() != Some(&wall.name));
-            if (0..shape.clamp.len()).any(|k| stays(k) && meet(&shape.clamp[k], &around, scene)) {
+            if shape.motion.is_none()
+                && (0..shape.clamp.len()).any(|k| stays(k) && meet(&shape.clamp[k], &around, scene))
+            {
                 all.push(format!(
                     "the clamp of `{}` stands in `{}`, which moves: the clamp stays where it is (`with = \"{}\"` at the \
                      clamp takes it along)",

@@ -1,0 +1,198 @@
+//! `motion` of a wall or of a solid's clamps.
+
+use super::document::Value;
+use super::motion::{Composed, Course, Part, Spline};
+use super::read_probe::read_columns;
+use super::section::{Range, Section};
+use super::*;
+use std::path::Path;
+use std::sync::Arc;
+
+const INSTANT: Range = Range::at_least(0.0).up_to(1e12);
+/// Angles, rad, and angular velocities, rad/s.
+const ANGLE: Range = Range::at_least(-1e6).up_to(1e6);
+/// Longest series of a file.
+const MAX_ROWS: usize = 1_000_000;
+
+/// A motion, or a list of them that add up.
+pub(super) fn motion(section: &Section<'_>, dimension: usize, folder: &Path) -> Option<Motion> {
+    let node = section.node("motion")?;
+    let tables = match node.table() {
+        Some(_) => vec![section.section("motion")],
+        None => section.tables("motion"),
+    };
+    if tables.is_empty() {
+        if matches!(&node.value, Value::Array(items) if items.is_empty()) {
+            section.wrong("motion", node, "has no part");
+        }
+        return None;
+    }
+    let alone = tables.len() == 1;
+    let mut composed = Composed { pivot: None, parts: Vec::new() };
+    for table in tables {
+        if alone && let Some(simple) = simple(&table, dimension) {
+            table.finish();
+            return Some(simple);
+        }
+        let parts = parts(&table, dimension, folder);
+        let turns = parts.iter().any(|part| part.angle != 0.0) || table.node("pivot").is_some();
+        if turns {
+            let pivot = table.vector("pivot", dimension, None);
+            match composed.pivot {
+                Some(other) if other != pivot && pivot.iter().all(|x| x.is_finite()) => {
+                    let reason =
+                        "must be that of the parts before it: what moves has one pivot, which goes along";
+                    table.node("pivot").iter().for_each(|node| table.wrong("pivot", node, reason));
+                }
+                _ => composed.pivot = Some(pivot),
+            }
+        }
+        composed.parts.extend(parts);
+        table.finish();
+    }
+    Some(Motion::Composed(Arc::new(composed)))
+}
+
+/// A translation at constant velocity, or one that swings.
+fn simple(table: &Section<'_>, dimension: usize) -> Option<Motion> {
+    let has = |key| table.node(key).is_some();
+    if ["angular_velocity", "angle", "file", "pivot", "phase"].into_iter().any(has) {
+        return None;
+    }
+    match (has("velocity"), has("amplitude")) {
+        (true, false) if !has("ramp") => {
+            let (start, end) = span(table, 0.0);
+            Some(Motion::Steady { velocity: table.vector("velocity", dimension, None), start, end })
+        }
+        (false, true) => Some(Motion::Oscillating {
+            amplitude: table.vector("amplitude", dimension, None),
+            period: table.number("period", None, Range::at_least(1e-9).up_to(1e12)),
+            start: table.number("start", Some(0.0), INSTANT),
+            ramp: table.number("ramp", Some(0.0), INSTANT),
+        }),
+        _ => None,
+    }
+}
+
+/// Start and end, with room for two ramps between them.
+fn span(table: &Section<'_>, ramp: f64) -> (f64, f64) {
+    let start = table.number("start", Some(0.0), INSTANT);
+    let end = table.number("end", Some(1e12), INSTANT);
+    if end <= start {
+        table.whole(format!("must have an `end` after its `start`, {start} s"));
+    } else if end - start < 2.0 * ramp {
+        table.whole(format!(
+            "must last as long as two ramps, {} s: one at its start, one at its end",
+            2.0 * ramp
+        ));
+    }
+    (start, end)
+}
+
+fn parts(table: &Section<'_>, dimension: usize, folder: &Path) -> Vec<Part> {
+    let has = |key| table.node(key).is_some();
+    let kinds = [has("velocity") || has("angular_velocity"), has("amplitude") || has("angle"), has("file")];
+    let zero = Some([0.0; 3]);
+    match kinds {
+        [true, false, false] => {
+            let ramp = table.number("ramp", Some(0.0), INSTANT);
+            let (start, end) = span(table, ramp);
+            vec![Part {
+                course: Course::Steady { start, end, ramp },
+                translation: table.vector("velocity", dimension, zero),
+                angle: table.number("angular_velocity", Some(0.0), ANGLE),
+            }]
+        }
+        [false, true, false] => {
+            let phase = table.number("phase", Some(0.0), ANGLE);
+            let ramp = table.number("ramp", Some(0.0), INSTANT);
+            if let (true, Some(node)) = (phase != 0.0 && ramp == 0.0, table.node("phase")) {
+                table.wrong(
+                    "phase",
+                    node,
+                    "needs a `ramp`: without one it would not begin where the scene has it",
+                );
+            }
+            vec![Part {
+                course: Course::Sine {
+                    period: table.number("period", None, Range::at_least(1e-9).up_to(1e12)),
+                    phase,
+                    start: table.number("start", Some(0.0), INSTANT),
+                    ramp,
+                },
+                translation: table.vector("amplitude", dimension, zero),
+                angle: table.number("angle", Some(0.0), ANGLE),
+            }]
+        }
+        [false, false, true] => from_file(table, dimension, folder).unwrap_or_default(),
+        _ => {
+            table.whole(
+                "needs one of `velocity` or `angular_velocity` (a steady motion), `amplitude` or `angle` with `period` \
+                 (an oscillation), and `file` (a series)",
+            );
+            // What the others would have meant is not asked.
+            ["start", "end", "ramp", "period", "phase", "columns", "scale"]
+                .into_iter()
+                .for_each(|key| _ = table.node(key));
+            Vec::new()
+        }
+    }
+}
+
+/// A series in a file: `columns = { time, x, y, angle }` are the titles of its columns.
+fn from_file(table: &Section<'_>, dimension: usize, folder: &Path) -> Option<Vec<Part>> {
+    let scale = table.number("scale", Some(1.0), Range::at_least(-1e12).up_to(1e12));
+    let columns = table.section("columns");
+    if !columns.is_present() {
+        if table.node("columns").is_none() {
+            table.missing("columns");
+        }
+        return None;
+    }
+    let axes = &["x", "y", "z"][..dimension];
+    if columns.node("time").is_none() {
+        columns.missing("time");
+    }
+    let time = columns.string("time");
+    let mut found = Vec::new();
+    for (axis, key) in axes.iter().copied().chain(["angle"]).enumerate() {
+        found.extend(columns.string(key).map(|title| (title, (key != "angle").then_some(axis))));
+    }
+    if found.is_empty() {
+        columns.whole("names no column that moves anything: `x`, `y` (m) or `angle` (rad)");
+    }
+    columns.finish();
+    let (node, file) = (table.node("file")?, folder.join(table.string("file")?));
+    let titles: Vec<&str> = [time?].into_iter().chain(found.iter().map(|(title, _)| *title)).collect();
+    let wrong = |reason: String| table.wrong("file", node, format!("{}: {reason}", file.display()));
+    let rows = match read_columns(&file, &titles) {
+        Ok(rows) if rows.len() > MAX_ROWS => {
+            return Some(wrong(format!("has more than {MAX_ROWS} rows"))).and(None);
+        }
+        Ok(rows) if rows.len() < 2 => return Some(wrong("has a single row".into())).and(None),
+        Ok(rows) => rows,
+        Err(reason) => return Some(wrong(reason)).and(None),
+    };
+    let times: Vec<f64> = rows.iter().map(|row| row[0]).collect();
+    if let Some(k) = (1..times.len()).find(|&k| times[k] <= times[k - 1]) {
+        wrong(format!("goes back in time: {} s follows {} s", times[k], times[k - 1]));
+        return None;
+    }
+    let part = |(column, (_, axis)): (usize, &(&str, Option<usize>))| {
+        let values: Vec<f64> = rows.iter().map(|row| scale * row[column + 1]).collect();
+        let spline = Spline::new(times.clone(), values);
+        let mut part = Part { course: Course::Points(spline), translation: [0.0; 3], angle: 0.0 };
+        match axis {
+            Some(axis) => part.translation[*axis] = 1.0,
+            None => part.angle = 1.0,
+        }
+        part
+    };
+    let parts: Vec<Part> = found.iter().enumerate().map(part).collect();
+    let finite = |part: &Part| matches!(&part.course, Course::Points(s) if s.fastest().is_finite() && s.fastest() < 1e12);
+    if !parts.iter().all(finite) {
+        wrong("moves faster than 1e12 m/s or rad/s".into());
+        return None;
+    }
+    Some(parts)
+}

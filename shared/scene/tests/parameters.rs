@@ -1,0 +1,96 @@
+//! `[parameters]` and formulas.
+
+use halfstep_scene::{Geometry, Scene, parse};
+use std::path::Path;
+
+const SCENE: &str = r#"
+resolution = "=H / rows"
+end_time = "= 2 * pi * sqrt(L / 9.81)"
+
+[parameters]
+L = 0.4
+H = "=L / 4 + 0.1"
+rows = 20
+slope = "=atan(1)"
+
+[fluid]
+density = 1000
+
+[[shape]]
+name = "water"
+phase = "fluid"
+box = { min = [0.0, 0.0], max = ["=L", "=H"] }
+
+[[shape]]
+name = "tank"
+phase = "wall"
+tank = { min = [0, 0], max = ["=L", "=2 * H"], open = ["top"] }
+
+[[probe]]
+name = "gauges"
+kind = "water-level"
+x = ["=L / 4", "=3 * L / 4"]
+
+[[reference]]
+probe = "gauges.level-1"
+label = "=H"
+points = [[0, "=H"]]
+"#;
+
+fn scene(overrides: &[&str]) -> Scene {
+    let overrides: Vec<String> = overrides.iter().map(|&o| o.into()).collect();
+    parse(SCENE, Path::new("s.toml"), &overrides).unwrap_or_else(|e| panic!("{e:?}"))
+}
+
+fn size(scene: &Scene) -> [f64; 2] {
+    let Geometry::Box(block) = &scene.shapes[0].geometry else { panic!("a box") };
+    [block.max[0], block.max[1]]
+}
+
+#[test]
+fn formulas_are_computed() {
+    let found = scene(&[]);
+    assert_eq!((size(&found), found.resolution), ([0.4, 0.2], 0.01));
+    assert!((found.end_time - 2.0 * std::f64::consts::PI * (0.4_f64 / 9.81).sqrt()).abs() < 1e-15);
+    assert_eq!(found.references[0].points, [[0.0, 0.2]]);
+    assert_eq!(found.references[0].label, "=H", "what people read is no formula");
+}
+
+#[test]
+fn an_override_of_a_parameter_changes_all_that_follows_from_it() {
+    let found = scene(&["parameters.L=0.8"]);
+    assert_eq!((size(&found), found.resolution), ([0.8, 0.30000000000000004], 0.015000000000000003));
+    let found = scene(&["parameters.L==rows * 0.03", "parameters.rows=10"]);
+    assert_eq!(size(&found)[0], 0.3);
+    let found = scene(&["resolution==L / 40"]);
+    assert_eq!(found.resolution, 0.01);
+}
+
+#[test]
+fn arithmetic_is_that_of_paper() {
+    for (formula, value) in [
+        ("1 + 2 * 3", 7.0),
+        ("(1 + 2) * 3", 9.0),
+        ("8 / 4 / 2", 1.0),
+        ("8 / 4 * 2", 4.0),
+        ("2 - 3 - 4", -5.0),
+        ("2 * 3 / 4 * 2", 3.0),
+        ("2^3", 8.0),
+        ("2 * 3^2", 18.0),
+        ("12 / 2^2", 3.0),
+        ("-3 + 5", 2.0),
+        ("-2^2", 4.0),
+        ("5 - -3", 8.0),
+        ("2 * (-3)", -6.0),
+        ("1e-3 * 2", 2e-3),
+        ("1.5E+2", 150.0),
+        ("sqrt(2 * 8) + abs(-1)", 5.0),
+        ("exp(0) + log(1) + sin(0) + cos(0) + tan(0)", 2.0),
+        ("floor(2.7)", 2.0),
+        ("asin(1) + acos(1) - pi / 2", 0.0),
+        ("L - 0.4", 0.0),
+    ] {
+        let set = format!("shape.water.velocity=[\"={formula}\", 0]");
+        assert_eq!(scene(&[&set]).shapes[0].velocity[0], value, "{formula}");
+    }
+}
