@@ -1,4 +1,4 @@
-//! Scenes, and the tables of curves that they name.
+//! Scenes, and the tables that they name.
 
 use halfstep_scene::geometry::{domain, estimate, layout};
 use halfstep_scene::{Scene, parse};
@@ -19,7 +19,7 @@ pub fn scene(bytes: &[u8]) {
     judge(text, Path::new("scene.toml"), &overrides);
 }
 
-/// A table of a curve that a scene refers to, as CSV.
+/// A table that a scene refers to, as CSV: of a curve, and of a wall's motion.
 ///
 /// # Panics
 /// As [`scene`], or there is no folder for temporary files.
@@ -42,9 +42,18 @@ label = "measured"
 file = "curve.csv"
 columns = ["t", "x"]
 "#;
+    const MOTION: &str = r#"
+[[shape]]
+name = "paddle"
+phase = "wall"
+box = { min = [-0.5, 0.0], max = [0.0, 1.0] }
+motion = { file = "curve.csv", columns = { time = "t", x = "x", angle = "x" }, pivot = [0.0, 0.0], scale = 0.5 }
+"#;
     let folder = tempfile::tempdir().expect("a folder for temporary files");
     std::fs::write(folder.path().join("curve.csv"), bytes).expect("the folder takes a file");
-    judge(SCENE, &folder.path().join("scene.toml"), &[]);
+    let path = folder.path().join("scene.toml");
+    judge(SCENE, &path, &[]);
+    judge(&(SCENE.to_owned() + MOTION), &path, &[]);
 }
 
 fn judge(text: &str, path: &Path, overrides: &[String]) {
