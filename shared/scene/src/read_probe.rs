@@ -175,7 +175,7 @@ fn columns<'n>(section: &Section<'n>) -> Option<[&'n str; 2]> {
 }
 
 /// Two columns of a file with comments (`#`) and a line of titles; rows without the value are left out.
-fn read_csv(path: &Path, time: &str, value: &str) -> Result<Vec<[f64; 2]>, String> {
+pub(super) fn read_csv(path: &Path, time: &str, value: &str) -> Result<Vec<[f64; 2]>, String> {
     let text = file::read(path)?;
     let mut reader =
         csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(text.as_bytes());
