@@ -34,6 +34,9 @@ fn describe_in<const D: usize>(scene: &Scene, isa: Isa) -> String {
     for shape in &placed {
         line(&format!("  {}", shape.name), shape.to_string());
     }
+    if counts.solid > 0 {
+        line("bodies", remarks::bodies_listed(scene, &scene.bodies_of(&layout)));
+    }
     for (k, solid) in scene.solids.iter().enumerate() {
         let spacing = scene.solid_spacing(k);
         if spacing != scene.resolution {

@@ -9,6 +9,7 @@ mod outcome;
 mod shapes;
 mod water;
 
+pub(crate) use bodies::listed as bodies_listed;
 pub use outcome::outcome;
 pub(crate) use shapes::{Placed, placed};
 
@@ -28,9 +29,10 @@ pub fn remarks(scene: &Scene) -> Vec<String> {
 pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Placed]) -> Vec<String> {
     let mut all = Vec::new();
     bodies::clamps(scene, &mut all);
-    bodies::free(scene, &mut all);
-    bodies::joined(scene, &mut all);
-    bodies::standing(scene, layout, &mut all);
+    let bodies = scene.bodies_of(layout);
+    bodies::free(scene, &bodies, &mut all);
+    bodies::touching(scene, layout, &bodies, &mut all);
+    bodies::standing(scene, layout, &bodies, &mut all);
     clamp_faces::clamp_faces(scene, &mut all);
     shapes::sizes(scene, placed, &mut all);
     shapes::overlaps(placed, &mut all);

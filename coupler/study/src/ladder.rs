@@ -153,12 +153,14 @@ pub fn thinnest(scene: &Scene) -> f64 {
     let moving = || scene.shapes.iter().filter(|s| s.phase != Phase::Wall);
     let spaced = moving().any(|s| s.spacing.is_none());
     let moving = moving().filter(|s| !spaced || s.spacing.is_none());
-    let extents = moving.flat_map(|s| match &s.geometry {
+    let extents = moving.flat_map(|s| match s.geometry.unmoved() {
         Geometry::Box(b) | Geometry::Tank { cavity: b, .. } => {
             (0..scene.dimension).map(|a| b.max[a] - b.min[a]).collect()
         }
         Geometry::Disc { radius, .. } => vec![2.0 * radius],
         Geometry::Ring { inner, outer, .. } => vec![outer - inner],
+        Geometry::Polygon(polygon) => vec![polygon.thickness().0],
+        Geometry::Moved(_) => Vec::new(),
     });
     extents.fold(f64::INFINITY, f64::min)
 }

@@ -82,7 +82,11 @@ impl Check<'_> {
     }
 
     fn shape_names(&self) {
-        let names: Vec<&str> = self.scene.shapes.iter().map(|s| s.name.as_str()).collect();
+        let mut names: Vec<&str> = self.scene.shapes.iter().map(|s| s.name.as_str()).collect();
+        // As they stand in the file.
+        for (k, void) in self.scene.voids.iter().enumerate() {
+            names.insert(void.before + k, &void.name);
+        }
         self.unique("shape", &names);
     }
 
@@ -112,11 +116,18 @@ impl Check<'_> {
             if self.report.has(&key) {
                 continue;
             }
-            let (kind, thickness) = match &shape.geometry {
-                Geometry::Box(b) => ("box", self.thinnest(b)),
-                Geometry::Tank { cavity, .. } => ("tank", self.thinnest(cavity)),
-                Geometry::Disc { radius, .. } => ("disc", *radius),
-                Geometry::Ring { inner, outer, .. } => ("ring", outer - inner),
+            let kind = self.geometry_key(&key, &shape.geometry);
+            let mut at = String::new();
+            let thickness = match shape.geometry.unmoved() {
+                Geometry::Disc { radius, .. } => *radius,
+                // Of walls and water an end may be as thin as it likes.
+                Geometry::Polygon(polygon) if shape.phase != Phase::Solid => polygon.area().sqrt(),
+                Geometry::Polygon(polygon) => {
+                    let (thickness, [x, y]) = polygon.thickness();
+                    at = format!(" at [{}, {}]", x as f32, y as f32);
+                    thickness
+                }
+                geometry => spacing::thickness(geometry, self.scene.dimension),
             };
             let nodal = self.scene.numerics.lattice == Lattice::Nodal && shape.phase != Phase::Wall;
             let model = shape.solid.and_then(|k| self.model(k));
@@ -144,7 +155,7 @@ impl Check<'_> {
                 ];
                 // In single precision: without the last digits that a difference leaves.
                 let thickness = thickness as f32;
-                let reason = format!("is {thickness} m thin, and {needed} {least} m{convention}");
+                let reason = format!("is {thickness} m thin{at}, and {needed} {least} m{convention}");
                 self.report.among(self.root, &place, &others, reason);
             }
         }
@@ -169,10 +180,7 @@ impl Check<'_> {
             if self.report.has(&key) {
                 continue;
             }
-            let place = match shape.geometry {
-                Geometry::Ring { .. } => format!("{key}.ring"),
-                _ => format!("{key}.box"),
-            };
+            let place = format!("{key}.{}", self.geometry_key(&key, &shape.geometry));
             let others =
                 ["resolution", "smoothing_ratio", "numerics.lattice", "interface.treatment", "preset"];
             let corners = [format!("{place}.min"), format!("{place}.max")];
@@ -192,9 +200,16 @@ impl Check<'_> {
         }
     }
 
-    fn thinnest(&self, block: &Block) -> f64 {
-        let extents = (0..self.scene.dimension).map(|a| block.max[a] - block.min[a]);
-        extents.fold(f64::INFINITY, f64::min)
+    /// The key that says where the shape of a key is.
+    pub(super) fn geometry_key(&self, shape: &str, geometry: &Geometry) -> &'static str {
+        match geometry.unmoved() {
+            Geometry::Box(_) => "box",
+            Geometry::Tank { .. } => "tank",
+            Geometry::Disc { .. } => "disc",
+            Geometry::Ring { .. } => "ring",
+            _ if self.root.child_at(&format!("{shape}.outline")).is_some() => "outline",
+            _ => "polygon",
+        }
     }
 
     fn interface(&self) {

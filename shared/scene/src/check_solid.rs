@@ -20,6 +20,7 @@ impl Check<'_> {
         }
         self.solid_time_step();
         self.spacings();
+        self.bodies();
         self.clamps();
     }
 
@@ -54,6 +55,29 @@ impl Check<'_> {
                 let (dx, why) = (scene.resolution, "the fluid would slip between the solid's particles");
                 let reason = format!("makes {spacing} m, and must be at most the resolution, {dx} m: {why}");
                 self.report.among(self.root, &key, &["resolution"], reason);
+            }
+        }
+    }
+
+    /// A body lies in one solid, and so on one spacing.
+    fn bodies(&self) {
+        if self.report.has_any(&["shape", "solid"]) {
+            return;
+        }
+        let shapes = &self.scene.shapes;
+        for (index, shape) in shapes.iter().enumerate().filter(|(_, shape)| !shape.body.is_empty()) {
+            let unsaid_or_before = |k: usize| k < index || shapes[k].body.is_empty();
+            let other = shapes.iter().enumerate().find(|(k, s)| {
+                s.body() == shape.body && s.solid.is_some() && s.solid != shape.solid && unsaid_or_before(*k)
+            });
+            if let Some((other, solid)) = other.and_then(|(_, s)| Some((s, self.scene.solids.get(s.solid?)?)))
+            {
+                let reason = format!(
+                    "is also the body of `{}`, which is of the solid `{}`: a body lies in one solid, and so on one \
+                     spacing",
+                    other.name, solid.name
+                );
+                self.report.among(self.root, &format!("{}.body", self.shape_key(index)), &[], reason);
             }
         }
     }

@@ -4,23 +4,37 @@
 //! lowest corner and has round(extent / dx) cells along each axis; a disc's or ring's is symmetric about its centre.
 //! [`Lattice`] says whether particles sit at the cells' centres or at their corners.
 //!
+//! A polygon of solid has a lattice along its longest side, one of fluid along the axes; a wall has rows parallel to its
+//! sides. A shape that is turned takes its lattice along.
+//!
 //! Where shapes overlap, the solid wins over the wall, the wall over the fluid, and in one phase the shape that comes
 //! first in the file. The loser has no particle inside the winner nor closer than dx / 2 (the mean where spacings
 //! differ) to one of its particles.
 
+mod moved;
 mod nearest;
 mod occupied;
+mod outline;
+mod pieces;
 mod plate;
 mod points;
+mod polygon;
+mod region;
 #[cfg(test)]
 mod tests;
 
 use crate::{Block, CantileverMode, Geometry, Lattice, Motion, Phase, Scene, Shape, dispatch};
+pub use moved::Moved;
 pub use nearest::nearest;
 use occupied::Occupied;
+pub(crate) use outline::extent;
+pub use pieces::{pieces, touching};
 pub use plate::Plate;
 pub(crate) use plate::least_thickness;
 use points::Spacing;
+pub(crate) use polygon::Fault;
+pub use polygon::{MAX_CORNERS, Polygon};
+use region::{Region, voids_before};
 
 /// Relative tolerance of every comparison of lengths, in spacings.
 const TOLERANCE: f64 = 1e-9;
@@ -50,6 +64,8 @@ pub struct SolidPoint<const D: usize> {
     pub clamped: bool,
     /// Index of its shape in [`Scene::shapes`].
     pub body: u32,
+    /// Of a shape that is repeated, which copy.
+    pub copy: u32,
 }
 
 /// A wall particle.
@@ -128,22 +144,37 @@ impl Counts {
 /// # Panics
 /// Where `D` is not the scene's dimension.
 pub fn layout<const D: usize>(scene: &Scene) -> Layout<D> {
+    of_phases(scene, &[Phase::Solid, Phase::Wall, Phase::Fluid])
+}
+
+/// Places the solid particles of a scene.
+pub(crate) fn solids<const D: usize>(scene: &Scene) -> Layout<D> {
+    of_phases(scene, &[Phase::Solid])
+}
+
+/// Places the particles of the first of the phases, which lose nothing to later ones.
+fn of_phases<const D: usize>(scene: &Scene, phases: &[Phase]) -> Layout<D> {
     assert_eq!(D, scene.dimension, "layout of another dimension than the scene's");
     let mut layout = Layout { fluid: Vec::new(), solid: Vec::new(), wall: Vec::new() };
     let widest = scene.shapes.iter().map(|shape| scene.spacing(shape)).fold(scene.resolution, f64::max);
     let mut occupied = Occupied::new(widest);
-    for phase in [Phase::Solid, Phase::Wall, Phase::Fluid] {
+    for &phase in phases {
         for (index, shape) in scene.shapes.iter().enumerate().filter(|(_, s)| s.phase == phase) {
             let spacing = Spacing::of(scene, shape);
-            let mut kept = points::of_shape::<D>(&shape.geometry, spacing);
-            kept.retain(|p| occupied.is_free(&p.position, spacing.dx));
-            occupied.add(&shape.geometry, spacing, phase, kept.iter().map(|p| p.position));
+            let region = Region::new(&shape.geometry, spacing, &voids_before(scene, index));
+            let mut kept = points::with_copies::<D>(&shape.geometry, spacing);
+            kept.retain(|(p, _)| !region.is_void(&p.position) && occupied.is_free(&p.position, spacing.dx));
+            occupied.add(region, spacing, phase, kept.iter().map(|(p, _)| p.position));
             let velocity = truncated(shape.velocity);
             match phase {
                 Phase::Solid => {
-                    layout.solid.extend(kept.iter().map(|p| solid_point(scene, shape, index, p.position)));
+                    let point = |(p, copy): &(points::Point<D>, u32)| SolidPoint {
+                        copy: *copy,
+                        ..solid_point(scene, shape, index, p.position)
+                    };
+                    layout.solid.extend(kept.iter().map(point));
                 }
-                Phase::Wall => layout.wall.extend(kept.iter().map(|p| WallPoint {
+                Phase::Wall => layout.wall.extend(kept.iter().map(|(p, _)| WallPoint {
                     position: p.position,
                     velocity,
                     normal: p.normal,
@@ -152,7 +183,7 @@ pub fn layout<const D: usize>(scene: &Scene) -> Layout<D> {
                     contact: shape.contact,
                     shape: index as u32,
                 })),
-                Phase::Fluid => layout.fluid.extend(kept.iter().map(|p| FluidPoint {
+                Phase::Fluid => layout.fluid.extend(kept.iter().map(|(p, _)| FluidPoint {
                     position: p.position,
                     velocity: added(velocity, field_velocity(scene, shape, &p.position)),
                     pressure: initial_pressure(scene, shape, &p.position),
@@ -164,9 +195,13 @@ pub fn layout<const D: usize>(scene: &Scene) -> Layout<D> {
     layout
 }
 
-/// Number of particles that a shape would have if it were alone.
-pub fn particles_alone<const D: usize>(scene: &Scene, shape: &Shape) -> usize {
-    points::of_shape::<D>(&shape.geometry, Spacing::of(scene, shape)).len()
+/// Number of particles that the shape of that index would have if there were nothing but it and the voids before it.
+pub fn particles_alone<const D: usize>(scene: &Scene, index: usize) -> usize {
+    let shape = &scene.shapes[index];
+    let spacing = Spacing::of(scene, shape);
+    let region = Region::new(&shape.geometry, spacing, &voids_before(scene, index));
+    let points = points::of_shape::<D>(&shape.geometry, spacing);
+    points.iter().filter(|p| !region.is_void(&p.position)).count()
 }
 
 /// The numbers of particles from the shapes' sizes, without placing any: overlaps count twice, curved shapes by
@@ -228,6 +263,9 @@ pub fn bounding_box(shape: &Shape, scene: &Scene) -> Block {
             }
             block
         }
+        Geometry::Polygon(_) | Geometry::Moved(_) => {
+            outline::bounding_box(&shape.geometry, scene.dimension, Spacing::of(scene, shape).thickness())
+        }
     }
 }
 
@@ -243,6 +281,11 @@ pub fn distance(geometry: &Geometry, at: &[f64; 3]) -> f64 {
         Geometry::Ring { center, inner, outer } => {
             let r = from(center);
             (inner - r).max(r - outer).max(0.0)
+        }
+        Geometry::Polygon(polygon) => polygon.distance(&[at[0], at[1]]),
+        Geometry::Moved(moved) => {
+            let distances = moved.copies().map(|copy| distance(&moved.geometry, &moved.back(copy, *at)));
+            distances.fold(f64::INFINITY, f64::min)
         }
     }
 }
@@ -282,7 +325,13 @@ fn solid_point<const D: usize>(
     if let (Some(mode), Some(solid)) = (&shape.cantilever_mode, solid) {
         velocity[1] += cantilever_velocity(mode, solid.sound_speed(), position[0]);
     }
-    SolidPoint { position, velocity: if clamped { [0.0; D] } else { velocity }, clamped, body: index as u32 }
+    SolidPoint {
+        position,
+        velocity: if clamped { [0.0; D] } else { velocity },
+        clamped,
+        body: index as u32,
+        copy: 0,
+    }
 }
 
 /// Whether a point lies in a box, its surface included, or within `tolerance` (m) of it.
@@ -339,6 +388,10 @@ fn hydrostatic<const D: usize>(scene: &Scene, shape: &Shape, position: &[f64; D]
             let size = (0..D).map(|a| g[a] * g[a]).sum::<f64>().sqrt();
             (0..D).map(|a| g[a] * center[a]).sum::<f64>() - size * outer
         }
+        Geometry::Polygon(_) | Geometry::Moved(_) => {
+            let thickness = Spacing::of(scene, shape).thickness();
+            outline::extent(&shape.geometry, D, thickness, scene.gravity)[0]
+        }
     };
     let here: f64 = (0..D).map(|a| g[a] * position[a]).sum();
     density * (here - highest).max(0.0)
@@ -354,6 +407,7 @@ impl Spacing {
             dx: scene.spacing(shape),
             nodal: scene.numerics.lattice == Lattice::Nodal,
             wall: shape.phase == Phase::Wall,
+            aligned: shape.phase == Phase::Solid,
             support: 2.0 * scene.smoothing_ratio,
         }
     }

@@ -38,6 +38,7 @@ mod participant;
 mod preset;
 mod probe;
 mod read;
+mod read_geometry;
 mod read_metric;
 mod read_motion;
 mod read_probe;
@@ -50,6 +51,7 @@ mod solid_json;
 mod spacing;
 mod velocity_field;
 
+pub use bodies::Body;
 pub use effect::{Decision, Derived, EffectName, Switch};
 pub use energy::EnergyPart;
 pub use error::{Place, SceneError, SceneErrors};
@@ -103,6 +105,9 @@ pub struct Scene {
     pub output: Output,
     /// Where the particles are at first.
     pub shapes: Vec<Shape>,
+    /// Places without particles.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub voids: Vec<Void>,
     /// Probes.
     pub probes: Vec<Probe>,
     /// Curves of the literature drawn beside the probes.
@@ -247,6 +252,9 @@ pub struct Shape {
     /// Solid only: the wall that each clamp moves with, by its name; empty where none moves.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub clamp_with: Vec<Option<String>>,
+    /// Solid only: the body that it is part of; its own where it is empty.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub body: String,
     /// Prescribed motion of a wall, or of a solid's clamps.
     #[serde(default)]
     pub motion: Option<Motion>,
@@ -256,6 +264,17 @@ pub struct Shape {
     pub free_slip: bool,
     /// Fluid only: start with hydrostatic pressure below the shape's highest point.
     pub hydrostatic: bool,
+}
+
+/// A place that stays empty of all shapes that stand after it in the file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Void {
+    /// Its name.
+    pub name: String,
+    /// Where it is.
+    pub geometry: Geometry,
+    /// Number of shapes before it in the file.
+    pub before: usize,
 }
 
 /// An axis-parallel box.
@@ -296,6 +315,27 @@ pub enum Geometry {
         /// Sides left out.
         open: Vec<TankSide>,
     },
+    /// A region that straight sides bound (2D).
+    Polygon(geometry::Polygon),
+    /// Another geometry, turned, shifted or repeated.
+    Moved(geometry::Moved),
+}
+
+impl Shape {
+    /// The body that a solid shape is part of.
+    pub fn body(&self) -> &str {
+        if self.body.is_empty() { &self.name } else { &self.body }
+    }
+}
+
+impl Geometry {
+    /// The geometry before it was turned, shifted or repeated.
+    pub fn unmoved(&self) -> &Self {
+        match self {
+            Self::Moved(moved) => moved.geometry.unmoved(),
+            _ => self,
+        }
+    }
 }
 
 /// A side of a box.

@@ -80,6 +80,9 @@ pub fn parse_with(
         resources::check_reach(&draft.scene, &root, &report);
     }
     if report.is_empty() {
+        draft.scene.touch_free_bodies(&draft.contact_said);
+    }
+    if report.is_empty() {
         resources::check_clamps(&draft.scene, &root, &report);
     }
     if report.is_empty() {

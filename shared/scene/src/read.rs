@@ -15,6 +15,8 @@ pub(super) struct Draft {
     pub(super) sound_speed_auto: bool,
     /// The fluid's A is the default, of which its own viscosity is to be taken off.
     pub(super) linear_auto: bool,
+    /// Whether each shape says its `contact`.
+    pub(super) contact_said: Vec<bool>,
 }
 
 pub(crate) const SMOOTHING: Range = Range::at_least(1.0)
@@ -50,10 +52,16 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&s
     let solids = read_solid::solids(&top, defaults.with_treatment(interface.treatment), &numerics);
     let names: Vec<&str> = solids.iter().map(|s| s.name.as_str()).collect();
     let tables = top.tables("shape");
-    let contact_said: Vec<bool> = tables.iter().map(|shape| shape.node("contact").is_some()).collect();
     let folder = path.parent().unwrap_or(Path::new(""));
-    let shape = |s| read_shape::shape(s, dimension, &names, numerics.lattice, folder);
-    let shapes: Vec<Shape> = tables.into_iter().map(shape).collect();
+    let (mut shapes, mut voids, mut contact_said) = (Vec::new(), Vec::new(), Vec::new());
+    for table in tables {
+        if read_shape::is_void(&table) {
+            voids.push(read_shape::void(table, dimension, shapes.len(), folder));
+            continue;
+        }
+        contact_said.push(table.node("contact").is_some());
+        shapes.push(read_shape::shape(table, dimension, &names, numerics.lattice, folder));
+    }
     let probe = |p| read_probe::probe(p, dimension, &names, &shapes);
     let probes = top.tables("probe").into_iter().filter_map(probe).collect();
     let (effects, own_effects) = effects(&top, &defaults, own_effects);
@@ -76,6 +84,7 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&s
         interface,
         output: output(top.section("output"), end_time),
         shapes,
+        voids,
         probes,
         references: top
             .tables("reference")
@@ -88,11 +97,10 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&s
         numerics,
     };
     scene.share_spacings();
-    scene.touch_free_bodies(&contact_said);
     // Its values stand where formulas were.
     top.node("parameters");
     top.finish();
-    Draft { scene, sound_speed_auto, linear_auto }
+    Draft { scene, sound_speed_auto, linear_auto, contact_said }
 }
 
 fn fixed(step: TimeStep) -> Option<f64> {

@@ -279,7 +279,7 @@ fn columns<'n>(section: &Section<'n>) -> Option<[&'n str; 2]> {
 }
 
 /// Two columns of a file with comments (`#`) and a line of titles; rows without the value are left out.
-fn read_csv(path: &Path, time: &str, value: &str) -> Result<Vec<[f64; 2]>, String> {
+pub(super) fn read_csv(path: &Path, time: &str, value: &str) -> Result<Vec<[f64; 2]>, String> {
     let rows = read_columns(path, &[time, value])?;
     Ok(rows.into_iter().map(|row| [row[0], row[1]]).collect())
 }

@@ -2,12 +2,10 @@
 
 use super::document::Value;
 use super::error::listed;
+use super::read_geometry;
 use super::section::{Range, Section};
 use super::*;
 use std::path::Path;
-
-pub(super) const PHASES: [(&str, Phase); 3] =
-    [("fluid", Phase::Fluid), ("solid", Phase::Solid), ("wall", Phase::Wall)];
 
 const SIDES: [(&str, TankSide); 6] = [
     ("left", TankSide::Left),
@@ -18,10 +16,34 @@ const SIDES: [(&str, TankSide); 6] = [
     ("front", TankSide::Front),
 ];
 
-const GEOMETRIES: [&str; 4] = ["box", "disc", "ring", "tank"];
+const GEOMETRIES: [&str; 6] = ["box", "disc", "ring", "tank", "polygon", "outline"];
 
 /// Most particles across a shape.
 const MAX_ACROSS: u32 = 100_000;
+
+/// Phases of shapes; a void has none.
+const SHAPE_PHASES: [(&str, Option<Phase>); 4] = [
+    ("fluid", Some(Phase::Fluid)),
+    ("solid", Some(Phase::Solid)),
+    ("wall", Some(Phase::Wall)),
+    ("void", None),
+];
+
+/// Whether a shape is a void.
+pub(super) fn is_void(section: &Section<'_>) -> bool {
+    matches!(section.node("phase").map(|node| &node.value), Some(Value::String(phase)) if phase == "void")
+}
+
+/// A void after so many shapes.
+pub(super) fn void(section: Section<'_>, dimension: usize, before: usize, folder: &Path) -> Void {
+    let geometry = geometry(&section, dimension, None, folder);
+    if let (Some(node), Geometry::Tank { .. }) = (section.node("tank"), geometry.unmoved()) {
+        section.wrong("tank", node, "only a wall can be a tank: it is the walls around a cavity");
+    }
+    let void = Void { name: name(&section), geometry, before };
+    section.finish();
+    void
+}
 
 pub(super) fn shape(
     section: Section<'_>,
@@ -30,8 +52,8 @@ pub(super) fn shape(
     lattice: Lattice,
     folder: &Path,
 ) -> Shape {
-    let phase = section.choice("phase", None, &PHASES);
-    let geometry = geometry(&section, dimension, phase);
+    let phase = section.choice("phase", None, &SHAPE_PHASES).flatten();
+    let geometry = geometry(&section, dimension, phase, folder);
     let (clamp, clamp_with) = clamp(&section, dimension);
     let shape = Shape {
         name: name(&section),
@@ -44,6 +66,7 @@ pub(super) fn shape(
         velocity_field: velocity_field(&section, dimension),
         clamp,
         clamp_with,
+        body: body(&section),
         motion: read_motion::motion(&section, dimension, folder),
         contact: section.boolean("contact", false),
         free_slip: section.choice("slip", Some(true), &[("free", true), ("none", false)]).unwrap_or(true),
@@ -54,6 +77,7 @@ pub(super) fn shape(
     for (key, owner, article) in [
         ("cantilever_mode", Phase::Solid, "a solid"),
         ("clamp", Phase::Solid, "a solid"),
+        ("body", Phase::Solid, "a solid"),
         ("solid", Phase::Solid, "a solid"),
         ("spacing", Phase::Solid, "a solid"),
         ("across", Phase::Solid, "a solid"),
@@ -76,6 +100,14 @@ pub(super) fn shape(
     }
     section.finish();
     shape
+}
+
+/// The body that a shape says it is part of; empty where it says none.
+fn body(section: &Section<'_>) -> String {
+    match section.node("body") {
+        Some(_) => named(section, "body"),
+        None => String::new(),
+    }
 }
 
 /// A solid's own spacing: `spacing`, m, or `across`, the number of particles across its thinnest side.
@@ -116,24 +148,40 @@ pub(super) fn needs_solid(section: &Section<'_>, solids: &[&str], who: &str) {
 
 /// The name of a shape or a probe: a part of dotted keys and of column titles.
 pub(super) fn name(section: &Section<'_>) -> String {
+    named(section, "name")
+}
+
+fn named(section: &Section<'_>, key: &'static str) -> String {
     let allowed = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
-    let Some(node) = section.node("name") else {
-        section.missing("name");
+    let Some(node) = section.node(key) else {
+        section.missing(key);
         return String::new();
     };
-    let Some(name) = section.string("name") else { return String::new() };
+    let Some(name) = section.string(key) else { return String::new() };
     if name.is_empty() || !name.chars().all(allowed) || name.chars().all(|c| c.is_ascii_digit()) {
-        section.wrong("name", node, "must be letters, digits, `-` and `_`, and not digits alone");
+        section.wrong(key, node, "must be letters, digits, `-` and `_`, and not digits alone");
     }
     name.to_owned()
 }
 
-fn geometry(section: &Section<'_>, dimension: usize, phase: Option<Phase>) -> Geometry {
+fn geometry(section: &Section<'_>, dimension: usize, phase: Option<Phase>, folder: &Path) -> Geometry {
+    let geometry = unmoved_geometry(section, dimension, phase, folder);
+    read_geometry::moved(section, geometry, dimension)
+}
+
+fn unmoved_geometry(
+    section: &Section<'_>,
+    dimension: usize,
+    phase: Option<Phase>,
+    folder: &Path,
+) -> Geometry {
     let given: Vec<&'static str> = GEOMETRIES.into_iter().filter(|g| section.node(g).is_some()).collect();
     let kind = match given[..] {
         [one] => one,
         [] => {
-            section.whole("has no place: it needs one of `box`, `disc`, `ring` and `tank`");
+            section.whole(
+                "has no place: it needs one of `box`, `disc`, `ring`, `tank`, `polygon` and `outline`",
+            );
             "box"
         }
         [first, second, ..] => {
@@ -142,9 +190,16 @@ fn geometry(section: &Section<'_>, dimension: usize, phase: Option<Phase>) -> Ge
             first
         }
     };
+    let nowhere = || Geometry::Box(Block { min: [f64::NAN; 3], max: [f64::NAN; 3] });
+    if kind == "polygon" || kind == "outline" {
+        return read_geometry::polygon(section, kind, folder).map_or_else(nowhere, Geometry::Polygon);
+    }
+    if let Some(node) = section.node("holes") {
+        section.wrong("holes", node, "only a `polygon` or an `outline` has holes");
+    }
     let place = section.section(kind);
     let geometry = match kind {
-        _ if !place.is_present() => Geometry::Box(Block { min: [f64::NAN; 3], max: [f64::NAN; 3] }),
+        _ if !place.is_present() => nowhere(),
         "box" => Geometry::Box(place.block(dimension)),
         "disc" => Geometry::Disc {
             center: place.vector("center", dimension, None),

@@ -153,11 +153,14 @@ fn fall(scene: &Scene, down: [f64; 3]) -> f64 {
             let ends = (0..3).map(|a| [b.min[a] * down[a], b.max[a] * down[a]]);
             ends.fold([0.0, 0.0], |[l, h], [p, q]| [l + p.min(q), h + p.max(q)])
         }
+        Geometry::Polygon(_) | Geometry::Moved(_) => {
+            geometry::extent(&shape.geometry, scene.dimension, 0.0, down)
+        }
     };
     let (mut highest, mut lowest) = (f64::INFINITY, f64::NEG_INFINITY);
     for shape in &scene.shapes {
         let [upper, lower] = ends(shape);
-        match (shape.phase, &shape.geometry) {
+        match (shape.phase, shape.geometry.unmoved()) {
             (Phase::Fluid, _) => (highest, lowest) = (highest.min(upper), lowest.max(lower)),
             // What lies in a tank may reach its floor.
             (Phase::Wall, Geometry::Tank { .. }) => lowest = lowest.max(lower),

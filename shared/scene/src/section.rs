@@ -265,7 +265,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    fn as_vector(&self, key: &str, node: &Node, dimension: usize) -> Option<[f64; 3]> {
+    pub(super) fn as_vector(&self, key: &str, node: &Node, dimension: usize) -> Option<[f64; 3]> {
         let Value::Array(items) = &node.value else {
             self.wrong_kind(key, node, &format!("an array of {dimension} numbers"));
             return None;

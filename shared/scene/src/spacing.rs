@@ -32,14 +32,20 @@ impl Scene {
     }
 }
 
-/// Spacing with which so many particles lie across a geometry's thinnest side, m.
-pub(crate) fn with_across(geometry: &Geometry, dimension: usize, lattice: Lattice, across: u32) -> f64 {
-    let thickness = match geometry {
+/// Extent of a geometry's thinnest side, m.
+pub(crate) fn thickness(geometry: &Geometry, dimension: usize) -> f64 {
+    match geometry {
         Geometry::Box(b) | Geometry::Tank { cavity: b, .. } => {
             (0..dimension).map(|a| b.max[a] - b.min[a]).fold(f64::INFINITY, f64::min)
         }
         Geometry::Disc { radius, .. } => 2.0 * radius,
         Geometry::Ring { inner, outer, .. } => outer - inner,
-    };
-    thickness / f64::from(across + u32::from(lattice == Lattice::Nodal))
+        Geometry::Polygon(polygon) => polygon.thickness().0,
+        Geometry::Moved(moved) => thickness(&moved.geometry, dimension),
+    }
+}
+
+/// Spacing with which so many particles lie across a geometry's thinnest side, m.
+pub(crate) fn with_across(geometry: &Geometry, dimension: usize, lattice: Lattice, across: u32) -> f64 {
+    thickness(geometry, dimension) / f64::from(across + u32::from(lattice == Lattice::Nodal))
 }

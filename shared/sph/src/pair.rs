@@ -155,6 +155,22 @@ impl<const D: usize> FixedPairs<D> {
         pairs
     }
 
+    /// Takes the pairs apart, by their slots, for which `apart` holds: their slopes become zero.
+    pub fn part(&mut self, apart: impl Fn(usize, usize) -> bool) {
+        let Self { list, slopes, .. } = self;
+        for (c, (chunk, slopes)) in list.chunks().iter().zip(slopes).enumerate() {
+            let clusters = (c * CHUNK_CLUSTERS..list.clusters()).take(CHUNK_CLUSTERS).enumerate();
+            let pairs = clusters.flat_map(|(k, cluster)| chunk.of(k).iter().map(move |&j| (cluster, j)));
+            for ((cluster, j), slope) in pairs.zip(slopes) {
+                for lane in 0..LANES {
+                    if apart(cluster * LANES + lane, j as usize) {
+                        slope.0[lane] = 0.0;
+                    }
+                }
+            }
+        }
+    }
+
     /// The positions.
     pub fn position(&self) -> &Vectors<D> {
         &self.position

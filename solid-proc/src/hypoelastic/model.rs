@@ -120,7 +120,10 @@ impl<const D: usize> Hypoelastic<D> {
             outer: Vec::new(),
             mass,
             material,
-            interface_set: surface_set(&layout.solid, 2.0 * scene.smoothing_ratio * scene.resolution, dx),
+            interface_set: {
+                let body = geometry::pieces(scene, &layout);
+                surface_set(&layout.solid, &body, 2.0 * scene.smoothing_ratio * scene.resolution, dx)
+            },
             shown_velocity: ShownVelocity::new(layout.solid.iter().map(|p| p.velocity)),
             points: layout.solid,
             id: (0..n as u32).collect(),

@@ -16,10 +16,11 @@ use halfstep_sph::neighbours::ClusterList;
 const LARGEST_GAIN: f64 = 2.0;
 
 /// gain - 1 at each slot; zero for clamped particles and those without clamped neighbours. `id` and `list` are the
-/// reference configuration's.
+/// reference configuration's; `body` has a number for each particle's body.
 pub(super) fn excess_gain<const D: usize>(
     scene: &Scene,
     points: &[SolidPoint<D>],
+    body: &[u32],
     id: &[u32],
     list: &ClusterList,
     reach: f64,
@@ -28,7 +29,9 @@ pub(super) fn excess_gain<const D: usize>(
     let excess = |slot: usize| -> Option<f64> {
         let i = point(slot).filter(|i| !i.clamped)?;
         let (mut sum, mut count) = (0.0, 0);
-        for j in list.of(slot / LANES).iter().filter_map(|&j| point(j as usize)).filter(|j| j.clamped) {
+        let own = |j: &&u32| body.get(id[**j as usize] as usize) == body.get(id[slot] as usize);
+        let near = list.of(slot / LANES).iter().filter(own).filter_map(|&j| point(j as usize));
+        for j in near.filter(|j| j.clamped) {
             let r2: f64 = (0..D).map(|d| (i.position[d] - j.position[d]).powi(2)).sum();
             if r2 < reach * reach {
                 let boxes = &scene.shapes[j.body as usize].clamp;

@@ -1,6 +1,6 @@
 //! Contact: what happens beyond the reference neighbours, in the present configuration.
 //!
-//! Bodies are what reference neighbours connect: shapes that touch at the start are one. Two particles of different
+//! Bodies are what reference neighbours of one name connect (`geometry::pieces`). Two particles of different
 //! bodies repel each other as soon as they are closer than the spacing dx, which is where two surfaces meet:
 //!   F_ij = k (dx - r) x_ij / r,   k = M/2 dx^(D-2),   M = K + 4 G / 3,
 //! pairwise, without friction and without loss. A body does not see itself. Walls push as they push any solid
@@ -79,7 +79,7 @@ impl<const D: usize> Contact<D> {
             (None, false) => return None,
             // The pressure at a wall comes from what is behind the surface, too.
             (Some(_), _) => (0..layout.solid.len() as u32).collect(),
-            (None, true) => surface_set(&layout.solid, 0.1 * dx, dx),
+            (None, true) => surface_set(&layout.solid, body, 0.1 * dx, dx),
         };
         let column = |of: &dyn Fn(&SolidPoint<D>) -> f64| -> Vec<f64> {
             id.iter().map(|&p| of(&layout.solid[p as usize])).collect()

@@ -152,13 +152,13 @@ impl<const D: usize> TotalLagrangian<D> {
                 velocity[d][slot] = point.velocity[d];
             }
         }
+        let body = geometry::pieces(scene, &layout);
         let rigid_clamps = takes_part(scene, solid, EffectName::ClampFace);
         let excess_gain = if rigid_clamps {
-            clamp::excess_gain(scene, points, &id, &list, reach)
+            clamp::excess_gain(scene, points, &body, &id, &list, reach)
         } else {
             vec![0.0; slots]
         };
-        let body = bodies(&position, &id, &list, reach);
         let contact = Contact::new(scene, solid, &material, &layout, &body);
         let alpha = keys.hourglass.unwrap_or_else(|| {
             with_kernel!(scene.numerics.kernel, h, D, |k| hourglass::from_bending(
@@ -176,6 +176,10 @@ impl<const D: usize> TotalLagrangian<D> {
             velocity,
             memory: Memory::new(slots, arms.len()),
         };
+        let mut pairs =
+            with_kernel!(scene.numerics.kernel, h, D, |k| FixedPairs::new(isa, k, position, list));
+        let body_at = |slot: usize| body.get(id[slot] as usize);
+        pairs.part(|i, j| body_at(i).zip(body_at(j)).is_some_and(|(a, b)| a != b));
         let mut model = Self {
             law: Law::new(&material, keys.material, keys.plane),
             arms,
@@ -194,7 +198,7 @@ impl<const D: usize> TotalLagrangian<D> {
             mass,
             hourglass_modulus: alpha * material.shear_modulus(),
             rigid_clamps,
-            interface_set: surface_set(points, 2.0 * scene.smoothing_ratio * scene.resolution, dx),
+            interface_set: surface_set(points, &body, 2.0 * scene.smoothing_ratio * scene.resolution, dx),
             at_n: now.clone(),
             shown_velocity: ShownVelocity::new(layout.solid.iter().map(|p| p.velocity)),
             load: vectors(slots),
@@ -207,7 +211,7 @@ impl<const D: usize> TotalLagrangian<D> {
             correction: vec![Matrix::zeros(); slots],
             hourglass: vec![0.0; slots],
             fixed: Fixed { clamped, excess_gain },
-            pairs: with_kernel!(scene.numerics.kernel, h, D, |k| FixedPairs::new(isa, k, position, list)),
+            pairs,
             points: layout.solid,
             now,
             material,
@@ -364,30 +368,6 @@ fn in_plane(poissons_ratio: f64, plane: Plane) -> f64 {
         Plane::Strain => poissons_ratio,
         Plane::Stress => poissons_ratio / (1.0 + poissons_ratio),
     }
-}
-
-/// A number for each particle's body: what neighbours within reach connect.
-fn bodies<const D: usize>(x: &Vectors<D>, id: &[u32], list: &ClusterList, reach: f64) -> Vec<u32> {
-    fn root(parent: &mut [u32], mut p: u32) -> u32 {
-        while parent[p as usize] != p {
-            parent[p as usize] = parent[parent[p as usize] as usize];
-            p = parent[p as usize];
-        }
-        p
-    }
-    let n = id.iter().filter(|&&p| p != PADDING).count() as u32;
-    let mut parent: Vec<u32> = (0..n).collect();
-    for i in (0..id.len()).filter(|&i| id[i] != PADDING) {
-        for &j in list.of(i / LANES) {
-            let j = j as usize;
-            let r2: f64 = (0..D).map(|d| (x[d][i] - x[d][j]).powi(2)).sum();
-            if r2 < reach * reach {
-                let (a, b) = (root(&mut parent, id[i]), root(&mut parent, id[j]));
-                parent[a.max(b) as usize] = a.min(b);
-            }
-        }
-    }
-    (0..n).map(|p| root(&mut parent, p)).collect()
 }
 
 impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {

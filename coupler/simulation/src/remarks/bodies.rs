@@ -1,7 +1,10 @@
-//! Remarks on bodies: what holds them, what they stand on, what they are joined with.
+//! Remarks on bodies: what holds them, what they stand on, what they touch.
 
 use halfstep_scene::geometry::Layout;
-use halfstep_scene::{Block, EffectName, Phase, Scene, Shape, Switch, geometry};
+use halfstep_scene::{Block, Body, EffectName, Phase, Scene, Shape, SolidModelName, Switch, geometry};
+
+/// Most bodies that are listed.
+const MOST_LISTED: usize = 8;
 
 /// Clamps keep their place while a wall around them moves away.
 pub(super) fn clamps(scene: &Scene, all: &mut Vec<String>) {
@@ -33,24 +36,28 @@ fn meet(a: &Block, b: &Block, scene: &Scene) -> bool {
 }
 
 /// Bodies that no clamp holds, where walls do not stop them.
-pub(super) fn free(scene: &Scene, all: &mut Vec<String>) {
+pub(super) fn free(scene: &Scene, bodies: &[Body], all: &mut Vec<String>) {
     let walls = || scene.shapes.iter().filter(|shape| shape.phase == Phase::Wall);
     if walls().next().is_none() {
         return;
     }
-    for body in scene.bodies().into_iter().filter(|body| !scene.is_held(body)) {
-        let name = names(scene, &body);
+    for body in bodies.iter().filter(|body| body.clamped == 0) {
+        let name = names(scene, body);
+        let mut say = |text: String| {
+            // Copies of one shape say the same.
+            if !all.contains(&text) {
+                all.push(text);
+            }
+        };
         if scene.switch(EffectName::WallContact) == Switch::Off {
-            all.push(format!(
-                "{name} is held by no clamp, and effects.wall-contact is \"off\": no wall stops it"
-            ));
+            say(format!("{name} is held by no clamp, and effects.wall-contact is \"off\": no wall stops it"));
             continue;
         }
         let through: Vec<String> =
             walls().filter(|wall| !wall.contact).map(|wall| format!("`{}`", wall.name)).collect();
         if !through.is_empty() {
             let (are, them) = if through.len() == 1 { ("does", "it") } else { ("do", "them") };
-            all.push(format!(
+            say(format!(
                 "{name} is held by no clamp, and {} {are} not stop it (contact is false): it goes through {them}",
                 through.join(" and ")
             ));
@@ -58,31 +65,51 @@ pub(super) fn free(scene: &Scene, all: &mut Vec<String>) {
     }
 }
 
-/// Shapes of one solid that touch are one piece.
-pub(super) fn joined(scene: &Scene, all: &mut Vec<String>) {
-    for body in scene.bodies().into_iter().filter(|body| body.len() > 1) {
-        let clamped = body.iter().filter(|&&k| !scene.shapes[k].clamp.is_empty()).count();
-        // A held and a free shape beside each other are what is easily mistaken for two bodies.
-        let mixed = clamped > 0 && clamped < body.len();
-        let what = if mixed { ", held by the clamp of one" } else { "" };
-        all.push(format!(
-            "{} touch and are one connected piece{what}: they never part (a [[solid]] of its own parts them)",
-            names(scene, &body)
-        ));
+/// Shapes of one solid that touch: bodies of their own, or one continuum although they say otherwise.
+pub(super) fn touching<const D: usize>(
+    scene: &Scene,
+    layout: &Layout<D>,
+    bodies: &[Body],
+    all: &mut Vec<String>,
+) {
+    for (a, b) in geometry::touching(scene, layout) {
+        let (a, b) = (&scene.shapes[a], &scene.shapes[b]);
+        if a.body.is_empty() && b.body.is_empty() {
+            all.push(format!(
+                "`{}` and `{}` touch and are bodies of their own, which repel each other and may part (the same \
+                 `body` at both makes them one piece)",
+                a.name, b.name
+            ));
+        }
+    }
+    let hypoelastic = |body: &&Body| {
+        let model = body.shapes.first().and_then(|&k| scene.solids.get(scene.shapes[k].solid?));
+        model.is_some_and(|solid| solid.model.name() == SolidModelName::Hypoelastic)
+    };
+    for body in bodies.iter().filter(hypoelastic) {
+        let names_body = |&&k: &&usize| !scene.shapes[k].body.is_empty();
+        let named =
+            body.shapes.iter().find(names_body).map_or(String::new(), |_| ", whatever `body` says".into());
+        if body.shapes.len() > 1 {
+            all.push(format!(
+                "{} touch and are one continuum of the hypoelastic model{named}: they never part",
+                names(scene, body)
+            ));
+        }
     }
 }
 
 /// Bodies lighter than the fluid that stand on a wall: no fluid fits below them that could lift them.
-pub(super) fn standing<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
+pub(super) fn standing<const D: usize>(scene: &Scene, layout: &Layout<D>, bodies: &[Body], all: &mut Vec<String>) {
     let size = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
     let Some(fluid) = scene.fluid.as_ref().filter(|_| size > 0.0) else { return };
     let down = |x: &[f64; D]| (0..D).map(|d| x[d] * scene.gravity[d]).sum::<f64>() / size;
-    for body in scene.bodies().into_iter().filter(|body| !scene.is_held(body)) {
-        let Some(solid) = scene.shapes[body[0]].solid else { continue };
+    for body in bodies.iter().filter(|body| body.clamped == 0) {
+        let Some(solid) = scene.shapes[body.shapes[0]].solid else { continue };
         if scene.solids[solid].density >= fluid.density {
             continue;
         }
-        let own = |p: &&geometry::SolidPoint<D>| body.contains(&(p.body as usize));
+        let own = |p: &&geometry::SolidPoint<D>| body.shapes.contains(&(p.body as usize));
         let lowest =
             layout.solid.iter().filter(own).map(|p| down(&p.position)).fold(f64::NEG_INFINITY, f64::max);
         let reach = 1.1 * scene.interface_spacing(solid);
@@ -98,14 +125,31 @@ pub(super) fn standing<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &
             all.push(format!(
                 "{} is lighter than the fluid and stands on `{}`: no fluid fits below it, so the fluid presses it down \
                  and does not lift it",
-                names(scene, &body),
+                names(scene, body),
                 scene.shapes[wall.shape as usize].name
             ));
         }
     }
 }
 
-fn names(scene: &Scene, body: &[usize]) -> String {
-    let names: Vec<String> = body.iter().map(|&k| format!("`{}`", scene.shapes[k].name)).collect();
+/// The bodies in one line.
+pub(crate) fn listed(scene: &Scene, bodies: &[Body]) -> String {
+    let one = |body: &Body| {
+        let held = match body.clamped {
+            0 => "free".to_owned(),
+            n => format!("{n} clamped"),
+        };
+        format!("{}: {} particles, {held}", names(scene, body).replace('`', ""), body.particles)
+    };
+    let shown: Vec<String> = bodies.iter().take(MOST_LISTED).map(one).collect();
+    let more = match bodies.len().saturating_sub(MOST_LISTED) {
+        0 => String::new(),
+        n => format!("; {n} more"),
+    };
+    format!("{}{more}", shown.join("; "))
+}
+
+fn names(scene: &Scene, body: &Body) -> String {
+    let names: Vec<String> = body.shapes.iter().map(|&k| format!("`{}`", scene.shapes[k].name)).collect();
     names.join(" and ")
 }

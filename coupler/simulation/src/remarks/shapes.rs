@@ -1,7 +1,7 @@
 //! Every shape as asked and as computed.
 
 use halfstep_scene::geometry::{Layout, Plate};
-use halfstep_scene::{Geometry, Phase, Scene, Shape};
+use halfstep_scene::{Geometry, Phase, Scene};
 use std::fmt;
 
 /// From which relative difference on a size is remarked.
@@ -31,6 +31,8 @@ pub(crate) struct Placed {
     rows: Option<f64>,
     /// A wall's motion.
     moves: bool,
+    /// Of its sizes.
+    unit: &'static str,
 }
 
 /// The shapes of a scene, in its order.
@@ -42,32 +44,44 @@ pub(crate) fn placed<const D: usize>(scene: &Scene, layout: &Layout<D>) -> Vec<P
         let [particles, held] = &mut counts[shape as usize];
         (*particles, *held) = (*particles + 1, *held + usize::from(clamped));
     }
-    scene.shapes.iter().zip(counts).map(|(shape, counts)| of_shape::<D>(scene, shape, counts)).collect()
+    counts.into_iter().enumerate().map(|(index, counts)| of_shape::<D>(scene, index, counts)).collect()
 }
 
 /// Of so many particles, and so many of them that a clamp holds.
-fn of_shape<const D: usize>(scene: &Scene, shape: &Shape, [particles, clamped]: [usize; 2]) -> Placed {
+fn of_shape<const D: usize>(scene: &Scene, index: usize, [particles, clamped]: [usize; 2]) -> Placed {
+    let shape = &scene.shapes[index];
     let dx = scene.spacing(shape);
     let density = match shape.phase {
         Phase::Solid => shape.solid.and_then(|k| scene.solids.get(k)).map_or(0.0, |solid| solid.density),
         Phase::Fluid => scene.fluid.as_ref().map_or(0.0, |fluid| fluid.density),
         Phase::Wall => 0.0,
     };
-    let whole = halfstep_scene::geometry::particles_alone::<D>(scene, shape);
+    let whole = halfstep_scene::geometry::particles_alone::<D>(scene, index);
     let cells = |extent: f64| (extent / dx).round() * dx;
-    let (asked, computed) = match &shape.geometry {
+    let copies = match &shape.geometry {
+        Geometry::Moved(moved) => moved.count as usize,
+        _ => 1,
+    };
+    let each = whole / copies;
+    let (asked, computed) = match shape.geometry.unmoved() {
         Geometry::Box(b) | Geometry::Tank { cavity: b, .. } => {
             let asked: Vec<f64> = (0..D).map(|a| b.max[a] - b.min[a]).collect();
             let computed = asked.iter().map(|&extent| cells(extent)).collect();
             (asked, computed)
         }
         // What has the area (volume) of its particles.
-        Geometry::Disc { radius, .. } => (vec![2.0 * radius], vec![2.0 * equivalent_radius::<D>(whole, dx)]),
+        Geometry::Disc { radius, .. } => (vec![2.0 * radius], vec![2.0 * equivalent_radius::<D>(each, dx)]),
         Geometry::Ring { inner, outer, .. } => {
             let hole = inner.powi(D as i32);
-            let radius = (equivalent_radius::<D>(whole, dx).powi(D as i32) + hole).powf(1.0 / D as f64);
+            let radius = (equivalent_radius::<D>(each, dx).powi(D as i32) + hole).powf(1.0 / D as f64);
             (vec![outer - inner], vec![radius - inner])
         }
+        // Of a wall's inside there are only the rows that the kernel reaches.
+        Geometry::Polygon(polygon) if shape.phase == Phase::Wall => {
+            (vec![polygon.area()], vec![polygon.area()])
+        }
+        Geometry::Polygon(polygon) => (vec![polygon.area()], vec![each as f64 * dx.powi(D as i32)]),
+        Geometry::Moved(_) => (Vec::new(), Vec::new()),
     };
     Placed {
         name: shape.name.clone(),
@@ -80,6 +94,7 @@ fn of_shape<const D: usize>(scene: &Scene, shape: &Shape, [particles, clamped]: 
         mass: density * particles as f64 * dx.powi(D as i32),
         rows: Plate::<D>::of(scene, shape).map(|plate| plate.rows),
         moves: shape.motion.is_some(),
+        unit: if matches!(shape.geometry.unmoved(), Geometry::Polygon(_)) { "m²" } else { "m" },
     }
 }
 
@@ -105,9 +120,9 @@ impl fmt::Display for Placed {
             Phase::Solid => "solid",
             Phase::Wall => "wall",
         };
-        write!(f, "{phase:<7}{} m", size(&self.asked))?;
+        write!(f, "{phase:<7}{} {}", size(&self.asked), self.unit)?;
         if self.worst().is_some_and(|(_, factor)| (factor - 1.0).abs() >= 5e-4) {
-            write!(f, " asked, {} m computed", size(&self.computed))?;
+            write!(f, " asked, {} {} computed", size(&self.computed), self.unit)?;
         }
         write!(f, "; {} particles", self.particles)?;
         if self.lost > 0 {
@@ -141,21 +156,22 @@ pub(super) fn sizes(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
         let Some((axis, factor)) = shape.worst().filter(|(_, factor)| (factor - 1.0).abs() >= NOTABLE) else {
             continue;
         };
-        let box_ = matches!(of_scene.geometry, Geometry::Box(_));
+        let box_ = matches!(of_scene.geometry.unmoved(), Geometry::Box(_));
         if shape.phase == Phase::Wall && box_ {
             // A wall's thickness is nobody's question.
             continue;
         }
         let (asked, computed) = (length(shape.asked[axis]), length(shape.computed[axis]));
-        let what = match &of_scene.geometry {
+        let what = match of_scene.geometry.unmoved() {
             Geometry::Box(_) | Geometry::Tank { .. } => ["wide", "high", "deep"][axis],
             Geometry::Disc { .. } => "across",
             Geometry::Ring { .. } => "thick",
+            _ => "large",
         };
         let thin = shape.rows.is_some() && shape.asked.iter().all(|extent| *extent >= shape.asked[axis]);
         let stiffness = match thin {
-            true => format!(": {:.2} times the bending stiffness", factor.powi(3)),
-            false => String::new(),
+            true if shape.unit == "m" => format!(": {:.2} times the bending stiffness", factor.powi(3)),
+            _ => String::new(),
         };
         let dx = scene.spacing(of_scene);
         let remedy = match shape.phase {
@@ -163,8 +179,9 @@ pub(super) fn sizes(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
             _ => format!(" (the resolution is {})", length(dx)),
         };
         all.push(format!(
-            "`{}` is {asked} m {what} in the scene and {computed} m as computed{stiffness}{remedy}",
-            shape.name
+            "`{}` is {asked} {unit} {what} in the scene and {computed} {unit} as computed{stiffness}{remedy}",
+            shape.name,
+            unit = shape.unit
         ));
     }
 }

@@ -113,17 +113,20 @@ fn a_tank_of_another_width() {
 }
 
 #[test]
-fn shapes_that_touch_are_one_piece() {
+fn shapes_that_touch_are_bodies_of_their_own() {
     let above = PLATE.replace("\"plate\"", "\"block\"").replace("0.22", "0.3").replace("[0.2,", "[0.22,");
     let free = above.lines().filter(|line| !line.starts_with("clamp")).collect::<Vec<_>>().join("\n");
     let found = plain(&[TANK, WATER, PLATE, &free]);
     assert_eq!(
         found,
         [
-            "`plate` and `block` touch and are one connected piece, held by the clamp of one: they never part (a \
-          [[solid]] of its own parts them)"
+            "`plate` and `block` touch and are bodies of their own, which repel each other and may part (the same `body` \
+          at both makes them one piece)"
         ]
     );
+    // Whoever names bodies knows.
+    let named = free.replace("phase = \"solid\"", "phase = \"solid\"\nbody = \"plate\"");
+    assert_eq!(plain(&[TANK, WATER, PLATE, &named]), [""; 0]);
 }
 
 #[test]

@@ -1,8 +1,9 @@
 //! Which places earlier shapes have taken.
 
 use super::TOLERANCE;
-use super::points::{Spacing, sides};
-use crate::{Block, Geometry, Phase};
+use super::points::Spacing;
+use super::region::Region;
+use crate::Phase;
 use std::collections::HashMap;
 use std::hash::BuildHasherDefault;
 use xxhash_rust::xxh3::Xxh3Default;
@@ -14,7 +15,7 @@ type Placed<const D: usize> = ([f64; D], f64);
 pub(super) struct Occupied<'s, const D: usize> {
     /// No smaller than any spacing, m.
     dx: f64,
-    taken: Vec<(&'s Geometry, Spacing, Phase)>,
+    taken: Vec<(Region<'s>, Spacing, Phase)>,
     cells: HashMap<[i64; D], Vec<Placed<D>>, BuildHasherDefault<Xxh3Default>>,
 }
 
@@ -26,7 +27,7 @@ impl<'s, const D: usize> Occupied<'s, D> {
     /// Takes a shape's places.
     pub(super) fn add(
         &mut self,
-        geometry: &'s Geometry,
+        region: Region<'s>,
         spacing: Spacing,
         phase: Phase,
         positions: impl Iterator<Item = [f64; D]>,
@@ -34,7 +35,7 @@ impl<'s, const D: usize> Occupied<'s, D> {
         for position in positions {
             self.cells.entry(self.cell(&position)).or_default().push((position, spacing.dx));
         }
-        self.taken.push((geometry, spacing, phase));
+        self.taken.push((region, spacing, phase));
     }
 
     /// Whether no shape holds this place and no particle is closer than half the mean of its spacing and `own`, m.
@@ -42,10 +43,10 @@ impl<'s, const D: usize> Occupied<'s, D> {
         if self.taken.is_empty() {
             return true;
         }
-        let inside = self.taken.iter().any(|(g, spacing, phase)| {
+        let inside = self.taken.iter().any(|(region, spacing, phase)| {
             // A wall's surface is its own, as it carries the wall's nodes.
             let margin = if *phase == Phase::Wall && spacing.nodal { TOLERANCE } else { -TOLERANCE };
-            contains(g, *spacing, position, margin * self.dx)
+            region.contains(position, margin * self.dx)
         });
         !inside && !self.has_neighbour(position, own)
     }
@@ -66,31 +67,5 @@ impl<'s, const D: usize> Occupied<'s, D> {
 
     fn cell(&self, position: &[f64; D]) -> [i64; D] {
         position.map(|x| (x / self.dx).floor() as i64)
-    }
-}
-
-/// Whether a geometry, grown by `margin` (shrunk where negative), holds a point.
-fn contains<const D: usize>(geometry: &Geometry, spacing: Spacing, p: &[f64; D], margin: f64) -> bool {
-    let radius = |center: &[f64; 3]| (0..D).map(|a| (p[a] - center[a]).powi(2)).sum::<f64>().sqrt();
-    match geometry {
-        Geometry::Box(block) => super::holds(block, p, margin),
-        Geometry::Disc { center, radius: outer } => radius(center) <= outer + margin,
-        Geometry::Ring { center, inner, outer } => {
-            (inner - margin..=outer + margin).contains(&radius(center))
-        }
-        Geometry::Tank { cavity, open } => {
-            let thickness = spacing.layers() as f64 * spacing.dx;
-            let mut around = Block { min: cavity.min, max: cavity.max };
-            let mut in_cavity = true;
-            for a in 0..D {
-                let [low, high] = sides(a).map(|side| !open.contains(&side));
-                around.min[a] -= if low { thickness } else { 0.0 };
-                around.max[a] += if high { thickness } else { 0.0 };
-                // Open sides do not end the cavity here: the outer box does.
-                in_cavity &= !(low && p[a] <= cavity.min[a] + margin);
-                in_cavity &= !(high && p[a] >= cavity.max[a] - margin);
-            }
-            super::holds(&around, p, margin) && !in_cavity
-        }
     }
 }

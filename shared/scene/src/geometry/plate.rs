@@ -1,9 +1,10 @@
 //! Solid shapes that are plates: how many particles they have across, and which way their faces look.
 
-use super::Spacing;
+use super::polygon::{Edges, Polygon, in_space};
+use super::{Moved, Spacing};
 use crate::{EffectName, Geometry, Phase, Scene, Shape, Switch, Treatment};
 
-/// A box or ring that is longer than thick.
+/// A box, ring or polygon that is longer than thick.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plate<const D: usize> {
     /// Name of its shape.
@@ -19,8 +20,25 @@ pub struct Plate<const D: usize> {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Kind<const D: usize> {
-    Box { low: [f64; D], high: [f64; D], across: usize },
-    Ring { center: [f64; D], inner: f64, outer: f64 },
+    Box {
+        low: [f64; D],
+        high: [f64; D],
+        across: usize,
+    },
+    Ring {
+        center: [f64; D],
+        inner: f64,
+        outer: f64,
+    },
+    /// Where it is thinner than `limit`, m.
+    Polygon {
+        edges: Box<Edges>,
+        limit: f64,
+    },
+    Moved {
+        moved: Moved,
+        plate: Box<Plate<D>>,
+    },
 }
 
 impl<const D: usize> Plate<D> {
@@ -29,8 +47,12 @@ impl<const D: usize> Plate<D> {
         if shape.phase != Phase::Solid {
             return None;
         }
+        Self::of_geometry(scene, shape, &shape.geometry)
+    }
+
+    fn of_geometry(scene: &Scene, shape: &Shape, geometry: &Geometry) -> Option<Self> {
         let spacing = Spacing::of(scene, shape);
-        let (kind, rows) = match &shape.geometry {
+        let (kind, rows) = match geometry {
             Geometry::Box(block) => {
                 let extent = |a: usize| block.max[a] - block.min[a];
                 let across = (0..D).min_by(|&a, &b| extent(a).total_cmp(&extent(b)))?;
@@ -48,6 +70,22 @@ impl<const D: usize> Plate<D> {
                 let center = std::array::from_fn(|a| center[a]);
                 (Kind::Ring { center, inner: *inner, outer: *outer }, (outer - inner) / spacing.dx)
             }
+            Geometry::Polygon(polygon) => {
+                let (thickness, _) = polygon.facing()?;
+                let edges = Box::new(Edges::new(polygon));
+                let longest = (0..2).map(|a| edges.high[a] - edges.low[a]).fold(0.0, f64::max);
+                if longest < 2.0 * thickness {
+                    return None;
+                }
+                // Fluid on both faces is within the support of particles between.
+                let limit = 4.0 * scene.smoothing_ratio * scene.resolution - scene.resolution;
+                (Kind::Polygon { edges, limit }, thickness / spacing.dx)
+            }
+            Geometry::Moved(moved) => {
+                let plate = Self::of_geometry(scene, shape, &moved.geometry)?;
+                let rows = plate.rows;
+                (Kind::Moved { moved: moved.clone(), plate: Box::new(plate) }, rows)
+            }
             _ => return None,
         };
         let thickness = rows * (spacing.dx / scene.resolution);
@@ -63,6 +101,11 @@ impl<const D: usize> Plate<D> {
                 let r = length(&std::array::from_fn::<_, D, _>(|a| x[a] - center[a]));
                 inner - m <= r && r <= outer + m
             }
+            Kind::Polygon { edges, limit } => {
+                let thickness = Polygon::across(edges, &[x[0], x[1]]).map(|(_, [a, b])| a + b);
+                edges.contains(&[x[0], x[1]], 0.0) && thickness.is_some_and(|thickness| thickness < *limit)
+            }
+            Kind::Moved { moved, plate } => moved.copies().any(|copy| plate.holds(&moved.back(copy, *x))),
         }
     }
 
@@ -77,6 +120,16 @@ impl<const D: usize> Plate<D> {
                 let from: [f64; D] = std::array::from_fn(|a| x[a] - center[a]);
                 let r = length(&from);
                 (from.map(|x| x / r), r - 0.5 * (inner + outer))
+            }
+            Kind::Polygon { edges, .. } => match Polygon::across(edges, &[x[0], x[1]]) {
+                Some((normal, [before, behind])) => (in_space(normal), 0.5 * (behind - before)),
+                None => ([0.0; D], 0.0),
+            },
+            Kind::Moved { moved, plate } => {
+                let within = |copy: &u32| plate.holds(&moved.back(*copy, *x));
+                let copy = moved.copies().find(within).unwrap_or(0);
+                let (normal, before) = plate.across(&moved.back(copy, *x));
+                (moved.turned(normal), before)
             }
         }
     }

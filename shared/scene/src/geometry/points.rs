@@ -1,7 +1,8 @@
 //! The lattice of one shape, and the normals of walls.
 
-use super::TOLERANCE;
+use super::{Moved, TOLERANCE, polygon};
 use crate::{Block, Geometry, TankSide};
+use std::collections::HashMap;
 
 /// How a shape is filled.
 #[derive(Clone, Copy, Debug)]
@@ -12,6 +13,8 @@ pub(super) struct Spacing {
     pub(super) nodal: bool,
     /// A wall includes the nodes on its surface.
     pub(super) wall: bool,
+    /// A polygon's lattice lies along its longest side, not along the axes.
+    pub(super) aligned: bool,
     /// Kernel support over dx.
     pub(super) support: f64,
 }
@@ -22,13 +25,18 @@ impl Spacing {
         (self.support - TOLERANCE).ceil() as i64
     }
 
+    /// Thickness of a tank's wall, m.
+    pub(super) fn thickness(&self) -> f64 {
+        self.layers() as f64 * self.dx
+    }
+
     /// Cells along an extent.
     pub(super) fn cells(&self, extent: f64) -> i64 {
         (extent / self.dx).round() as i64
     }
 
     /// Place of lattice point k, in spacings.
-    fn place(&self, k: i64) -> f64 {
+    pub(super) fn place(&self, k: i64) -> f64 {
         if self.nodal { k as f64 } else { k as f64 + 0.5 }
     }
 
@@ -73,7 +81,51 @@ pub(super) fn of_shape<const D: usize>(geometry: &Geometry, spacing: Spacing) ->
         Geometry::Disc { center, radius } => in_ring(center, -1.0, *radius, spacing),
         Geometry::Ring { center, inner, outer } => in_ring(center, *inner, *outer, spacing),
         Geometry::Tank { cavity, open } => around(cavity, open, spacing),
+        Geometry::Polygon(polygon) if spacing.wall => polygon::rows(polygon, spacing),
+        Geometry::Polygon(polygon) => polygon.fill(spacing, spacing.aligned),
+        Geometry::Moved(moved) => copies(moved, spacing).into_iter().map(|(point, _)| point).collect(),
     }
+}
+
+/// All points of a shape, each with the number of its copy.
+pub(super) fn with_copies<const D: usize>(geometry: &Geometry, spacing: Spacing) -> Vec<(Point<D>, u32)> {
+    match geometry {
+        Geometry::Moved(moved) => copies(moved, spacing),
+        _ => of_shape(geometry, spacing).into_iter().map(|point| (point, 0)).collect(),
+    }
+}
+
+/// The points of all copies; of those closer than dx / 2 to one of an earlier copy, none.
+fn copies<const D: usize>(moved: &Moved, spacing: Spacing) -> Vec<(Point<D>, u32)> {
+    let first = of_shape::<D>(&moved.geometry, spacing);
+    let mut points = Vec::with_capacity(first.len().saturating_mul(moved.count as usize));
+    let cell = |x: &[f64; D]| x.map(|x| (x / spacing.dx).floor() as i64);
+    let mut cells: HashMap<[i64; D], Vec<[f64; D]>> = HashMap::new();
+    for copy in moved.copies() {
+        let placed = first.iter().map(|point| Point {
+            position: moved.place(copy, point.position),
+            normal: moved.turned(point.normal),
+            corner: point.corner,
+        });
+        let limit = (0.5 - TOLERANCE) * spacing.dx;
+        let free = |point: &Point<D>| {
+            let home = cell(&point.position);
+            !(0..3_usize.pow(D as u32)).any(|code| {
+                let near: [i64; D] =
+                    std::array::from_fn(|a| home[a] + (code / 3_usize.pow(a as u32) % 3) as i64 - 1);
+                cells.get(&near).is_some_and(|others| {
+                    let r2 = |q: &[f64; D]| (0..D).map(|a| (q[a] - point.position[a]).powi(2)).sum::<f64>();
+                    others.iter().any(|q| r2(q) < limit * limit)
+                })
+            })
+        };
+        let kept: Vec<Point<D>> = placed.filter(free).collect();
+        for point in &kept {
+            cells.entry(cell(&point.position)).or_default().push(point.position);
+        }
+        points.extend(kept.into_iter().map(|point| (point, copy)));
+    }
+    points
 }
 
 /// Expected number of points of a shape.
@@ -88,6 +140,9 @@ pub(super) fn expected(geometry: &Geometry, spacing: Spacing, dimension: usize) 
         }
         Geometry::Disc { radius, .. } => measure(*radius).round(),
         Geometry::Ring { inner, outer, .. } => (measure(*outer) - measure(*inner)).round(),
+        // Of a wall's inside only the rows that the kernel reaches: an upper bound.
+        Geometry::Polygon(polygon) => (polygon.area() / spacing.dx.powi(2)).round(),
+        Geometry::Moved(moved) => f64::from(moved.count) * expected(&moved.geometry, spacing, dimension),
         Geometry::Tank { cavity, open } => {
             // The walls are what a box around them has more than the cavity.
             let hollow = Spacing { wall: false, ..spacing };

@@ -1,0 +1,72 @@
+use crate::{Scene, parse};
+use std::path::Path;
+
+/// A floor and solids `s0`, `s1`, ... at 1 cm: TL has h = 0.75 dx, so particles 1.5 dx apart are one continuum.
+fn scene(model: &str, shapes: &[&str]) -> Scene {
+    let head = format!(
+        "resolution = 0.01\nend_time = 1.0\n[solid]\nmodel = \"{model}\"\ndensity = 1000.0\nyoungs_modulus = 1e6\n\
+         poissons_ratio = 0.3\n[[shape]]\nname = \"floor\"\nphase = \"wall\"\n\
+         box = {{ min = [0.0, -0.1], max = [1.0, 0.0] }}\n"
+    );
+    let shape =
+        |(k, text): (usize, &&str)| format!("[[shape]]\nname = \"s{k}\"\nphase = \"solid\"\n{text}\n");
+    let text: String = shapes.iter().enumerate().map(shape).collect();
+    parse(&format!("{head}{text}"), Path::new("x.toml"), &[]).expect("a right scene")
+}
+
+fn bodies(model: &str, shapes: &[&str]) -> Vec<Vec<usize>> {
+    scene(model, shapes).bodies().into_iter().map(|body| body.shapes).collect()
+}
+
+const LEFT: &str = "box = { min = [0.0, 0.0], max = [0.1, 0.1] }";
+const BESIDE: &str = "box = { min = [0.1, 0.0], max = [0.2, 0.1] }";
+const FAR: &str = "box = { min = [0.12, 0.0], max = [0.2, 0.1] }";
+const ONE: &str = "\nbody = \"one\"";
+const HELD: &str = "\nclamp = { min = [0.1, 0.0], max = [0.2, 0.02] }";
+
+#[test]
+fn shapes_that_touch_are_one_piece_where_they_name_one_body() {
+    let tl = |shapes: &[&str]| bodies("total-lagrangian", shapes);
+    assert_eq!(tl(&[LEFT, BESIDE]), [vec![1], vec![2]]);
+    assert_eq!(tl(&[&(LEFT.to_owned() + ONE), &(BESIDE.to_owned() + ONE)]), [vec![1, 2]]);
+    // What does not touch is no piece, whatever it is called.
+    assert_eq!(tl(&[&(LEFT.to_owned() + ONE), &(FAR.to_owned() + ONE)]), [vec![1], vec![2]]);
+    // A hypoelastic solid is one continuum; with h = 1.33 dx also across a gap of 1 dx.
+    assert_eq!(bodies("hypoelastic", &[LEFT, BESIDE]), [vec![1, 2]]);
+    assert_eq!(bodies("hypoelastic", &[LEFT, FAR]), [vec![1], vec![2]]);
+}
+
+#[test]
+fn each_copy_is_a_body_unless_it_names_one() {
+    let row = format!("{LEFT}\nrepeat = {{ count = 3, step = [0.1, 0.0] }}");
+    assert_eq!(bodies("total-lagrangian", &[&row]), [vec![1], vec![1], vec![1]]);
+    let named = scene("total-lagrangian", &[&(row + ONE)]).bodies();
+    assert_eq!((named.len(), named[0].particles), (1, 300));
+}
+
+#[test]
+fn a_shape_that_a_void_cuts_is_two_bodies() {
+    let cut = "box = { min = [0.0, 0.0], max = [0.3, 0.1] }\n[[shape]]\nname = \"gap\"\nphase = \"void\"\n\
+               box = { min = [0.1, -1.0], max = [0.13, 1.0] }";
+    let uncut = scene("total-lagrangian", &[cut]).bodies();
+    assert_eq!((uncut.len(), uncut[0].particles), (1, 300), "a void after the shape takes nothing from it");
+    let gap = "[[shape]]\nname = \"gap\"\nphase = \"void\"\nbox = { min = [0.1, -1.0], max = [0.13, 1.0] }\n";
+    let text = "resolution = 0.01\nend_time = 1.0\n[solid]\ndensity = 1000.0\nyoungs_modulus = 1e6\n\
+                poissons_ratio = 0.3\n[[shape]]\nname = \"bar\"\nphase = \"solid\"\n\
+                box = { min = [0.0, 0.0], max = [0.3, 0.1] }\nclamp = { min = [0.0, 0.0], max = [0.01, 0.1] }\n";
+    let text = text.replace("[[shape]]\nname = \"bar\"", &format!("{gap}[[shape]]\nname = \"bar\""));
+    let bodies = parse(&text, Path::new("x.toml"), &[]).expect("a right scene").bodies();
+    let counts: Vec<_> = bodies.iter().map(|body| (body.particles, body.clamped)).collect();
+    assert_eq!(counts, [(100, 10), (170, 0)]);
+}
+
+#[test]
+fn walls_can_be_touched_where_a_body_is_free() {
+    let contact = |shapes: &[&str]| scene("total-lagrangian", shapes).shapes[0].contact;
+    let held = BESIDE.to_owned() + HELD;
+    assert!(contact(&[LEFT]));
+    assert!(contact(&[LEFT, &held]), "one of the two is free");
+    assert!(!contact(&[&held]));
+    let (one, other) = (LEFT.to_owned() + ONE, held + ONE);
+    assert!(!contact(&[&one, &other]), "one piece, and it is held");
+}

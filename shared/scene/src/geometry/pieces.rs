@@ -1,0 +1,88 @@
+//! Connected pieces of solids.
+
+use super::{Layout, SolidPoint};
+use crate::{Scene, SolidModelName};
+use std::collections::{BTreeSet, HashMap};
+
+/// What two particles must have in common to be of one piece: solid, body and copy.
+type Label<'s> = (Option<usize>, &'s str, u32);
+
+/// The body that a particle's shape names: its own one by default, each copy of a shape one. A hypoelastic solid is one
+/// continuum.
+fn label<'s, const D: usize>(scene: &'s Scene, point: &SolidPoint<D>) -> Label<'s> {
+    let shape = &scene.shapes[point.body as usize];
+    let model = shape.solid.and_then(|k| scene.solids.get(k)).map(|solid| solid.model.name());
+    match model {
+        Some(SolidModelName::Hypoelastic) => (shape.solid, "", 0),
+        _ if shape.body.is_empty() => (shape.solid, shape.body(), point.copy),
+        _ => (shape.solid, shape.body(), 0),
+    }
+}
+
+/// Calls `visit` with each pair of solid particles of one solid within the support of its kernel.
+fn each_pair<const D: usize>(scene: &Scene, layout: &Layout<D>, mut visit: impl FnMut(u32, u32)) {
+    let points = &layout.solid;
+    let solid = |point: &SolidPoint<D>| scene.shapes[point.body as usize].solid;
+    let reach_of = |point: &SolidPoint<D>| {
+        let h = solid(point).and_then(|k| scene.solids.get(k)).map_or(0.0, |solid| solid.smoothing_ratio);
+        2.0 * (h * scene.spacing(&scene.shapes[point.body as usize]))
+    };
+    let widest = points.iter().map(reach_of).fold(0.0, f64::max);
+    let cell = |x: &[f64; D]| x.map(|x| (x / widest).floor() as i64);
+    let mut cells: HashMap<[i64; D], Vec<u32>> = HashMap::new();
+    for (i, point) in points.iter().enumerate() {
+        let (home, reach) = (cell(&point.position), reach_of(point));
+        for code in 0..3_usize.pow(D as u32) {
+            let near: [i64; D] =
+                std::array::from_fn(|a| home[a] + (code / 3_usize.pow(a as u32) % 3) as i64 - 1);
+            for &j in cells.get(&near).into_iter().flatten() {
+                let other = &points[j as usize];
+                let r2: f64 = (0..D).map(|d| (point.position[d] - other.position[d]).powi(2)).sum();
+                if r2 < reach * reach && solid(point) == solid(other) {
+                    visit(i as u32, j);
+                }
+            }
+        }
+        cells.entry(home).or_default().push(i as u32);
+    }
+}
+
+/// A number for the connected piece of each solid particle, from 0 on in the order of their first particles. Particles of
+/// one body are connected where they are within the support of their solid's kernel.
+pub fn pieces<const D: usize>(scene: &Scene, layout: &Layout<D>) -> Vec<u32> {
+    let labels: Vec<Label<'_>> = layout.solid.iter().map(|point| label(scene, point)).collect();
+    let mut parent: Vec<u32> = (0..labels.len() as u32).collect();
+    each_pair(scene, layout, |i, j| {
+        if labels[i as usize] == labels[j as usize] {
+            let (a, b) = (root(&mut parent, i), root(&mut parent, j));
+            parent[a.max(b) as usize] = a.min(b);
+        }
+    });
+    let mut numbers = HashMap::new();
+    let mut number = |p| {
+        let next = numbers.len() as u32;
+        *numbers.entry(root(&mut parent, p)).or_insert(next)
+    };
+    (0..labels.len() as u32).map(&mut number).collect()
+}
+
+/// Pairs of shapes, by their indices, that touch and are different bodies of one solid.
+pub fn touching<const D: usize>(scene: &Scene, layout: &Layout<D>) -> BTreeSet<(usize, usize)> {
+    let mut pairs = BTreeSet::new();
+    let (points, bodies) = (&layout.solid, pieces(scene, layout));
+    each_pair(scene, layout, |i, j| {
+        let [a, b] = [i, j].map(|k| points[k as usize].body as usize);
+        if a != b && bodies[i as usize] != bodies[j as usize] {
+            pairs.insert((a.min(b), a.max(b)));
+        }
+    });
+    pairs
+}
+
+fn root(parent: &mut [u32], mut p: u32) -> u32 {
+    while parent[p as usize] != p {
+        parent[p as usize] = parent[parent[p as usize] as usize];
+        p = parent[p as usize];
+    }
+    p
+}

@@ -1,0 +1,173 @@
+use super::*;
+
+const DX: f64 = 0.01;
+
+fn polygon(outline: &[[f64; 2]], holes: &[&[[f64; 2]]]) -> Polygon {
+    Polygon::new(outline.to_vec(), holes.iter().map(|hole| hole.to_vec()).collect()).expect("a region")
+}
+
+fn fault(outline: &[[f64; 2]], holes: &[&[[f64; 2]]]) -> String {
+    let holes = holes.iter().map(|hole| hole.to_vec()).collect();
+    Polygon::new(outline.to_vec(), holes).expect_err("no region").reason
+}
+
+fn spacing(wall: bool, nodal: bool) -> Spacing {
+    Spacing { dx: DX, nodal, wall, aligned: !wall, support: 3.0 }
+}
+
+fn rectangle(low: [f64; 2], high: [f64; 2]) -> [[f64; 2]; 4] {
+    [low, [high[0], low[1]], high, [low[0], high[1]]]
+}
+
+/// In whole hundredths of a spacing, sorted: with normal and corner.
+fn rounded(points: &[Point<2>]) -> Vec<([i64; 2], [i64; 2], bool)> {
+    let mut all: Vec<_> = points
+        .iter()
+        .map(|p| {
+            let (x, n) =
+                (p.position.map(|x| (x / DX * 100.0).round()), p.normal.map(|n| (n * 1000.0).round()));
+            (x.map(|x| x as i64), n.map(|n| n as i64), p.corner)
+        })
+        .collect();
+    all.sort_unstable();
+    all
+}
+
+#[test]
+fn a_rectangle_is_filled_as_a_box_is() {
+    let corners = rectangle([0.02, 0.01], [0.12, 0.05]);
+    let block = crate::Block { min: [0.02, 0.01, 0.0], max: [0.12, 0.05, 0.0] };
+    for nodal in [false, true] {
+        let filled = polygon(&corners, &[]).fill::<2>(spacing(false, nodal), true);
+        let in_box =
+            crate::geometry::points::of_shape::<2>(&crate::Geometry::Box(block), spacing(false, nodal));
+        let places = |points: &[Point<2>]| rounded(points).into_iter().map(|p| p.0).collect::<Vec<_>>();
+        assert_eq!(places(&filled), places(&in_box));
+        assert_eq!(filled.len(), if nodal { 9 * 3 } else { 10 * 4 });
+    }
+}
+
+#[test]
+fn the_lattice_of_a_solid_lies_along_its_longest_side() {
+    // A bar of 20 by 4 spacings, at 30 degrees.
+    let (sin, cos) = (0.5, 0.75_f64.sqrt());
+    let turned = rectangle([0.0, 0.0], [0.2, 0.04]).map(|[x, y]| [cos * x - sin * y, sin * x + cos * y]);
+    let points = polygon(&turned, &[]).fill::<2>(spacing(false, false), true);
+    assert_eq!(points.len(), 20 * 4);
+    let back = points.iter().map(|p| p.position).map(|[x, y]| [cos * x + sin * y, cos * y - sin * x]);
+    let off = |x: f64| (x / DX - 0.5).rem_euclid(1.0).min(1.0 - (x / DX - 0.5).rem_euclid(1.0));
+    assert!(back.flatten().all(|x| off(x) < 1e-9), "every particle in the middle of a cell along the bar");
+}
+
+#[test]
+fn rows_around_a_cavity_are_those_of_a_tank() {
+    let cavity = crate::Block { min: [0.0; 3], max: [0.1, 0.06, 0.0] };
+    let tank = crate::Geometry::Tank { cavity, open: Vec::new() };
+    let around = rectangle([-1.0, -1.0], [1.0, 1.0]);
+    let hole = rectangle([0.0, 0.0], [0.1, 0.06]);
+    for nodal in [false, true] {
+        let of_tank = crate::geometry::points::of_shape::<2>(&tank, spacing(true, nodal));
+        let mut rows = rows::<2>(&polygon(&around, &[&hole]), spacing(true, nodal));
+        rows.retain(|p| p.position.iter().all(|x| x.abs() < 0.5));
+        assert_eq!(rounded(&rows), rounded(&of_tank), "nodal: {nodal}");
+    }
+}
+
+#[test]
+fn rows_behind_a_curved_surface_have_no_gap_and_no_crowd() {
+    // A round pillar of radius 8 dx in 60 sides: the first row lies at 7.5 dx.
+    let corner = |k: i32| {
+        let angle = f64::from(k) * std::f64::consts::TAU / 60.0;
+        [0.08 * angle.cos(), 0.08 * angle.sin()]
+    };
+    let outline: Vec<[f64; 2]> = (0..60).map(corner).collect();
+    let points = rows::<2>(&polygon(&outline, &[]), spacing(true, false));
+    let radius = |p: &Point<2>| libm::hypot(p.position[0], p.position[1]) / DX;
+    let mut angles: Vec<f64> = points
+        .iter()
+        .filter(|p| radius(p) > 7.2)
+        .map(|p| libm::atan2(p.position[1], p.position[0]))
+        .collect();
+    angles.sort_by(f64::total_cmp);
+    // 2 pi 7.5 = 47.1 spacings.
+    assert_eq!(angles.len(), 47);
+    let widest = angles.windows(2).map(|pair| 7.5 * (pair[1] - pair[0])).fold(0.0, f64::max);
+    assert!(widest < 1.02, "{widest}");
+    assert!(points.iter().all(|p| !p.corner && radius(p) > 5.0), "three rows");
+    let outward = |p: &Point<2>| (p.position[0] * p.normal[0] + p.position[1] * p.normal[1]) / DX / radius(p);
+    assert!(points.iter().all(|p| outward(p) > 0.99));
+}
+
+#[test]
+fn thickness_is_measured_between_faces() {
+    let (width, at) = polygon(&rectangle([0.0, 0.0], [0.5, 0.02]), &[]).thickness();
+    assert!((width - 0.02).abs() < 1e-12 && (at[1] - 0.01).abs() < 1e-12);
+    // A U of walls 0.03 and a floor of 0.05: the gap between the walls, 0.04, is no thickness.
+    let u = [
+        [0.0, 0.0],
+        [0.1, 0.0],
+        [0.1, 0.3],
+        [0.07, 0.3],
+        [0.07, 0.05],
+        [0.03, 0.05],
+        [0.03, 0.3],
+        [0.0, 0.3],
+    ];
+    assert!((polygon(&u, &[]).thickness().0 - 0.03).abs() < 1e-12);
+    // Between a hole and the outline.
+    let holed = polygon(&rectangle([0.0, 0.0], [0.3, 0.3]), &[&rectangle([0.1, 0.1], [0.2, 0.285])]);
+    let (thin, at) = holed.thickness();
+    assert!((thin - 0.015).abs() < 1e-12 && (at[1] - 0.2925).abs() < 1e-12, "{thin} at {at:?}");
+    // No sides face each other: 2 * 0.005 / 0.1414.
+    let triangle = polygon(&[[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]], &[]);
+    assert!((triangle.thickness().0 - 0.01 / 0.02_f64.sqrt()).abs() < 1e-12);
+}
+
+#[test]
+fn a_disc_of_many_sides_is_as_thick_as_it_is_wide() {
+    let corner = |k: i32| {
+        let angle = f64::from(k) * std::f64::consts::TAU / 200.0;
+        [angle.cos(), angle.sin()]
+    };
+    let outline: Vec<[f64; 2]> = (0..200).map(corner).collect();
+    let thickness = polygon(&outline, &[]).thickness().0;
+    assert!((1.9..2.0).contains(&thickness), "{thickness}");
+}
+
+#[test]
+fn orientation_does_not_matter() {
+    let mut clockwise = rectangle([0.0, 0.0], [0.3, 0.2]);
+    clockwise.reverse();
+    let hole = rectangle([0.1, 0.1], [0.2, 0.15]);
+    let polygon = polygon(&clockwise, &[&hole]);
+    assert!((polygon.area() - (0.06 - 0.005)).abs() < 1e-15);
+    let edges = Edges::new(&polygon);
+    assert!(edges.contains(&[0.05, 0.12], 0.0) && !edges.contains(&[0.15, 0.12], 0.0));
+    assert!(edges.contains(&[0.101, 0.12], 0.002) && !edges.contains(&[0.099, 0.12], -0.002));
+}
+
+#[test]
+fn lines_that_bound_no_region_are_refused_with_the_place() {
+    let bow = [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]];
+    let cross =
+        "crosses or touches itself at [0.5, 0.5]: the sides from corner 0 and from corner 2 meet there";
+    assert_eq!(fault(&bow, &[]), cross);
+    assert_eq!(fault(&[[0.0, 0.0], [1.0, 0.0]], &[]), "has 2 corners; at least 3 bound a region");
+    assert_eq!(
+        fault(&[[0.0; 2], [1.0, 1.0], [2.0, 2.0]], &[]),
+        "bounds no area: its corners lie on one line"
+    );
+    assert_eq!(
+        fault(&[[0.0; 2], [1.0, 0.0], [1.0, 0.0], [0.0, 1.0]], &[]),
+        "has corner 1 twice in a row, [1, 0]"
+    );
+    // A spike that folds back on itself.
+    let spike = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [1.0, 0.0], [1.0, 1.0]];
+    assert!(fault(&spike, &[]).starts_with("crosses or touches itself at [1, 0]"), "{}", fault(&spike, &[]));
+    let square = rectangle([0.0, 0.0], [1.0, 1.0]);
+    assert_eq!(fault(&square, &[&rectangle([2.0, 2.0], [3.0, 3.0])]), "does not lie in the polygon");
+    let out = fault(&square, &[&rectangle([0.5, 0.5], [1.5, 0.7])]);
+    assert_eq!(out, "crosses or touches the outline at [1, 0.5]");
+    let nested = [&rectangle([0.1, 0.1], [0.9, 0.9])[..], &rectangle([0.4, 0.4], [0.6, 0.6])[..]];
+    assert_eq!(fault(&square, &nested), "lies in hole 0");
+}

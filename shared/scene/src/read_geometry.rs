@@ -1,0 +1,140 @@
+//! Where a shape is: polygons, outlines from files, and what turns, shifts and repeats any geometry.
+
+use super::document::{Node, Value};
+use super::geometry::{Fault, MAX_CORNERS, Moved, Polygon};
+use super::read_probe::read_csv;
+use super::section::{Range, Section};
+use super::*;
+use std::path::Path;
+
+/// Degrees: more would lose digits, and fewer say the same.
+const ANGLE: Range = Range::at_least(-360.0).up_to(360.0);
+/// Most copies of a shape.
+const MAX_COPIES: u32 = 100_000;
+
+/// The polygon that a shape's `polygon` or `outline` with its `holes` says; `None` with errors.
+pub(super) fn polygon(section: &Section<'_>, key: &'static str, folder: &Path) -> Option<Polygon> {
+    let node = section.node(key)?;
+    let outline = match key {
+        "outline" => from_file(section, folder),
+        _ => corners(section, key, node),
+    };
+    let holes_node = section.node("holes");
+    let holes = match holes_node {
+        None => Some(Vec::new()),
+        Some(holes) => match &holes.value {
+            Value::Array(items) => items.iter().map(|item| corners(section, "holes", item)).collect(),
+            _ => {
+                section.wrong("holes", holes, "must be an array of holes, each an array of corners [x, y]");
+                None
+            }
+        },
+    };
+    match Polygon::new(outline?, holes?) {
+        Ok(polygon) => Some(polygon),
+        Err(Fault { hole: None, reason }) => {
+            section.wrong(key, node, reason);
+            None
+        }
+        Err(Fault { hole: Some(index), reason }) => {
+            let at = match holes_node.map(|node| &node.value) {
+                Some(Value::Array(items)) => items.get(index),
+                _ => None,
+            };
+            section.wrong(&format!("holes.{index}"), at.unwrap_or(node), reason);
+            None
+        }
+    }
+}
+
+fn corners(section: &Section<'_>, key: &str, node: &Node) -> Option<Vec<[f64; 2]>> {
+    let Value::Array(items) = &node.value else {
+        section.wrong(key, node, "must be an array of corners [x, y]");
+        return None;
+    };
+    if items.len() > MAX_CORNERS + 1 {
+        let reason = format!("has {} corners; at most {MAX_CORNERS}", items.len());
+        section.wrong(key, node, reason);
+        return None;
+    }
+    let corner = |item: &Node| section.as_vector(key, item, 2).map(|v| [v[0], v[1]]);
+    items.iter().map(corner).collect::<Option<Vec<_>>>().map(open)
+}
+
+/// A line of corners without the repetition of its first one.
+fn open(mut corners: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    if corners.len() > 3 && corners.first() == corners.last() {
+        corners.pop();
+    }
+    corners
+}
+
+fn from_file(section: &Section<'_>, folder: &Path) -> Option<Vec<[f64; 2]>> {
+    let table = section.section("outline");
+    let node = table.node("file");
+    let file = table.string("file");
+    if table.is_present() && node.is_none() {
+        table.missing("file");
+    }
+    let scale = table.number("scale", Some(1.0), Range::positive().up_to(1e9));
+    let (node, file) = (node?, folder.join(file?));
+    let found = read_csv(&file, "x", "y").and_then(|corners| {
+        let corners: Vec<_> = corners.into_iter().map(|corner| corner.map(|x| x * scale)).collect();
+        match corners.iter().flatten().find(|x| x.abs() > 1e12) {
+            Some(x) => Err(format!("{x:e} m is farther than 1e12 m from the origin")),
+            None if corners.len() > MAX_CORNERS + 1 => {
+                Err(format!("has {} corners; at most {MAX_CORNERS}", corners.len()))
+            }
+            None => Ok(open(corners)),
+        }
+    });
+    let found = found.map_err(|reason| table.wrong("file", node, format!("{}: {reason}", file.display())));
+    table.finish();
+    found.ok()
+}
+
+/// A geometry as `rotate`, `translate` and `repeat` of its shape have it.
+pub(super) fn moved(section: &Section<'_>, geometry: Geometry, dimension: usize) -> Geometry {
+    let (rotate, repeat) = (section.section("rotate"), section.section("repeat"));
+    let translate = section.node("translate").is_some();
+    if !rotate.is_present() && !repeat.is_present() && !translate {
+        return geometry;
+    }
+    let mut moved = Moved {
+        angle: 0.0,
+        about: middle(&geometry, dimension),
+        translate: section.vector("translate", dimension, Some([0.0; 3])),
+        count: 1,
+        step: [0.0; 3],
+        geometry: Box::new(geometry),
+    };
+    if rotate.is_present() {
+        moved.angle = rotate.number("angle", None, ANGLE);
+        moved.about = rotate.vector("about", dimension, Some(moved.about));
+    }
+    if repeat.is_present() {
+        if repeat.node("count").is_none() {
+            repeat.missing("count");
+        }
+        moved.count = repeat.integer("count", 1, 1, MAX_COPIES);
+        moved.step = repeat.vector("step", dimension, None);
+        if moved.count > 1 && moved.step == [0.0; 3] {
+            if let Some(node) = repeat.node("step") {
+                repeat.wrong("step", node, "puts all copies in one place");
+            }
+        }
+    }
+    rotate.finish();
+    repeat.finish();
+    Geometry::Moved(moved)
+}
+
+/// The middle of the box around a geometry; of a tank, of its cavity.
+fn middle(geometry: &Geometry, dimension: usize) -> [f64; 3] {
+    let axis = |a: usize| {
+        let unit = std::array::from_fn(|b| f64::from(u8::from(a == b)));
+        let [low, high] = geometry::extent(geometry, dimension, 0.0, unit);
+        0.5 * (low + high)
+    };
+    std::array::from_fn(|a| if a < dimension { axis(a) } else { 0.0 })
+}
