@@ -1,8 +1,8 @@
 //! What is measured of a solid.
 
 use crate::model::{Load, SolidModel};
-use halfstep_scene::geometry::{self, holds, nearest};
 use halfstep_role::ledger::Ledger;
+use halfstep_scene::geometry::{self, holds, nearest};
 use halfstep_scene::{Block, EnergyPart, Phase, ProbeKind, Scene};
 use halfstep_wire::frame::von_mises;
 

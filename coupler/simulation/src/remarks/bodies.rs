@@ -100,7 +100,12 @@ pub(super) fn touching<const D: usize>(
 }
 
 /// Bodies lighter than the fluid that stand on a wall: no fluid fits below them that could lift them.
-pub(super) fn standing<const D: usize>(scene: &Scene, layout: &Layout<D>, bodies: &[Body], all: &mut Vec<String>) {
+pub(super) fn standing<const D: usize>(
+    scene: &Scene,
+    layout: &Layout<D>,
+    bodies: &[Body],
+    all: &mut Vec<String>,
+) {
     let size = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
     let Some(fluid) = scene.fluid.as_ref().filter(|_| size > 0.0) else { return };
     let down = |x: &[f64; D]| (0..D).map(|d| x[d] * scene.gravity[d]).sum::<f64>() / size;

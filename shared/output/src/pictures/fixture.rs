@@ -30,13 +30,18 @@ pub(crate) fn scene() -> Scene {
         },
         output: Output { frame_interval: 0.02, probe_interval: 0.001, checkpoint_interval: 0.0 },
         shapes: Vec::new(),
+        voids: Vec::new(),
         probes: vec![
             Probe {
                 name: "tip".into(),
                 kind: ProbeKind::Displacement { at: [0.1, 0.0, 0.0] },
                 solid: Some(0),
             },
-            Probe { name: "bottom".into(), kind: ProbeKind::Pressure { at: [0.05, 0.0, 0.0] }, solid: None },
+            Probe {
+                name: "bottom".into(),
+                kind: ProbeKind::Pressure { at: [0.05, 0.0, 0.0], to: None, shape: None },
+                solid: None,
+            },
         ],
         references: vec![
             Reference {
