@@ -55,8 +55,8 @@ impl<const D: usize> PairEffect<D> for Pressure {
     #[inline(always)]
     fn add<A: Arch>(&self, _: &(), _: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
         let own = pressure_and_continuity(pair);
-        rates.bracket = rates.bracket + own.bracket;
-        rates.density = rates.density + own.density;
+        rates.bracket += own.bracket;
+        rates.density += own.density;
     }
 }
 
@@ -120,10 +120,10 @@ impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for PowerLaw<'_,
         let a: [Lane; D] = std::array::from_fn(|d| mf * (rates.bracket * dx[d] + rates.vector[d]));
         let wall = |d: usize| Lane::splat(self.walls.map_or(0.0, |walls| walls[d][j]));
         for d in 0..D {
-            sum.given = sum.given + a[d] * (i.velocity[d] - wall(d));
-            sum.walls = sum.walls + a[d] * wall(d);
+            sum.given += a[d] * (i.velocity[d] - wall(d));
+            sum.walls += a[d] * wall(d);
         }
-        sum.given = sum.given + i.pressure_term * Lane::splat(s.volume) * f * rates.density;
+        sum.given += i.pressure_term * Lane::splat(s.volume) * f * rates.density;
     }
 }
 

@@ -66,12 +66,15 @@ fn as_a_linear_plate((time, peak): (f64, f64)) {
     assert!((0.10..=0.125).contains(&time), "{time} s");
 }
 
-/// The experiment itself, while the gate opens: published computations are up to 5 mm off there.
-fn opens_as_in_the_experiment(run: &Finished) {
+/// The experiment itself while the gate opens, 12.5 mm at 0.04 s and 34.0 mm at 0.08 s: farther by `ahead`, mm, at
+/// these instants, as measured, to a millimetre, by which two digitisations of the experiment differ. An elastic plate
+/// that is let go at once opens too early.
+fn opens_as_in_the_experiment(run: &Finished, ahead: [f64; 2]) {
     let experiment = Curve::reference("elastic-gate", "experiment.csv", "x [mm]");
-    for time in [0.04, 0.08] {
+    for (time, ahead) in [0.04, 0.08].into_iter().zip(ahead) {
         let (found, truth) = (tip(run, "x").at(time), experiment.at(time));
-        assert!((found - truth).abs() < 5.0, "{found} mm at {time} s, {truth} mm in the experiment");
+        println!("{found:.2} mm at {time} s, {truth} mm in the experiment");
+        assert!((found - truth - ahead).abs() < 1.0, "{found} mm at {time} s, {truth} mm in the experiment");
     }
 }
 
@@ -80,7 +83,7 @@ fn a_coarse_gate_opens_as_others_open() {
     let run = scene("elastic-gate").set("resolution", THREE_ACROSS).until(0.2).run();
     sound(&run);
     as_a_linear_plate(state("gate, 3 across", &run));
-    opens_as_in_the_experiment(&run);
+    opens_as_in_the_experiment(&run, [2.3, 0.4]);
     // A free end that swings on a fixed length rises.
     assert!(tip(&run, "y").at(0.12) > 5.0);
     for stem in ["fluid", "solid"] {
@@ -114,7 +117,7 @@ fn a_coarse_hypoelastic_gate_opens_as_others_open() {
         .run();
     sound(&run);
     within_literature(state("hypoelastic gate, 2 across", &run));
-    opens_as_in_the_experiment(&run);
+    opens_as_in_the_experiment(&run, [0.8, -0.7]);
 }
 
 #[test]
@@ -160,7 +163,7 @@ fn the_gate_at_5_across() {
     let run = scene("elastic-gate").until(0.24).threads(2).run();
     sound(&run);
     as_a_linear_plate(state("gate, 5 across", &run));
-    opens_as_in_the_experiment(&run);
+    opens_as_in_the_experiment(&run, [2.4, -0.4]);
 }
 
 #[test]
@@ -181,7 +184,12 @@ fn the_phase_blind_gate_at_5_across() {
     let run = scene("elastic-gate").set("interface.treatment", "phase-blind").until(0.1).threads(2).run();
     state("gate, phase-blind, 1 mm", &run);
     assert!(run.report.audit.action_reaction.unwrap() <= 1e-12);
-    opens_as_in_the_experiment(&run);
+    // Published computations are up to 5 mm off the experiment there.
+    let experiment = Curve::reference("elastic-gate", "experiment.csv", "x [mm]");
+    for time in [0.04, 0.08] {
+        let (found, truth) = (tip(&run, "x").at(time), experiment.at(time));
+        assert!((found - truth).abs() < 5.0, "{found} mm at {time} s, {truth} mm in the experiment");
+    }
 }
 
 #[test]
