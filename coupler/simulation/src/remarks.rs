@@ -6,6 +6,7 @@ mod bodies;
 mod magnitudes;
 mod outcome;
 mod shapes;
+mod walls;
 mod water;
 
 pub(crate) use bodies::listed as bodies_listed;
@@ -33,6 +34,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     bodies::touching(scene, layout, &bodies, &mut all);
     shapes::sizes(scene, placed, &mut all);
     shapes::overlaps(placed, &mut all);
+    walls::thin(scene, layout, &mut all);
     water::hanging(scene, layout, &mut all);
     water::expected_speed(scene, &mut all);
     magnitudes::materials(scene, &mut all);
