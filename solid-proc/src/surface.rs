@@ -4,8 +4,8 @@ use halfstep_scene::geometry::SolidPoint;
 use halfstep_sph::neighbours::{PADDING, Rows};
 
 /// Numbers of the particles closer than `reach` to a surface particle, ascending. A surface particle lacks one of its
-/// nearest lattice neighbours in its body (the 3^D - 1 within sqrt(D) dx). Every particle for plates thinner than twice the
-/// reach.
+/// nearest lattice neighbours in its body (the 3^D - 1 within sqrt(D) dx). Every particle for plates thinner than twice
+/// the reach.
 pub(crate) fn surface_set<const D: usize>(
     points: &[SolidPoint<D>],
     body: &[u32],

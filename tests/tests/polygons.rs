@@ -15,8 +15,8 @@ use std::path::Path;
 const GRAVITY: f64 = 9.81;
 const DEPTH: f64 = 0.2;
 
-/// Still water on a beach of 30 degrees whose foot is at x = 0.5 m; it goes on below the floor, where water does not see
-/// how thin its tip is.
+/// Still water on a beach of 30 degrees whose foot is at x = 0.5 m; it goes on below the floor, where water does not
+/// see how thin its tip is.
 const BEACH: &str = "[[shape]]\nname = \"beach\"\nphase = \"wall\"\n\
     polygon = [[0.3267949192431123, -0.1], [1.2, -0.1], [1.2, 0.4041451884327381]]\n\
     [[shape]]\nname = \"tank\"\nphase = \"wall\"\ntank = { min = [0.0, 0.0], max = [1.2, 0.5], open = [\"top\"] }\n\

@@ -7,6 +7,7 @@ mod clamp_faces;
 mod magnitudes;
 mod outcome;
 mod shapes;
+mod walls;
 mod water;
 
 pub(crate) use bodies::listed as bodies_listed;
@@ -36,6 +37,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     clamp_faces::clamp_faces(scene, &mut all);
     shapes::sizes(scene, placed, &mut all);
     shapes::overlaps(placed, &mut all);
+    walls::thin(scene, layout, &mut all);
     water::hanging(scene, layout, &mut all);
     water::expected_speed(scene, &mut all);
     magnitudes::materials(scene, &mut all);

@@ -4,8 +4,8 @@
 //! lowest corner and has round(extent / dx) cells along each axis; a disc's or ring's is symmetric about its centre.
 //! [`Lattice`] says whether particles sit at the cells' centres or at their corners.
 //!
-//! A polygon of solid has a lattice along its longest side, one of fluid along the axes; a wall has rows parallel to its
-//! sides. A shape that is turned takes its lattice along.
+//! A polygon of solid has a lattice along its longest side, one of fluid along the axes; a wall has rows parallel to
+//! its sides. A shape that is turned takes its lattice along.
 //!
 //! Where shapes overlap, the solid wins over the wall, the wall over the fluid, and in one phase the shape that comes
 //! first in the file. The loser has no particle inside the winner nor closer than dx / 2 (the mean where spacings

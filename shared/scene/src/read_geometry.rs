@@ -118,10 +118,8 @@ pub(super) fn moved(section: &Section<'_>, geometry: Geometry, dimension: usize)
         }
         moved.count = repeat.integer("count", 1, 1, MAX_COPIES);
         moved.step = repeat.vector("step", dimension, None);
-        if moved.count > 1 && moved.step == [0.0; 3] {
-            if let Some(node) = repeat.node("step") {
-                repeat.wrong("step", node, "puts all copies in one place");
-            }
+        if let (true, Some(node)) = (moved.count > 1 && moved.step == [0.0; 3], repeat.node("step")) {
+            repeat.wrong("step", node, "puts all copies in one place");
         }
     }
     rotate.finish();

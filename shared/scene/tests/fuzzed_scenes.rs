@@ -34,7 +34,14 @@ const VALUES: [&str; 26] = [
     "",
 ];
 
-const KEYS: [&str; 29] = [
+const KEYS: [&str; 36] = [
+    "shape.water.polygon",
+    "shape.water.outline.file",
+    "shape.water.rotate.angle",
+    "shape.plate.translate",
+    "shape.plate.repeat.count",
+    "shape.plate.repeat.step",
+    "shape.plate.body",
     "preset",
     "dimension",
     "resolution",

@@ -260,15 +260,16 @@ fn viscosity_takes_energy_away() {
 }
 
 #[test]
-fn shapes_that_touch_are_one_body_and_others_are_not() {
-    let other = |left: f64| {
+fn shapes_that_touch_are_one_piece_where_they_name_one_body() {
+    let other = |left: f64, name: &str| {
         format!(
-            "{BLOCK}\n[[shape]]\nname = \"other\"\nphase = \"solid\"\nbox = {{ min = [{left}, 0.0], max = [0.4, 0.15] }}"
+            "{BLOCK}\n[[shape]]\nname = \"other\"\n{name}\nphase = \"solid\"\nbox = {{ min = [{left}, 0.0], max = [0.4, 0.15] }}"
         )
     };
-    // Side by side: a pull on one moves both. A gap of one spacing: it does not.
-    for (left, together) in [(0.2, true), (0.21, false)] {
-        let mut body = solid(&other(left), &[]);
+    // Side by side: a pull on one moves both. A gap of one spacing, or another body: it does not.
+    let one = "body = \"body\"";
+    for (left, name, together) in [(0.2, one, true), (0.21, one, false), (0.2, "", false)] {
+        let mut body = solid(&other(left, name), &[]);
         assert_eq!(body.contact.is_none(), together);
         body.deform(|x| [if x[0] < 0.2 { x[0] - 1e-4 } else { x[0] }, x[1]]);
         let pulled = body.accelerations().as_flattened().iter().any(|a| a.abs() > 1.0);

@@ -190,4 +190,45 @@ mod tests {
         assert!(ring.holds(&[0.0, 0.055]) && !ring.holds(&[0.0, 0.0]));
         assert_eq!(plate("disc = { center = [0.0, 0.0], radius = 0.05 }"), None);
     }
+
+    #[test]
+    fn a_turned_plate_looks_across_itself() {
+        // 0.2 m by 0.03 m about its middle, (0.2, 0.115): at 30 degrees its normal is (-1, sqrt 3) / 2.
+        let turned =
+            plate("box = { min = [0.1, 0.1], max = [0.3, 0.13] }\nrotate = { angle = 30.0 }").unwrap();
+        let (sin, cos) = (0.5, 0.75_f64.sqrt());
+        let at =
+            |along: f64, before: f64| [0.2 + cos * along - sin * before, 0.115 + sin * along + cos * before];
+        // The same as a polygon, where the normal may look either way.
+        let corners = [[-0.1, -0.015], [0.1, -0.015], [0.1, 0.015], [-0.1, 0.015]].map(|[s, n]| at(s, n));
+        let polygon = plate(&format!("polygon = {corners:?}")).unwrap();
+        for (plate, tolerance) in [(turned, 1e-12), (polygon, 1e-9)] {
+            assert!((plate.rows - 3.0).abs() < 1e-9, "{}", plate.rows);
+            for (along, before) in [(0.0, 0.01), (0.095, -0.01), (-0.095, 0.0)] {
+                let x = at(along, before);
+                assert!(plate.holds(&x));
+                let (normal, found) = plate.across(&x);
+                let side = (normal[1] * cos - normal[0] * sin).signum();
+                assert!(
+                    (normal[0] * side + sin).abs() + (normal[1] * side - cos).abs() < tolerance,
+                    "{normal:?}"
+                );
+                assert!((found * side - before).abs() < tolerance, "{found} at {along}, {before}");
+            }
+            assert!(!plate.holds(&at(0.0, 0.03)));
+        }
+    }
+
+    #[test]
+    fn a_polygon_is_a_plate_where_it_is_thin() {
+        // A block of 0.1 m with a fin of 0.02 m: h = 1.5 dx, and 4h - dx = 0.05 m.
+        let fin = plate(
+            "polygon = [[0.0, 0.0], [0.1, 0.0], [0.1, 0.04], [0.3, 0.04], [0.3, 0.06], [0.1, 0.06], [0.1, 0.1], \
+             [0.0, 0.1]]",
+        );
+        let fin = fin.unwrap();
+        assert!((fin.rows - 2.0).abs() < 1e-9);
+        assert!(fin.holds(&[0.2, 0.045]) && !fin.holds(&[0.05, 0.05]));
+        assert_eq!(plate("polygon = [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]]"), None);
+    }
 }
