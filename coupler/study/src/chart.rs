@@ -155,7 +155,7 @@ pub(super) fn linear_axis(values: impl Iterator<Item = f64>) -> Option<Range<f64
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
     let size = low.abs().max(high.abs());
     let margin = if high - low > 1e-9 * size { 0.06 * (high - low) } else { 0.1 * size.max(1e-30) };
-    (low <= high).then(|| low - margin..high + margin)
+    (low <= high).then_some(low - margin..high + margin)
 }
 
 /// Multiples of a round number between the limits, some five of them.

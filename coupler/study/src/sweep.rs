@@ -90,10 +90,8 @@ impl Sweep {
     pub fn of(study: &Study, keys: Vec<String>) -> Self {
         let row = |row: &super::result::Row| {
             let value = |key: &String| {
-                let set = row.changes.iter().filter_map(|change| change.split_once('='));
-                set.filter(|(name, _)| name == key)
-                    .last()
-                    .map_or(String::new(), |(_, value)| value.to_owned())
+                let mut set = row.changes.iter().rev().filter_map(|change| change.split_once('='));
+                set.find(|(name, _)| name == key).map_or(String::new(), |(_, value)| value.to_owned())
             };
             let unmeasured = row.values.iter().find_map(|value| value.as_ref().err());
             SweepRow {

@@ -36,7 +36,11 @@ pub(crate) fn scene() -> Scene {
                 kind: ProbeKind::Displacement { at: [0.1, 0.0, 0.0] },
                 solid: Some(0),
             },
-            Probe { name: "bottom".into(), kind: ProbeKind::Pressure { at: [0.05, 0.0, 0.0] }, solid: None },
+            Probe {
+                name: "bottom".into(),
+                kind: ProbeKind::Pressure { at: [0.05, 0.0, 0.0], to: None, shape: None },
+                solid: None,
+            },
         ],
         references: vec![
             Reference {

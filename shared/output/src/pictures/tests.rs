@@ -86,7 +86,7 @@ fn many_probes_share_a_picture_in_columns() {
     scene.references.clear();
     let pressure = |k| halfstep_scene::Probe {
         name: format!("p{k}"),
-        kind: halfstep_scene::ProbeKind::Pressure { at: [0.0; 3] },
+        kind: halfstep_scene::ProbeKind::Pressure { at: [0.0; 3], to: None, shape: None },
         solid: None,
     };
     scene.probes.extend((1..=4).map(pressure));
