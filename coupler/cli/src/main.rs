@@ -1,24 +1,28 @@
 //! The `halfstep` command.
 
-use clap::{Parser, Subcommand};
+mod helpers;
+
+use clap::{CommandFactory, Parser, Subcommand};
 use halfstep::Launcher;
 use halfstep::options::{RunOptions, SolidSource, known_solid};
 use halfstep::{isa, run};
 use halfstep_coupling::say;
 use halfstep_coupling::supervise::StopFlags;
+use halfstep_output::RunReport;
 use halfstep_output::checkpoint::{FOLDERS, MANIFEST};
 use halfstep_output::run_json::RunStatus;
 use halfstep_scene::{self as scene, Scene};
 use halfstep_sph::lane::Isa;
 use halfstep_study::command::{StudyArguments, study};
 use halfstep_wire::Name;
+use helpers::Kind;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Fluid-structure co-simulation by smoothed particle hydrodynamics: a fluid process, a solid process and a coupler in
 /// lock-step over shared memory.
 #[derive(Parser)]
-#[command(version)]
+#[command(name = "halfstep", version, long_version = helpers::VERSION.as_str())]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -46,6 +50,21 @@ enum Command {
         dir: PathBuf,
     },
     Study(StudyArguments),
+    /// Writes a commented scene that runs as it is
+    New {
+        /// File of the scene, or its name
+        scene: PathBuf,
+        /// What the scene is about
+        #[arg(long, value_enum, default_value = "coupled")]
+        kind: Kind,
+    },
+    /// Prints completions for a shell: bash, zsh, fish, elvish or powershell
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Prints the manual page
+    Man,
     /// A role's process; started by `run`
     #[command(hide = true)]
     Role {
@@ -171,17 +190,46 @@ fn main() -> ExitCode {
         Command::Resume(arguments) => resume(&arguments, isa),
         Command::Plot { dir } => plot(&dir),
         Command::Study(arguments) => study(arguments),
+        Command::New { scene, kind } => helpers::new(&scene, kind),
+        Command::Completions { shell } => helpers::completions(Arguments::command(), shell),
+        Command::Man => helpers::manual(Arguments::command()),
         Command::Role { name } => ExitCode::from(halfstep::serve_role(&name, isa)),
     }
 }
 
 fn load(arguments: &SceneArguments) -> Result<scene::Scene, ExitCode> {
+    if arguments.scene.extension().is_some_and(|extension| extension == "json") {
+        let changed = !arguments.set.is_empty() || arguments.until.is_some();
+        return rerun(&arguments.scene, changed).map_err(|error| usage(&error));
+    }
     let mut overrides = arguments.set.clone();
     overrides.extend(arguments.until.iter().map(|t| format!("end_time={t}")));
     scene::load(&arguments.scene, &overrides).map_err(|errors| {
         say::warn(format_args!("{:?}", miette::Report::new(errors)));
         ExitCode::from(1)
     })
+}
+
+/// The scene of an earlier run, from the `scene.json` in its folder: exactly as it was computed. Its numbers were
+/// checked when a TOML scene was read and are not again, so that it has to be what the run says beside it.
+fn rerun(path: &Path, changed: bool) -> Result<Scene, String> {
+    if changed {
+        return Err(format!(
+            "{}: the scene of a run is run as it was: --set and --until change its TOML file's",
+            path.display()
+        ));
+    }
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let wrong = |reason: String| format!("{}: {reason}", path.display());
+    let text = std::fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
+    let scene = Scene::from_json(&text).map_err(|error| wrong(error.to_string()))?;
+    let report = RunReport::read(&folder.join("run.json"))
+        .map_err(|error| wrong(format!("is run with its run's run.json beside it: {error}")))?;
+    let told = serde_json::to_value(&scene).ok();
+    if told.as_ref() != Some(&report.scene) {
+        return Err(wrong("is not the scene that run.json beside it tells of: it was changed".into()));
+    }
+    Ok(scene)
 }
 
 fn explain_scene(arguments: &SceneArguments, json: bool, isa: Isa) -> ExitCode {
@@ -381,4 +429,32 @@ fn external_solids(
         add(name, SolidSource::ByHand)?;
     }
     Ok(external)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_runs_scene_is_taken_as_it_was() {
+        let folder = tempfile::tempdir().unwrap();
+        let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("templates/water.toml");
+        let scene = scene::load(&own, &[]).unwrap();
+        let path = folder.path().join("scene.json");
+        std::fs::write(&path, scene.to_json().unwrap()).unwrap();
+        // Without its report nobody knows whether it is what was run.
+        assert!(rerun(&path, false).unwrap_err().contains("run.json"));
+        let report = RunReport { scene: serde_json::to_value(&scene).unwrap(), ..RunReport::default() };
+        report.write(&folder.path().join("run.json")).unwrap();
+        assert_eq!(rerun(&path, false).unwrap(), scene);
+        assert!(rerun(&path, true).unwrap_err().contains("--set and --until change its TOML file's"));
+        let other = Scene { resolution: 0.5 * scene.resolution, ..scene };
+        std::fs::write(&path, other.to_json().unwrap()).unwrap();
+        assert!(rerun(&path, false).unwrap_err().ends_with("it was changed"));
+    }
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Arguments::command().debug_assert();
+    }
 }

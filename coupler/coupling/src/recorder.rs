@@ -12,11 +12,15 @@ use halfstep_wire::failure::Diverged;
 use halfstep_wire::protocol::{Audit, StateHeader};
 use halfstep_wire::state::{Fields, Group, State, StateError};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// Least pause between two renewals of the report: each waits for the disk.
 const RENEWAL: Duration = Duration::from_secs(1);
+
+/// Part of a run after which a line tells of it.
+const TENTH: f64 = 0.1;
 
 /// What a participant measured on the state at n.
 #[derive(Clone, Copy, Debug)]
@@ -53,6 +57,8 @@ pub struct Recorder {
     order: Vec<(usize, usize)>,
     values: Vec<f64>,
     bar: ProgressBar,
+    /// Progress as lines: the part of the run at the last one, and when it was.
+    lines: Option<(f64, Instant)>,
     started: Instant,
     /// Duration of the run before an interruption, s.
     earlier: f64,
@@ -82,7 +88,9 @@ impl Recorder {
         let bar = ProgressBar::new(1000);
         let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}  ETA {eta}");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-        if quiet {
+        // Where nobody sees a bar, lines tell.
+        let lines = !quiet && !std::io::stderr().is_terminal();
+        if quiet || lines {
             bar.set_draw_target(ProgressDrawTarget::hidden());
         }
         let now = Instant::now();
@@ -98,6 +106,7 @@ impl Recorder {
                 .collect(),
             values: Vec::new(),
             bar,
+            lines: lines.then_some((0.0, now)),
             started: now,
             shown: now,
             end: scene.end_time,
@@ -227,6 +236,7 @@ impl Recorder {
         }
         if self.shown.elapsed() > Duration::from_millis(200) {
             self.shown = Instant::now();
+            self.tell_line();
             let rate = self.particle_steps / self.wall_seconds();
             self.bar.set_position((1000.0 * self.time / self.end) as u64);
             self.bar.set_message(format!(
@@ -237,6 +247,25 @@ impl Recorder {
             ));
         }
         Ok(())
+    }
+
+    /// Says in a line how far the run has come: at each tenth of it, at most every second, or after half a minute.
+    fn tell_line(&mut self) {
+        let part = self.time / self.end;
+        let Some((told, when)) = &mut self.lines else { return };
+        let (further, later) = (part - *told, when.elapsed().as_secs_f64());
+        if (further >= TENTH && later >= 1.0) || later >= 30.0 {
+            let seconds = self.started.elapsed().as_secs_f64();
+            let rest = if part > 0.0 { seconds * (1.0 - part) / part } else { f64::NAN };
+            say::warn(format_args!(
+                "{:3.0} %  t = {:.4} s  {seconds:.0} s gone, about {rest:.0} s to go",
+                100.0 * part,
+                self.time
+            ));
+            // The next tenth, not a tenth later.
+            *told = (part / TENTH).floor() * TENTH;
+            *when = Instant::now();
+        }
     }
 
     fn audit(&mut self, measured: &[Measured<'_>]) {

@@ -1,4 +1,4 @@
-//! A coordinate system of logarithms with grid and labels, and the legend of several of them.
+//! A coordinate system, of logarithms or linear, with grid and labels, and the legend of several of them.
 
 use halfstep_output::pictures::canvas::{Area, Drawn, FONT};
 use halfstep_output::pictures::plot;
@@ -124,11 +124,56 @@ fn ticks(range: &Range<f64>) -> Vec<f64> {
     all.filter(|t| (range.start - 1e-9..=range.end + 1e-9).contains(t)).collect()
 }
 
+/// What the places along an axis go with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Scale {
+    Logarithm,
+    Linear,
+}
+
+impl Scale {
+    fn of(self, value: f64) -> f64 {
+        match self {
+            Self::Logarithm => value.log10(),
+            Self::Linear => value,
+        }
+    }
+
+    /// Places of ticks with the values there.
+    fn ticks(self, range: &Range<f64>) -> Vec<(f64, f64)> {
+        match self {
+            Self::Logarithm => ticks(range).into_iter().map(|t| (t, 10_f64.powf(t))).collect(),
+            Self::Linear => linear_ticks(range).into_iter().map(|t| (t, t)).collect(),
+        }
+    }
+}
+
+/// Limits of a linear axis around these values.
+pub(super) fn linear_axis(values: impl Iterator<Item = f64>) -> Option<Range<f64>> {
+    let (low, high) = values
+        .filter(|v| v.is_finite())
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+    let size = low.abs().max(high.abs());
+    let margin = if high - low > 1e-9 * size { 0.06 * (high - low) } else { 0.1 * size.max(1e-30) };
+    (low <= high).then_some(low - margin..high + margin)
+}
+
+/// Multiples of a round number between the limits, some five of them.
+fn linear_ticks(range: &Range<f64>) -> Vec<f64> {
+    let rough = (range.end - range.start) / 6.0;
+    let power = 10_f64.powf(rough.log10().floor());
+    let step =
+        [1.0, 2.0, 2.5, 5.0, 10.0].into_iter().map(|s| s * power).find(|s| *s >= rough).unwrap_or(rough);
+    let (first, last) = ((range.start / step).ceil(), (range.end / step).floor());
+    (0..=(last - first).max(0.0) as usize).map(|k| (first + k as f64) * step).collect()
+}
+
 /// How an axis is titled and its ticks are written.
 pub(super) struct Axis<'f> {
     pub(super) range: Range<f64>,
     pub(super) title: String,
     pub(super) label: &'f dyn Fn(f64) -> String,
+    pub(super) scale: Scale,
 }
 
 /// A name with the mark it explains.
@@ -167,6 +212,7 @@ pub(super) fn legend(area: &Area<'_>, entries: &[Entry]) -> Drawn {
 pub(super) struct Chart<'a, 'b> {
     area: &'a Area<'b>,
     ranges: [Range<f64>; 2],
+    scales: [Scale; 2],
     inside: [i32; 4],
     /// Rectangles that marks and notes take, pixels: left, top, right, bottom.
     taken: RefCell<Vec<[i32; 4]>>,
@@ -182,16 +228,17 @@ impl<'a, 'b> Chart<'a, 'b> {
         let (width, height) = area.dim_in_pixel();
         let inside = [px(84), px(34), width as i32 - px(24), height as i32 - px(54)];
         let [left, top, right, bottom] = inside;
-        let chart = Self { area, ranges: [x.range, y.range], inside, taken: RefCell::default() };
-        for t in ticks(&chart.ranges[0]) {
+        let (ranges, scales) = ([x.range, y.range], [x.scale, y.scale]);
+        let chart = Self { area, ranges, scales, inside, taken: RefCell::default() };
+        for (t, value) in x.scale.ticks(&chart.ranges[0]) {
             let at = chart.at(t, chart.ranges[1].start).0;
             chart.path(&[(at, top), (at, bottom)], stroke(GRID, 1))?;
-            write(area, &(x.label)(10_f64.powf(t)), (at, bottom + px(5)), 13, (HPos::Center, VPos::Top))?;
+            write(area, &(x.label)(value), (at, bottom + px(5)), 13, (HPos::Center, VPos::Top))?;
         }
-        for t in ticks(&chart.ranges[1]) {
+        for (t, value) in y.scale.ticks(&chart.ranges[1]) {
             let at = chart.at(chart.ranges[0].start, t).1;
             chart.path(&[(left, at), (right, at)], stroke(GRID, 1))?;
-            write(area, &(y.label)(10_f64.powf(t)), (left - px(6), at), 13, (HPos::Right, VPos::Center))?;
+            write(area, &(y.label)(value), (left - px(6), at), 13, (HPos::Right, VPos::Center))?;
         }
         let frame = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
         chart.path(&frame, stroke(FRAME, 1))?;
@@ -203,7 +250,7 @@ impl<'a, 'b> Chart<'a, 'b> {
         Ok(chart)
     }
 
-    /// Pixels of a point of logarithms.
+    /// Pixels of a place along each axis.
     fn at(&self, x: f64, y: f64) -> (i32, i32) {
         let [left, top, right, bottom] = self.inside.map(f64::from);
         let place = |v: f64, r: &Range<f64>, a: f64, b: f64| a + (v - r.start) / (r.end - r.start) * (b - a);
@@ -213,7 +260,7 @@ impl<'a, 'b> Chart<'a, 'b> {
 
     /// Pixels of a point.
     fn pixel(&self, (x, y): (f64, f64)) -> (i32, i32) {
-        self.at(x.log10(), y.log10())
+        self.at(self.scales[0].of(x), self.scales[1].of(y))
     }
 
     fn path(&self, points: &[(i32, i32)], style: ShapeStyle) -> Drawn {
@@ -287,6 +334,18 @@ mod tests {
         assert_eq!(columns(&short, 1240), 7);
         assert_eq!(legend_height(&short, 1240), 2 * ENTRY);
         assert_eq!(columns(&[entry(&"x".repeat(300))], 1240), 1);
+    }
+
+    #[test]
+    fn linear_axes_hold_their_values_and_have_round_ticks() {
+        let range = linear_axis([0.2, 1.0, f64::NAN].into_iter()).unwrap();
+        assert!(range.start < 0.2 && range.end > 1.0);
+        let ticks: Vec<f64> = linear_ticks(&range).iter().map(|t| (t * 1e9).round() / 1e9).collect();
+        assert_eq!(ticks, [0.2, 0.4, 0.6, 0.8, 1.0]);
+        assert_eq!(linear_ticks(&(-1.0..1.0)), [-1.0, -0.5, 0.0, 0.5, 1.0]);
+        let same = linear_axis([3.0, 3.0].into_iter()).unwrap();
+        assert!(same.start < 3.0 && same.end > 3.0 && !linear_ticks(&same).is_empty());
+        assert_eq!(linear_axis(std::iter::empty()), None);
     }
 
     #[test]

@@ -5,11 +5,13 @@ use super::error::StudyError;
 use super::ladder::Vary;
 use super::pictures;
 use super::result::Against;
+use super::sweep::{self, Sweep};
 use super::target::Reached;
 use super::{Options, Session};
 use halfstep_coupling::say;
 use halfstep_coupling::supervise::StopFlags;
-use std::path::PathBuf;
+use halfstep_output::run_json::RunStatus;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Exit status where a wanted error or budget was not reached.
@@ -29,6 +31,12 @@ pub struct StudyArguments {
     /// A key and the values it takes; as often as wanted (default: four resolutions, sqrt(2) apart)
     #[arg(long, value_name = "KEY=A,B,C")]
     vary: Vec<Vary>,
+    /// A physical key and the values it takes: a parameter study, all combinations of several
+    #[arg(long, value_name = "KEY=A,B,C", conflicts_with_all = ["vary", "full", "against", "error", "budget", "metric"])]
+    sweep: Vec<Vary>,
+    /// Prints the results as JSON and nothing else
+    #[arg(long, conflicts_with_all = ["error", "budget"])]
+    json: bool,
     /// All combinations of the values instead of one change at a time
     #[arg(long)]
     full: bool,
@@ -107,11 +115,17 @@ fn run(arguments: StudyArguments) -> Result<ExitCode, StudyError> {
     let mut base = arguments.set;
     base.extend(arguments.threads.map(|n| format!("numerics.threads.fluid={n}")));
     base.extend(arguments.until.map(|t| format!("end_time={t}")));
+    let keys: Vec<String> = arguments.sweep.iter().map(|vary| vary.key.clone()).collect();
+    let sweeps = !keys.is_empty();
+    for vary in arguments.vary.iter().filter(|vary| sweep::is_physical(&vary.key)) {
+        say::warn(format_args!("warning: {}", sweep::warning(&vary.key)));
+    }
+    let json = arguments.json;
     let options = Options {
         scene: arguments.scene,
         base,
-        vary: arguments.vary,
-        full: arguments.full,
+        vary: if sweeps { arguments.sweep } else { arguments.vary },
+        full: arguments.full || sweeps,
         repeat: arguments.repeat,
         jobs: arguments.jobs as usize,
         out: arguments.out,
@@ -133,10 +147,18 @@ fn run(arguments: StudyArguments) -> Result<ExitCode, StudyError> {
         say::tell(format_args!(""));
     }
     let study = session.study();
+    if sweeps {
+        return report(&Sweep::of(&study, keys), json, session.folder());
+    }
     study.write(session.folder())?;
     pictures::draw(&study, session.folder())?;
-    say::tell(format_args!("{}", study.text().trim_end()));
-    say::tell(format_args!("\nstudy.csv, study.json and pictures are in {}", session.folder().display()));
+    if json {
+        let text = serde_json::to_string_pretty(&study).map_err(|e| StudyError::System(e.to_string()))?;
+        say::tell(format_args!("{text}"));
+    } else {
+        say::tell(format_args!("{}", study.text().trim_end()));
+        say::tell(format_args!("\nstudy.csv, study.json and pictures are in {}", session.folder().display()));
+    }
     if study.rows.iter().all(|row| row.error.is_some()) {
         say::warn(format_args!("error: no run finished"));
         return Ok(ExitCode::from(2));
@@ -155,6 +177,22 @@ fn run(arguments: StudyArguments) -> Result<ExitCode, StudyError> {
         }
         _ => ExitCode::SUCCESS,
     })
+}
+
+/// Writes and says what a parameter study found.
+fn report(sweep: &Sweep, json: bool, folder: &Path) -> Result<ExitCode, StudyError> {
+    sweep.write(folder)?;
+    if json {
+        say::tell(format_args!("{}", sweep.json()?));
+    } else {
+        say::tell(format_args!("{}", sweep.text().trim_end()));
+        say::tell(format_args!("\nsweep.csv, sweep.json and sweep.png are in {}", folder.display()));
+    }
+    if sweep.rows.iter().all(|row| row.status != Some(RunStatus::Finished)) {
+        say::warn(format_args!("error: no run finished"));
+        return Ok(ExitCode::from(2));
+    }
+    Ok(ExitCode::SUCCESS)
 }
 
 /// The overrides of which no later one says otherwise.

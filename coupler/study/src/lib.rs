@@ -14,6 +14,7 @@ pub mod pictures;
 pub mod report;
 pub mod result;
 pub mod runs;
+pub mod sweep;
 pub mod target;
 
 use choose::Surprise;

@@ -1,7 +1,7 @@
 //! What a study's numbers look like: error over cost, error over resolution, and where the time went.
 
 use super::chart::{
-    Axis, Chart, Entry, Mark, Shape, axis, color, font, legend, legend_height, px, stroke, write,
+    Axis, Chart, Entry, Mark, Scale, Shape, axis, color, font, legend, legend_height, px, stroke, write,
 };
 use super::report::{Study, readable, short};
 use super::result::{MetricResult, Row};
@@ -12,9 +12,9 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::path::Path;
 
 /// Height of a picture's heading, pixels.
-const HEAD: i32 = 44;
+pub(super) const HEAD: i32 = 44;
 /// Width and height of a panel, pixels.
-const PANEL: (i32, i32) = (620, 400);
+pub(super) const PANEL: (i32, i32) = (620, 400);
 /// Width of a panel of the convergence, pixels.
 const WIDE: i32 = 860;
 /// Height of a bar of the time's shares, with its distance to the next, pixels.
@@ -54,7 +54,7 @@ pub fn draw(study: &Study, folder: &Path) -> Result<(), OutputError> {
     picture(&folder.join("time-share.png"), size, &heading("where the time goes"), |area| shares(area, study))
 }
 
-fn picture(
+pub(super) fn picture(
     path: &Path,
     (width, height): (i32, i32),
     title: &str,
@@ -140,8 +140,8 @@ fn work_precision(area: &Area<'_>, study: &Study, metric: &MetricResult, cost: C
     let families = families(&study.rows);
     let heading = format!("{}: {}", metric.name, Study::against(metric));
     let axes = [
-        Axis { range: x, title: title.into(), label },
-        Axis { range: y, title: "relative error".into(), label: &error_label },
+        Axis { range: x, title: title.into(), label, scale: Scale::Logarithm },
+        Axis { range: y, title: "relative error".into(), label: &error_label, scale: Scale::Logarithm },
     ];
     let chart = Chart::new(area, &heading, axes)?;
     let mut front: Vec<_> = (0..study.rows.len()).filter(|k| on_front(*k)).filter_map(point).collect();
@@ -192,8 +192,8 @@ fn convergence(area: &Area<'_>, study: &Study, metric: &MetricResult) -> Drawn {
         }
     }
     let axes = [
-        Axis { range: x, title: "particle spacing [m]".into(), label: &tick },
-        Axis { range: y, title: "relative error".into(), label: &error_label },
+        Axis { range: x, title: "particle spacing [m]".into(), label: &tick, scale: Scale::Logarithm },
+        Axis { range: y, title: "relative error".into(), label: &error_label, scale: Scale::Logarithm },
     ];
     let heading = format!("{}: {} · {verdict}", metric.name, Study::against(metric));
     let chart = Chart::new(area, &heading, axes)?;

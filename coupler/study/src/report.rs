@@ -62,7 +62,7 @@ fn with_unit(value: f64, unit: &str) -> String {
 }
 
 /// Columns as wide as they need to be, the first one left-aligned.
-fn aligned(table: &[Vec<String>]) -> String {
+pub(super) fn aligned(table: &[Vec<String>]) -> String {
     let width = |k: usize| table.iter().map(|row| row[k].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..table.first().map_or(0, Vec::len)).map(width).collect();
     let mut text = String::new();

@@ -165,14 +165,12 @@ fn from_file(table: &Section<'_>, dimension: usize, folder: &Path) -> Option<Vec
     let (node, file) = (table.node("file")?, folder.join(table.string("file")?));
     let titles: Vec<&str> = [time?].into_iter().chain(found.iter().map(|(title, _)| *title)).collect();
     let wrong = |reason: String| table.wrong("file", node, format!("{}: {reason}", file.display()));
-    let rows = match read_columns(&file, &titles) {
-        Ok(rows) if rows.len() > MAX_ROWS => {
-            return Some(wrong(format!("has more than {MAX_ROWS} rows"))).and(None);
-        }
-        Ok(rows) if rows.len() < 2 => return Some(wrong("has a single row".into())).and(None),
-        Ok(rows) => rows,
-        Err(reason) => return Some(wrong(reason)).and(None),
-    };
+    let read = read_columns(&file, &titles).and_then(|rows| match rows.len() {
+        n if n > MAX_ROWS => Err(format!("has more than {MAX_ROWS} rows")),
+        n if n < 2 => Err("has a single row".into()),
+        _ => Ok(rows),
+    });
+    let rows = read.map_err(wrong).ok()?;
     let times: Vec<f64> = rows.iter().map(|row| row[0]).collect();
     if let Some(k) = (1..times.len()).find(|&k| times[k] <= times[k - 1]) {
         wrong(format!("goes back in time: {} s follows {} s", times[k], times[k - 1]));

@@ -94,3 +94,30 @@ fn arithmetic_is_that_of_paper() {
         assert_eq!(scene(&[&set]).shapes[0].velocity[0], value, "{formula}");
     }
 }
+
+#[test]
+fn nonsense_is_an_error_and_no_panic() {
+    let parts =
+        ["(", ")", "1", ".", "e", "E+", "-", "^", "*", "/", ",", "L", "pi", "sin", "sqrt ", " ", "_", "log("];
+    // All strings of three parts, and longer ones by a fixed walk.
+    let three = (0..parts.len().pow(3))
+        .map(|k| [k, k / parts.len(), k / parts.len().pow(2)].map(|k| parts[k % parts.len()]).concat());
+    let mut walk = 1_usize;
+    let mut next = || {
+        walk = walk.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        parts[(walk >> 33) % parts.len()]
+    };
+    let long: Vec<String> = (0..3000).map(|k| (0..4 + k % 20).map(|_| next()).collect()).collect();
+    let mut computed = 0;
+    for formula in three.chain(long) {
+        let overrides = [format!("shape.water.velocity=[\"={formula}\", 0]")];
+        match parse(SCENE, Path::new("s.toml"), &overrides) {
+            Ok(scene) => {
+                assert!(scene.shapes[0].velocity[0].is_finite(), "{formula}");
+                computed += 1;
+            }
+            Err(errors) => assert_eq!(errors.problems.len(), 1, "{formula}: {errors:?}"),
+        }
+    }
+    assert!(computed > 100, "{computed}");
+}

@@ -2,7 +2,7 @@
 
 use super::contact::Instant;
 use super::stamp::Rect;
-use halfstep_scene::Scene;
+use halfstep_scene::{Motion, Scene, Shape};
 use halfstep_wire::frame::{FLUID, SOLID, WALL};
 
 /// Largest picture, pixels.
@@ -25,7 +25,7 @@ pub(crate) struct View {
 }
 
 impl View {
-    /// The box of all particles at the first instant, widened by where the solid and the bulk of the fluid go.
+    /// The box of all particles at the first instant, widened by where solid, bulk of the fluid and swinging walls go.
     /// `None` without particles.
     pub(crate) fn of(scene: &Scene, instants: &[Instant]) -> Option<Self> {
         let mut initial = [Range::EMPTY; 3];
@@ -40,6 +40,9 @@ impl View {
         if !bounds.iter().all(Range::is_finite) {
             return None;
         }
+        // Walls that swing or turn are shown wherever they go; a gate that opens is not followed.
+        let follows = |s: &Shape| s.motion.as_ref().is_some_and(|m| !matches!(m, Motion::Steady { .. }));
+        let walls = scene.shapes.iter().any(follows);
         for instant in &instants[1..] {
             for axis in 0..2 {
                 let along = |phase| {
@@ -50,8 +53,9 @@ impl View {
                 };
                 let (fluid, solid) = (along(FLUID), along(SOLID));
                 let spray = (fluid.len() as f64 * SPRAY) as usize;
+                let walls = if walls { along(WALL) } else { Vec::new() };
                 let reach = [fluid.get(spray), fluid.iter().nth_back(spray), solid.first(), solid.last()];
-                for x in reach.into_iter().flatten() {
+                for x in reach.into_iter().chain([walls.first(), walls.last()]).flatten() {
                     bounds[axis].include(initial[axis].limit(*x));
                 }
             }
