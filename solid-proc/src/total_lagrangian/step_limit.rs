@@ -16,7 +16,7 @@ use super::model::TotalLagrangian;
 use halfstep_scene::Material;
 use halfstep_sph::lane::{Arch, LANES, Lane};
 use halfstep_sph::neighbours::PADDING;
-use halfstep_sph::pair::{self, FixedLaw};
+use halfstep_sph::pair::{self, FixedLaw, dot};
 
 /// Largest stable sub-step at rest over dx over the speed of the fastest wave: measured with h = 0.75 dx for nu from 0
 /// to 0.49 and alpha from 0 to 10.
@@ -37,6 +37,8 @@ impl Default for Slopes {
 struct SlopeSum {
     /// V0.
     volume: f64,
+    /// 0.01 h², m²: what keeps the viscosity of a particle with itself at zero.
+    least: f64,
 }
 
 impl<const D: usize> FixedLaw<D> for SlopeSum {
@@ -45,16 +47,18 @@ impl<const D: usize> FixedLaw<D> for SlopeSum {
     #[inline(always)]
     fn target(&self, _: usize) {}
     #[inline(always)]
-    fn add<A: Arch>(&self, _: &(), _: usize, _: [Lane; D], slope: Lane, sum: &mut Slopes) {
-        sum.0 = sum.0 - Lane::splat(self.volume) * slope;
+    fn add<A: Arch>(&self, _: &(), _: usize, dx: [Lane; D], slope: Lane, sum: &mut Slopes) {
+        let r2 = dot::<D, A>(dx, dx);
+        sum.0 += Lane::splat(-self.volume) * slope * (r2 / (r2 + Lane::splat(self.least)));
     }
 }
 
 impl<const D: usize> TotalLagrangian<D> {
     /// Largest sum_j V0 |W'| / R of any particle, 1/m².
     pub(super) fn largest_slope_sum(&self) -> f64 {
+        let law = SlopeSum { volume: self.volume, least: 0.01 * self.smoothing_length.powi(2) };
         let mut sums = vec![Slopes::default(); self.id.len() / LANES];
-        pair::fixed_pass(self.isa, &SlopeSum { volume: self.volume }, &self.pairs, &mut sums);
+        pair::fixed_pass(self.isa, &law, &self.pairs, &mut sums);
         let real = (0..self.id.len()).filter(|&slot| self.id[slot] != PADDING);
         real.map(|slot| sums[slot / LANES].0.0[slot % LANES]).fold(0.0, f64::max)
     }

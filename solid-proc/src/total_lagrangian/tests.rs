@@ -242,11 +242,14 @@ fn energy_is_kept_without_viscosity() {
 #[test]
 fn viscosity_takes_energy_away() {
     let mode = "shape.body.cantilever_mode={fraction=0.03,root=0.0,length=0.2}";
+    let of = |a: &str| solid(BLOCK, &[mode, &format!("solid.artificial_viscosity.linear={a}")]);
+    // The same time for both: damping makes the step shorter.
+    let span = 150.0 * of("0.0").sub_step_limit();
     let energies = ["0.0", "1.0"].map(|a| {
-        let mut body = solid(BLOCK, &[mode, &format!("solid.artificial_viscosity.linear={a}")]);
+        let mut body = of(a);
         let load = Load::none(body.particles().len());
         let dt = 0.5 * body.sub_step_limit();
-        for _ in 0..300 {
+        for _ in 0..(span / dt) as usize {
             for half_step in HalfStep::begin(0, 0.0).lasting(dt).both() {
                 body.advance(&half_step, 1, &load).unwrap();
             }
