@@ -48,7 +48,7 @@ fn dependencies() -> BTreeMap<String, BTreeSet<String>> {
     let mut found = BTreeMap::new();
     for package in metadata["packages"].as_array().expect("packages") {
         let name = short(package["name"].as_str().expect("a name")).to_owned();
-        if name == "tests" || name.starts_with("example") {
+        if ["tests", "fuzz"].contains(&name.as_str()) || name.starts_with("example") {
             continue;
         }
         let all = package["dependencies"].as_array().expect("dependencies");

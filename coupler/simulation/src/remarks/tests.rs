@@ -87,7 +87,7 @@ fn a_plate_of_another_thickness() {
     // 5 mm at 1.4 mm are four rows: 5.6 mm, and (5.6 / 5)³ = 1.40. All else are multiples of 1.4 mm.
     let rest =
         [TANK, WATER].concat().replace("0.4, 0.3]", "0.42, 0.308]").replace("0.1, 0.1]", "0.098, 0.098]");
-    let plate = PLATE.replace("0.22", "0.205").replace("0.1]", "0.098]");
+    let plate = PLATE.replace("0.22", "0.205").replace("0.1]", "0.098]").replace("0.01]", "0.0098]");
     assert_eq!(
         scene(0.0014, &format!("{rest}{plate}")),
         [
@@ -96,7 +96,8 @@ fn a_plate_of_another_thickness() {
         ]
     );
     // With a spacing of its own it fits.
-    let fitted = plate.replace("phase = \"solid\"", "phase = \"solid\"\nacross = 4");
+    let fitted =
+        plate.replace("phase = \"solid\"", "phase = \"solid\"\nacross = 4").replace("0.0098]", "0.01]");
     assert_eq!(scene(0.0014, &format!("{rest}{fitted}")), [""; 0]);
 }
 

@@ -19,6 +19,9 @@ struct Chain {
     closed: bool,
 }
 
+/// Outlines lie in a plane, whatever the dimension of the scene.
+const PLANE: usize = 2;
+
 /// All particles of a wall.
 pub(in crate::geometry) fn rows<const D: usize>(polygon: &Polygon, spacing: Spacing) -> Vec<Point<D>> {
     let edges = Edges::new(polygon);
@@ -30,8 +33,11 @@ pub(in crate::geometry) fn rows<const D: usize>(polygon: &Polygon, spacing: Spac
             row(&edges, chain, depth, spacing, &mut kept);
         }
     }
-    let in_space =
-        |p: Point<2>| Point { position: in_space(p.position), normal: in_space(p.normal), corner: p.corner };
+    let in_space = |p: Point<PLANE>| Point {
+        position: in_space(p.position),
+        normal: in_space(p.normal),
+        corner: p.corner,
+    };
     kept.points.into_iter().map(in_space).collect()
 }
 
@@ -168,14 +174,14 @@ fn surface(
 
 /// The particles so far, in cells of side dx.
 struct Kept {
-    points: Vec<Point<2>>,
+    points: Vec<Point<PLANE>>,
     cells: HashMap<[i64; 2], Vec<u32>>,
     dx: f64,
 }
 
 impl Kept {
     /// Takes a particle that is not too close to another one.
-    fn add(&mut self, point: Point<2>) {
+    fn add(&mut self, point: Point<PLANE>) {
         let home = point.position.map(|x| (x / self.dx).floor() as i64);
         let close = (-1..=1).flat_map(|i| (-1..=1).map(move |j| [home[0] + i, home[1] + j])).any(|cell| {
             self.cells.get(&cell).is_some_and(|others| {
