@@ -10,13 +10,13 @@ use crate::columns::{PairParticles, Vectors};
 use crate::effects::{Effects, FluidEffect};
 use crate::fluid::Fluid;
 use crate::momentum::pressure_and_continuity;
-use crate::rates::{FluidPair, PairEffect, PairRates};
+use crate::rates::{FluidPair, PairEffect, PairRates, Target};
 use halfstep_role::ledger::Ledger;
 use halfstep_scene::{EnergyPart, Phase};
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::{Arch, Isa, LANES, Lane};
 use halfstep_sph::neighbours::{ClusterList, PADDING};
-use halfstep_sph::pair::{self, PairLaw, distance, dot};
+use halfstep_sph::pair::{self, PairLaw, distance};
 use halfstep_wire::half_step::Stage;
 use halfstep_wire::protocol::{ForceRecord, StateRecord};
 
@@ -70,14 +70,6 @@ struct PowerLaw<'a, K, E, const D: usize> {
     walls: Option<&'a Vectors<D>>,
 }
 
-#[derive(Clone, Copy)]
-struct Target<O, const D: usize> {
-    velocity: [Lane; D],
-    density: Lane,
-    pressure_term: Lane,
-    own: O,
-}
-
 impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for PowerLaw<'_, K, E, D> {
     type Target = Target<E::Own, D>;
     type Sum = Power;
@@ -88,12 +80,7 @@ impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for PowerLaw<'_,
     }
     #[inline(always)]
     fn target(&self, slot: usize) -> Self::Target {
-        Target {
-            velocity: self.targets.velocities(slot),
-            density: self.targets.densities(slot),
-            pressure_term: self.targets.pressure_terms(slot),
-            own: self.effect.own(slot),
-        }
+        Target::load(self.targets, slot, self.effect.own(slot))
     }
     #[inline(always)]
     fn source_position(&self, j: usize) -> [f64; D] {
@@ -103,17 +90,7 @@ impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for PowerLaw<'_,
     fn add<A: Arch>(&self, i: &Self::Target, j: usize, dx: [Lane; D], r2: Lane, sum: &mut Power) {
         let s = &self.sources.sources[j];
         let f = self.kernel.gradient_over_r::<A>(distance(r2, self.kernel.smoothing_length()));
-        let dv = std::array::from_fn(|d| i.velocity[d] - Lane::splat(s.velocity[d]));
-        let pair = FluidPair {
-            dx,
-            r2,
-            dv,
-            approach: dot::<D, A>(dv, dx),
-            density_i: i.density,
-            density_j: Lane::splat(s.density),
-            pressure_term_i: i.pressure_term,
-            pressure_term_j: Lane::splat(s.pressure_term),
-        };
+        let pair = i.with::<A>(s, dx, r2);
         let mut rates = PairRates { bracket: Lane::ZERO, density: Lane::ZERO, vector: [Lane::ZERO; D] };
         self.effect.add::<A>(&i.own, j, &pair, &mut rates);
         let mf = Lane::splat(self.sources.mass) * f;

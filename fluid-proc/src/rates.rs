@@ -1,7 +1,7 @@
 //! The one pass that gives acceleration and density rate: pressure, continuity and whatever effects the scene calls
 //! for.
 
-use crate::columns::PairParticles;
+use crate::columns::{PairParticles, Source};
 use crate::composition::Composition;
 use crate::momentum::pressure_and_continuity;
 use halfstep_sph::artificial_viscosity::damping;
@@ -152,13 +152,41 @@ pub struct RateLaw<'a, K, E, const D: usize> {
     pub sources: &'a PairParticles<D>,
 }
 
-/// What the law loads of four targets.
+/// What a law loads of four targets.
 #[derive(Clone, Copy)]
 pub struct Target<O, const D: usize> {
-    velocity: [Lane; D],
+    pub(crate) velocity: [Lane; D],
     density: Lane,
-    pressure_term: Lane,
-    own: O,
+    pub(crate) pressure_term: Lane,
+    pub(crate) own: O,
+}
+
+impl<O, const D: usize> Target<O, D> {
+    #[inline(always)]
+    pub(crate) fn load(targets: &PairParticles<D>, slot: usize, own: O) -> Self {
+        Self {
+            velocity: targets.velocities(slot),
+            density: targets.densities(slot),
+            pressure_term: targets.pressure_terms(slot),
+            own,
+        }
+    }
+
+    /// The targets with one neighbour.
+    #[inline(always)]
+    pub(crate) fn with<A: Arch>(&self, s: &Source<D>, dx: [Lane; D], r2: Lane) -> FluidPair<D> {
+        let dv = std::array::from_fn(|d| self.velocity[d] - Lane::splat(s.velocity[d]));
+        FluidPair {
+            dx,
+            r2,
+            dv,
+            approach: dot::<D, A>(dv, dx),
+            density_i: self.density,
+            density_j: Lane::splat(s.density),
+            pressure_term_i: self.pressure_term,
+            pressure_term_j: Lane::splat(s.pressure_term),
+        }
+    }
 }
 
 impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for RateLaw<'_, K, E, D> {
@@ -171,12 +199,7 @@ impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for RateLaw<'_, 
     }
     #[inline(always)]
     fn target(&self, slot: usize) -> Self::Target {
-        Target {
-            velocity: self.targets.velocities(slot),
-            density: self.targets.densities(slot),
-            pressure_term: self.targets.pressure_terms(slot),
-            own: self.effects.own(slot),
-        }
+        Target::load(self.targets, slot, self.effects.own(slot))
     }
 
     #[inline(always)]
@@ -188,17 +211,7 @@ impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for RateLaw<'_, 
     fn add<A: Arch>(&self, i: &Self::Target, j: usize, dx: [Lane; D], r2: Lane, sum: &mut RateSum<D>) {
         let s = &self.sources.sources[j];
         let f = self.kernel.gradient_over_r::<A>(distance(r2, self.kernel.smoothing_length()));
-        let dv = std::array::from_fn(|d| i.velocity[d] - Lane::splat(s.velocity[d]));
-        let pair = FluidPair {
-            dx,
-            r2,
-            dv,
-            approach: dot::<D, A>(dv, dx),
-            density_i: i.density,
-            density_j: Lane::splat(s.density),
-            pressure_term_i: i.pressure_term,
-            pressure_term_j: Lane::splat(s.pressure_term),
-        };
+        let pair = i.with::<A>(s, dx, r2);
         let mut rates = pressure_and_continuity(&pair);
         self.effects.add::<A>(&i.own, j, &pair, &mut rates);
         let mf = Lane::splat(self.sources.mass) * f;

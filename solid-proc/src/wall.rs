@@ -208,15 +208,20 @@ impl<const D: usize> Walls<D> {
         };
         pair::pass(isa, &law, &self.sources, &mut self.sums);
         self.show(solid.reference_density, solid.bulk_modulus);
-        let law = Push {
+        let mut forces = std::mem::take(&mut self.forces);
+        pair::pass(isa, &self.push(kernel, solid), &self.neighbours, &mut forces);
+        self.forces = forces;
+    }
+
+    fn push<'a, K>(&'a self, kernel: K, solid: Touching<'a, D>) -> Push<'a, K, D> {
+        Push {
             kernel,
             solid,
             position: &self.position,
             velocity: &self.velocity,
             pressure: &self.pressure,
             density: &self.density,
-        };
-        pair::pass(isa, &law, &self.neighbours, &mut self.forces);
+        }
     }
 
     /// What walls add to the square of a particle's frequency, 1/s², and its damping, 1/s.
@@ -250,14 +255,7 @@ impl<const D: usize> Walls<D> {
         if self.moving.is_none() {
             return 0.0;
         }
-        let law = PushPower(Push {
-            kernel,
-            solid,
-            position: &self.position,
-            velocity: &self.velocity,
-            pressure: &self.pressure,
-            density: &self.density,
-        });
+        let law = PushPower(self.push(kernel, solid));
         let mut sums = vec![Power::default(); self.neighbours.clusters()];
         pair::pass(isa, &law, &self.neighbours, &mut sums);
         let real = (0..id.len()).filter(|&slot| id[slot] != PADDING);

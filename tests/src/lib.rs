@@ -6,6 +6,7 @@ pub mod cluster;
 pub mod conformance;
 pub mod curve;
 pub mod finite_elements;
+pub mod fluid_alone;
 pub mod linear_waves;
 pub mod patch;
 pub mod process;

@@ -5,7 +5,7 @@ use halfstep_output::Frame;
 use halfstep_role::role::Role;
 use halfstep_scene as scene;
 use halfstep_sph::lane::Isa;
-use halfstep_wire::half_step::{HalfStep, Stage};
+use halfstep_tests::fluid_alone::go_on;
 use std::path::Path;
 
 const TANK: &str = "resolution = 0.01\nend_time = 2.0\ngravity = [0.0, -9.81]\n[fluid]\ndensity = 1000.0\n\
@@ -16,25 +16,10 @@ const TANK: &str = "resolution = 0.01\nend_time = 2.0\ngravity = [0.0, -9.81]\n[
 fn run(text: &str, until: f64) -> (Fluid<2>, Frame) {
     let scene = scene::parse(text, Path::new("moving.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}"));
     let mut fluid = Fluid::<2>::new(&scene, Isa::detect()).unwrap();
-    let (mut t, mut step, mut record) = (0.0, 0, Vec::new());
-    while t < until {
-        fluid.set_time(t);
-        fluid.publish(&[], &mut record);
-        let dt = fluid.dt_limit().min(until - t);
-        for half_step in HalfStep::begin(step, t).lasting(dt).both() {
-            if half_step.stage == Stage::Second {
-                fluid.set_time(half_step.before());
-                fluid.publish(&[], &mut record);
-            }
-            fluid.own_sums();
-            fluid.advance(&half_step, &[]).unwrap();
-        }
-        t += dt;
-        step += 1;
-    }
-    fluid.set_time(t);
+    let mut reached = 0.0;
+    go_on(&mut fluid, until, |_, _, t| reached = t);
     let mut frame = Frame::default();
-    fluid.fill_frame(t, &mut frame);
+    fluid.fill_frame(reached, &mut frame);
     (fluid, frame)
 }
 

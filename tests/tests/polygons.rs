@@ -8,8 +8,9 @@ use halfstep_scene::{self as scene, Scene};
 use halfstep_solid::total_lagrangian::TotalLagrangian;
 use halfstep_solid::{Load, SolidModel};
 use halfstep_sph::lane::Isa;
+use halfstep_tests::fluid_alone::go_on;
 use halfstep_tests::run;
-use halfstep_wire::half_step::{HalfStep, Stage};
+use halfstep_wire::half_step::HalfStep;
 use std::path::Path;
 
 const GRAVITY: f64 = 9.81;
@@ -48,38 +49,25 @@ struct Rest {
 
 fn rest(scene: &Scene, until: f64, into_wall: impl Fn([f64; 2]) -> f64) -> Rest {
     let mut fluid = Fluid::<2>::new(scene, Isa::detect()).expect("a fluid");
-    let (mut t, mut step, mut record) = (0.0, 0, Vec::new());
     let (mut square, mut rows, mut deepest) = (0.0, 0, 0.0_f64);
     let mut frame = Frame::default();
     let (mass, count) = (fluid.audit().mass, layout::<2>(scene).fluid.len());
-    while t < until {
+    go_on(&mut fluid, until, |fluid, step, t| {
+        if step % 50 != 0 {
+            return;
+        }
         fluid.set_time(t);
-        fluid.publish(&[], &mut record);
-        let dt = fluid.dt_limit().min(until - t);
-        for half_step in HalfStep::begin(step, t).lasting(dt).both() {
-            if half_step.stage == Stage::Second {
-                fluid.set_time(half_step.before());
-                fluid.publish(&[], &mut record);
-            }
-            fluid.own_sums();
-            fluid.advance(&half_step, &[]).expect("within bounds");
+        frame.clear();
+        fluid.fill_frame(t, &mut frame);
+        let water = fluid.audit();
+        if t > 0.5 * until {
+            square += 2.0 * water.kinetic_energy / water.mass;
+            rows += 1;
         }
-        t += dt;
-        step += 1;
-        if step % 50 == 0 {
-            fluid.set_time(t);
-            frame.clear();
-            fluid.fill_frame(t, &mut frame);
-            let water = fluid.audit();
-            if t > 0.5 * until {
-                square += 2.0 * water.kinetic_energy / water.mass;
-                rows += 1;
-            }
-            // Water comes before walls.
-            let places = frame.points.iter().take(count).map(|p| [f64::from(p[0]), f64::from(p[1])]);
-            deepest = places.map(&into_wall).fold(deepest, f64::max);
-        }
-    }
+        // Water comes before walls.
+        let places = frame.points.iter().take(count).map(|p| [f64::from(p[0]), f64::from(p[1])]);
+        deepest = places.map(&into_wall).fold(deepest, f64::max);
+    });
     let creep = (square / f64::from(rows)).sqrt() / (GRAVITY * DEPTH).sqrt();
     Rest { lost: mass - fluid.audit().mass, creep, deepest }
 }

@@ -221,8 +221,7 @@ fn rerun(path: &Path, changed: bool) -> Result<Scene, String> {
     }
     let folder = path.parent().unwrap_or(Path::new(""));
     let wrong = |reason: String| format!("{}: {reason}", path.display());
-    let text = std::fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
-    let scene = Scene::from_json(&text).map_err(|error| wrong(error.to_string()))?;
+    let scene = run::read_scene_file(path).map_err(|error| error.to_string())?;
     let report = RunReport::read(&folder.join("run.json"))
         .map_err(|error| wrong(format!("is run with its run's run.json beside it: {error}")))?;
     let told = serde_json::to_value(&scene).ok();

@@ -7,10 +7,7 @@ use halfstep_coupling::error::RunError;
 use halfstep_coupling::roles;
 use halfstep_link::{FLUID, LinkConfig, Participant};
 use halfstep_output::RunReport;
-use halfstep_output::run_json::{
-    EnergyEntry, EnergyReport, ParticipantEnergy, ParticipantReport, RoleSeconds,
-};
-use halfstep_role::ledger::Entry;
+use halfstep_output::run_json::{EnergyReport, ParticipantEnergy, ParticipantReport, RoleSeconds};
 use halfstep_role::report::Report;
 use halfstep_scene::geometry::Layout;
 use halfstep_scene::{Phase, Scene};
@@ -155,10 +152,7 @@ pub(crate) fn report_participants(
 /// The energy ledgers that participants kept.
 fn energy(reports: &[Option<Report>]) -> Option<EnergyReport> {
     let kept = reports.iter().flatten().filter(|own| !own.energy.is_empty());
-    let ledger = |own: &Report| {
-        let entry = |e: &Entry| EnergyEntry { part: e.part, joules: e.joules, largest: e.largest };
-        ParticipantEnergy { name: own.name.clone(), parts: own.energy.iter().map(entry).collect() }
-    };
+    let ledger = |own: &Report| ParticipantEnergy { name: own.name.clone(), parts: own.energy.clone() };
     let ledgers: Vec<ParticipantEnergy> = kept.map(ledger).collect();
     let complete = ledgers.len() == reports.len();
     EnergyReport::of(ledgers, complete)

@@ -116,9 +116,16 @@ pub fn resume(options: &RunOptions, until: Option<f64>) -> Result<(Scene, Ended)
 /// # Errors
 /// There is none that can be read.
 pub fn read_scene(dir: &Path) -> Result<Scene, RunError> {
-    let path = dir.join("scene.json");
+    read_scene_file(&dir.join("scene.json"))
+}
+
+/// The same from a file.
+///
+/// # Errors
+/// As for [`read_scene`].
+pub fn read_scene_file(path: &Path) -> Result<Scene, RunError> {
     let wrong = |reason: String| RunError::System(format!("{}: {reason}", path.display()));
-    let text = std::fs::read_to_string(&path).map_err(|error| wrong(error.to_string()))?;
+    let text = std::fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
     Scene::from_json(&text).map_err(|error| wrong(error.to_string()))
 }
 

@@ -1,7 +1,7 @@
 //! `run.json`: what a run was and how it went.
 
 use super::{OutputError, atomic};
-use halfstep_scene::EnergyPart;
+use halfstep_scene::{EnergyEntry, EnergyPart};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -135,17 +135,6 @@ pub struct ParticipantEnergy {
     pub name: String,
     /// What it holds, what it was given since the start, and the rest.
     pub parts: Vec<EnergyEntry>,
-}
-
-/// A part of an energy ledger, J (2D: J/m).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct EnergyEntry {
-    /// Which.
-    pub part: EnergyPart,
-    /// Held at the end, or given since the start.
-    pub joules: f64,
-    /// Largest change since the start.
-    pub largest: f64,
 }
 
 impl EnergyReport {

@@ -7,20 +7,8 @@
 //! What is given over a step is its power at n + 1/2, with the rates that the step took, times dt. So the rest is the
 //! error of time integration and nothing else.
 
-use halfstep_scene::{EnergyPart, Phase};
+use halfstep_scene::{EnergyEntry, EnergyPart, Phase};
 use halfstep_wire::state::{Fields, State, StateError};
-use serde::{Deserialize, Serialize};
-
-/// A part of a ledger at the end of a run.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Entry {
-    /// Which.
-    pub part: EnergyPart,
-    /// Held at the end, or given since the start, J (2D: J/m).
-    pub joules: f64,
-    /// Largest change since the start, J (2D: J/m).
-    pub largest: f64,
-}
 
 /// The ledger.
 #[derive(Clone, Debug)]
@@ -74,8 +62,8 @@ impl Ledger {
     }
 
     /// All parts of the participant's phase.
-    pub fn entries(&self) -> Vec<Entry> {
-        let entry = |&part: &EnergyPart| Entry {
+    pub fn entries(&self) -> Vec<EnergyEntry> {
+        let entry = |&part: &EnergyPart| EnergyEntry {
             part,
             joules: self.values[part as usize],
             largest: self.largest[part as usize],

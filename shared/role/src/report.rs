@@ -1,7 +1,6 @@
 //! What a participant says about itself when it ends: where its time went and how much it computed.
 
-use crate::ledger::Entry;
-use halfstep_scene::EffectName;
+use halfstep_scene::{EffectName, EnergyEntry};
 use serde::{Deserialize, Serialize};
 
 /// Report of a participant, in seconds unless said otherwise.
@@ -29,5 +28,5 @@ pub struct Report {
     /// Effects that took measurable time.
     pub effects: Vec<(EffectName, f64)>,
     /// Energy ledger, J; empty where the scene asks for none.
-    pub energy: Vec<Entry>,
+    pub energy: Vec<EnergyEntry>,
 }

@@ -67,6 +67,17 @@ parts! {
     Integration "integration",
 }
 
+/// A part of a ledger at the end of a run, J (2D: J/m).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EnergyEntry {
+    /// Which.
+    pub part: EnergyPart,
+    /// Held at the end, or given since the start.
+    pub joules: f64,
+    /// Largest change since the start.
+    pub largest: f64,
+}
+
 /// Number of parts that are held; they come first.
 pub(crate) const HELD: usize = 3;
 
@@ -111,27 +122,14 @@ const SOLID: [EnergyPart; 14] = {
     ]
 };
 
-const fn names<const N: usize>(parts: [EnergyPart; N]) -> [&'static str; N] {
-    let mut names = [""; N];
-    let mut k = 0;
-    while k < N {
-        names[k] = parts[k].name();
-        k += 1;
-    }
-    names
-}
-
-static NAMES_OF_FLUID: [&str; FLUID.len()] = names(FLUID);
-static NAMES_OF_SOLID: [&str; SOLID.len()] = names(SOLID);
-
 impl EnergyPart {
     /// Name of the part in scenes and reports.
-    pub const fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         Self::NAMES[self as usize]
     }
 
     /// The parts of a phase's ledger: what it holds, what it is given, and the rest.
-    pub const fn of(phase: Phase) -> &'static [Self] {
+    pub fn of(phase: Phase) -> &'static [Self] {
         match phase {
             Phase::Solid => &SOLID,
             _ => &FLUID,
@@ -139,15 +137,9 @@ impl EnergyPart {
     }
 
     /// Names of the parts of a phase's ledger, or of one of them.
-    pub(crate) fn names(phase: Phase, part: Option<Self>) -> &'static [&'static str] {
-        let all: &'static [&'static str] = match phase {
-            Phase::Solid => &NAMES_OF_SOLID,
-            _ => &NAMES_OF_FLUID,
-        };
-        match part.and_then(|part| Self::of(phase).iter().position(|&other| other == part)) {
-            Some(place) => &all[place..=place],
-            None => all,
-        }
+    pub(crate) fn names(phase: Phase, part: Option<Self>) -> Vec<String> {
+        let own = Self::of(phase).iter().filter(|own| part.is_none_or(|part| part == **own));
+        own.map(|own| own.name().to_owned()).collect()
     }
 
     /// What an effect of the fluid of this name gives.

@@ -11,6 +11,7 @@
 //! first in the file. The loser has no particle inside the winner nor closer than dx / 2 (the mean where spacings
 //! differ) to one of its particles.
 
+mod cells;
 mod moved;
 mod nearest;
 mod occupied;
@@ -24,6 +25,7 @@ mod region;
 mod tests;
 
 use crate::{Block, CantileverMode, Geometry, Lattice, Motion, Phase, Scene, Shape, dispatch};
+pub use cells::{Cells, cell};
 pub use moved::Moved;
 pub use nearest::nearest;
 use occupied::Occupied;
@@ -168,9 +170,8 @@ fn of_phases<const D: usize>(scene: &Scene, phases: &[Phase]) -> Layout<D> {
             let velocity = truncated(shape.velocity);
             match phase {
                 Phase::Solid => {
-                    let point = |(p, copy): &(points::Point<D>, u32)| SolidPoint {
-                        copy: *copy,
-                        ..solid_point(scene, shape, index, p.position)
+                    let point = |(p, copy): &(points::Point<D>, u32)| {
+                        solid_point(scene, shape, [index as u32, *copy], p.position)
                     };
                     layout.solid.extend(kept.iter().map(point));
                 }
@@ -316,7 +317,7 @@ fn catches<const D: usize>(scene: &Scene, shape: &Shape) -> Vec<bool> {
 fn solid_point<const D: usize>(
     scene: &Scene,
     shape: &Shape,
-    index: usize,
+    [body, copy]: [u32; 2],
     position: [f64; D],
 ) -> SolidPoint<D> {
     let clamped = shape.clamp.iter().any(|block| holds(block, &position, TOLERANCE * scene.resolution));
@@ -325,13 +326,7 @@ fn solid_point<const D: usize>(
     if let (Some(mode), Some(solid)) = (&shape.cantilever_mode, solid) {
         velocity[1] += cantilever_velocity(mode, solid.sound_speed(), position[0]);
     }
-    SolidPoint {
-        position,
-        velocity: if clamped { [0.0; D] } else { velocity },
-        clamped,
-        body: index as u32,
-        copy: 0,
-    }
+    SolidPoint { position, velocity: if clamped { [0.0; D] } else { velocity }, clamped, body, copy }
 }
 
 /// Whether a point lies in a box, its surface included, or within `tolerance` (m) of it.

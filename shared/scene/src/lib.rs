@@ -53,7 +53,7 @@ mod velocity_field;
 
 pub use bodies::Body;
 pub use effect::{Decision, Derived, EffectName, Switch};
-pub use energy::EnergyPart;
+pub use energy::{EnergyEntry, EnergyPart};
 pub use error::{Place, SceneError, SceneErrors};
 pub use halfstep_sph::Phase;
 pub use halfstep_sph::kernel::KernelName;

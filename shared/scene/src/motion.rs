@@ -10,7 +10,6 @@ pub use spline::Spline;
 
 use crate::Block;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
 /// How a wall moves.
@@ -77,12 +76,7 @@ impl Motion {
                 if t < 0.0 {
                     return Placement::default();
                 }
-                let omega = 2.0 * PI / period;
-                // One implementation on every machine: its bits matter.
-                let (s, c) = libm::sincos(omega * t);
-                let (e, e1, e2) = envelope(t, ramp);
-                let (x, v) = (e * s, e1 * s + e * omega * c);
-                let a = e2 * s + 2.0 * e1 * omega * c - e * omega * omega * s;
+                let [x, v, a] = course::swing(t, period, 0.0, ramp);
                 Placement {
                     displacement: amplitude.map(|k| k * x),
                     velocity: amplitude.map(|k| k * v),
@@ -124,8 +118,7 @@ impl Motion {
         match self {
             Self::Steady { velocity, .. } => length(velocity),
             Self::Oscillating { amplitude, period, ramp, .. } => {
-                let rise = if *ramp > 0.0 { FRAC_PI_2 / ramp } else { 0.0 };
-                length(amplitude) * (2.0 * PI / period + rise)
+                length(amplitude) * course::fastest_swing(*period, *ramp)
             }
             Self::Composed(composed) => {
                 composed.fastest(farthest(&composed.pivot.unwrap_or_default(), around))
@@ -149,20 +142,11 @@ pub(crate) fn farthest(pivot: &[f64; 3], around: &Block) -> f64 {
     (along(0) * along(0) + along(1) * along(1)).sqrt()
 }
 
-/// The envelope and its first two derivatives.
-fn envelope(t: f64, ramp: f64) -> (f64, f64, f64) {
-    if t >= ramp {
-        return (1.0, 0.0, 0.0);
-    }
-    // sin² = (1 - cos 2x) / 2.
-    let rate = PI / ramp;
-    let (s, c) = libm::sincos(rate * t);
-    (0.5 * (1.0 - c), 0.5 * rate * s, 0.5 * rate * rate * c)
-}
-
 #[cfg(test)]
 mod tests {
+    use super::course::envelope;
     use super::*;
+    use std::f64::consts::PI;
 
     const ANYWHERE: Block = Block { min: [0.0; 3], max: [1.0; 3] };
 

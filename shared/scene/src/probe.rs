@@ -120,9 +120,7 @@ impl ProbeKind {
             Self::WaterLevel { x } => ((1..=x.len()).map(|k| format!("level-{k}")).collect(), "m"),
             Self::Front => (one("x"), "m"),
             Self::KineticEnergy { .. } | Self::StrainEnergy => (one("energy"), "J"),
-            Self::Energy { phase, part } => {
-                (EnergyPart::names(*phase, *part).iter().map(|&name| name.to_owned()).collect(), "J")
-            }
+            Self::Energy { phase, part } => (EnergyPart::names(*phase, *part), "J"),
             Self::Force { .. } => (axes(), "N"),
             Self::Moment { .. } => (one("moment"), "N m"),
         }

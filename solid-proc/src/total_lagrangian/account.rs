@@ -58,6 +58,28 @@ impl<const D: usize> State for Account<D> {
 }
 
 impl<const D: usize> TotalLagrangian<D> {
+    /// What the present sub-step gives is noted.
+    pub(super) fn keeps_account(&self) -> bool {
+        self.account.as_ref().is_some_and(|account| account.given.open)
+    }
+
+    /// What follows belongs to a step that is kept, or no longer does.
+    pub(super) fn set_account_open(&mut self, open: bool) {
+        if let Some(account) = &mut self.account {
+            account.given.open = open;
+        }
+    }
+
+    /// Kinetic energy of the particles that no clamp holds, J (2D: J/m), where account is kept.
+    pub(super) fn accounted_kinetic_energy(&self) -> Option<f64> {
+        if !self.keeps_account() {
+            return None;
+        }
+        let free = |&slot: &usize| self.id[slot] != PADDING && self.fixed.clamped[slot] == 0.0;
+        let square = |slot: usize| (0..D).map(|d| self.now.velocity[d][slot].powi(2)).sum::<f64>();
+        Some(0.5 * self.mass * (0..self.id.len()).filter(free).map(square).sum::<f64>())
+    }
+
     /// The velocities are those of the drift, and the present state has been evaluated.
     fn sinks(&mut self) -> Sinks<D> {
         let slots = self.id.len();
@@ -95,7 +117,7 @@ impl<const D: usize> TotalLagrangian<D> {
     /// Notes what was given over the sub-step of this length, s, that led to the present state; `before` is what
     /// clamps moved from.
     pub(super) fn note_sub_step(&mut self, dt: f64, before: &[Driven<D>]) {
-        if !self.account.as_ref().is_some_and(|account| account.given.open) {
+        if !self.keeps_account() {
             return;
         }
         let sinks = self.sinks();
@@ -139,7 +161,7 @@ impl<const D: usize> TotalLagrangian<D> {
 
     /// Where clamps move particles from; nothing where no account is open.
     pub(super) fn driven_from(&self) -> Vec<Driven<D>> {
-        if !self.account.as_ref().is_some_and(|account| account.given.open) {
+        if !self.keeps_account() {
             return Vec::new();
         }
         let of = |columns: &Vectors<D>, slot: usize| std::array::from_fn(|d| columns[d][slot]);

@@ -106,7 +106,7 @@ impl<const D: usize> TotalLagrangian<D> {
             let arms = std::mem::take(&mut self.arms);
             let shear_modulus = self.material.shear_modulus();
             let mut relaxation = Arms::over(elapsed, &arms, shear_modulus, &mut memory);
-            let accounted = self.account.as_ref().is_some_and(|account| account.given.open);
+            let accounted = self.keeps_account();
             if accounted {
                 relaxation = relaxation.with_account(elapsed, &arms);
             }

@@ -268,14 +268,6 @@ impl<const D: usize> TotalLagrangian<D> {
         }
     }
 
-    /// Kinetic energy of the particles that no clamp holds, J (2D: J/m), where account is kept.
-    fn accounted_kinetic_energy(&self) -> Option<f64> {
-        self.account.as_ref().filter(|account| account.given.open)?;
-        let free = |&slot: &usize| self.id[slot] != PADDING && self.fixed.clamped[slot] == 0.0;
-        let square = |slot: usize| (0..D).map(|d| self.now.velocity[d][slot].powi(2)).sum::<f64>();
-        Some(0.5 * self.mass * (0..self.id.len()).filter(free).map(square).sum::<f64>())
-    }
-
     fn drift(&mut self, dt: f64) {
         for d in 0..D {
             for (u, v) in self.now.displacement[d].iter_mut().zip(&self.now.velocity[d]) {
@@ -311,12 +303,6 @@ impl<const D: usize> TotalLagrangian<D> {
             self.evaluate(each);
             self.note_sub_step(each, &driven);
             self.kick(0.5 * each);
-        }
-    }
-
-    fn set_account_open(&mut self, open: bool) {
-        if let Some(account) = &mut self.account {
-            account.given.open = open;
         }
     }
 

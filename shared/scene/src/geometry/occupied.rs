@@ -1,12 +1,10 @@
 //! Which places earlier shapes have taken.
 
 use super::TOLERANCE;
+use super::cells::Cells;
 use super::points::Spacing;
 use super::region::Region;
 use crate::Phase;
-use std::collections::HashMap;
-use std::hash::BuildHasherDefault;
-use xxhash_rust::xxh3::Xxh3Default;
 
 /// A particle's position and its spacing, m.
 type Placed<const D: usize> = ([f64; D], f64);
@@ -16,12 +14,12 @@ pub(super) struct Occupied<'s, const D: usize> {
     /// No smaller than any spacing, m.
     dx: f64,
     taken: Vec<(Region<'s>, Spacing, Phase)>,
-    cells: HashMap<[i64; D], Vec<Placed<D>>, BuildHasherDefault<Xxh3Default>>,
+    cells: Cells<Placed<D>, D>,
 }
 
 impl<'s, const D: usize> Occupied<'s, D> {
     pub(super) fn new(dx: f64) -> Self {
-        Self { dx, taken: Vec::new(), cells: HashMap::default() }
+        Self { dx, taken: Vec::new(), cells: Cells::new(dx) }
     }
 
     /// Takes a shape's places.
@@ -33,7 +31,7 @@ impl<'s, const D: usize> Occupied<'s, D> {
         positions: impl Iterator<Item = [f64; D]>,
     ) {
         for position in positions {
-            self.cells.entry(self.cell(&position)).or_default().push((position, spacing.dx));
+            self.cells.add(&position, (position, spacing.dx));
         }
         self.taken.push((region, spacing, phase));
     }
@@ -52,20 +50,9 @@ impl<'s, const D: usize> Occupied<'s, D> {
     }
 
     fn has_neighbour(&self, position: &[f64; D], own: f64) -> bool {
-        let home = self.cell(position);
-        // A neighbour within dx / 2 is in one of the 3^D cells around.
-        (0..3_usize.pow(D as u32)).any(|code| {
-            let cell = std::array::from_fn(|a| home[a] + (code / 3_usize.pow(a as u32) % 3) as i64 - 1);
-            self.cells.get(&cell).is_some_and(|points| {
-                points.iter().any(|(p, spacing)| {
-                    let limit = (0.5 - TOLERANCE) * 0.5 * (own + spacing);
-                    (0..D).map(|a| (p[a] - position[a]).powi(2)).sum::<f64>() < limit * limit
-                })
-            })
+        self.cells.around(position).any(|(p, spacing)| {
+            let limit = (0.5 - TOLERANCE) * 0.5 * (own + spacing);
+            (0..D).map(|a| (p[a] - position[a]).powi(2)).sum::<f64>() < limit * limit
         })
-    }
-
-    fn cell(&self, position: &[f64; D]) -> [i64; D] {
-        position.map(|x| (x / self.dx).floor() as i64)
     }
 }

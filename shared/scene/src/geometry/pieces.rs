@@ -1,5 +1,6 @@
 //! Connected pieces of solids.
 
+use super::cells::Cells;
 use super::{Layout, SolidPoint};
 use crate::{Scene, SolidModelName};
 use std::collections::{BTreeSet, HashMap};
@@ -28,22 +29,17 @@ fn each_pair<const D: usize>(scene: &Scene, layout: &Layout<D>, mut visit: impl 
         2.0 * (h * scene.spacing(&scene.shapes[point.body as usize]))
     };
     let widest = points.iter().map(reach_of).fold(0.0, f64::max);
-    let cell = |x: &[f64; D]| x.map(|x| (x / widest).floor() as i64);
-    let mut cells: HashMap<[i64; D], Vec<u32>> = HashMap::new();
+    let mut cells = Cells::new(widest);
     for (i, point) in points.iter().enumerate() {
-        let (home, reach) = (cell(&point.position), reach_of(point));
-        for code in 0..3_usize.pow(D as u32) {
-            let near: [i64; D] =
-                std::array::from_fn(|a| home[a] + (code / 3_usize.pow(a as u32) % 3) as i64 - 1);
-            for &j in cells.get(&near).into_iter().flatten() {
-                let other = &points[j as usize];
-                let r2: f64 = (0..D).map(|d| (point.position[d] - other.position[d]).powi(2)).sum();
-                if r2 < reach * reach && solid(point) == solid(other) {
-                    visit(i as u32, j);
-                }
+        let reach = reach_of(point);
+        for &j in cells.around(&point.position) {
+            let other: &SolidPoint<D> = &points[j as usize];
+            let r2: f64 = (0..D).map(|d| (point.position[d] - other.position[d]).powi(2)).sum();
+            if r2 < reach * reach && solid(point) == solid(other) {
+                visit(i as u32, j);
             }
         }
-        cells.entry(home).or_default().push(i as u32);
+        cells.add(&point.position, i as u32);
     }
 }
 
@@ -69,10 +65,12 @@ pub fn pieces<const D: usize>(scene: &Scene, layout: &Layout<D>) -> Vec<u32> {
 /// Pairs of shapes, by their indices, that touch and are different bodies of one solid.
 pub fn touching<const D: usize>(scene: &Scene, layout: &Layout<D>) -> BTreeSet<(usize, usize)> {
     let mut pairs = BTreeSet::new();
-    let (points, bodies) = (&layout.solid, pieces(scene, layout));
+    let points = &layout.solid;
     each_pair(scene, layout, |i, j| {
-        let [a, b] = [i, j].map(|k| points[k as usize].body as usize);
-        if a != b && bodies[i as usize] != bodies[j as usize] {
+        let [one, other] = [i, j].map(|k| &points[k as usize]);
+        // Particles that touch are of one piece where their bodies are the same.
+        if one.body != other.body && label(scene, one) != label(scene, other) {
+            let [a, b] = [one, other].map(|point| point.body as usize);
             pairs.insert((a.min(b), a.max(b)));
         }
     });

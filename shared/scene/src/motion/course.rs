@@ -1,6 +1,6 @@
 //! Motions that are sums of parts.
 
-use super::{Placement, Spline, Turn, envelope};
+use super::{Placement, Spline, Turn};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -77,11 +77,7 @@ impl Course {
                 if t < 0.0 {
                     return [0.0; 3];
                 }
-                let omega = 2.0 * PI / period;
-                // One implementation on every machine: its bits matter.
-                let (s, c) = libm::sincos(omega * t + phase);
-                let (e, e1, e2) = envelope(t, ramp);
-                [e * s, e1 * s + e * omega * c, e2 * s + 2.0 * e1 * omega * c - e * omega * omega * s]
+                swing(t, period, phase, ramp)
             }
         }
     }
@@ -99,12 +95,35 @@ impl Course {
     fn fastest(&self) -> f64 {
         match self {
             Self::Steady { .. } => 1.0,
-            Self::Sine { period, ramp, .. } => {
-                2.0 * PI / period + if *ramp > 0.0 { FRAC_PI_2 / ramp } else { 0.0 }
-            }
+            Self::Sine { period, ramp, .. } => fastest_swing(*period, *ramp),
             Self::Points(spline) => spline.fastest(),
         }
     }
+}
+
+/// e sin(2 pi t / period + phase), with its first two derivatives.
+pub(super) fn swing(t: f64, period: f64, phase: f64, ramp: f64) -> [f64; 3] {
+    let omega = 2.0 * PI / period;
+    // One implementation on every machine: its bits matter.
+    let (s, c) = libm::sincos(omega * t + phase);
+    let (e, e1, e2) = envelope(t, ramp);
+    [e * s, e1 * s + e * omega * c, e2 * s + 2.0 * e1 * omega * c - e * omega * omega * s]
+}
+
+/// An upper bound of the size of its rate.
+pub(super) fn fastest_swing(period: f64, ramp: f64) -> f64 {
+    2.0 * PI / period + if ramp > 0.0 { FRAC_PI_2 / ramp } else { 0.0 }
+}
+
+/// The envelope and its first two derivatives.
+pub(super) fn envelope(t: f64, ramp: f64) -> (f64, f64, f64) {
+    if t >= ramp {
+        return (1.0, 0.0, 0.0);
+    }
+    // sin² = (1 - cos 2x) / 2.
+    let rate = PI / ramp;
+    let (s, c) = libm::sincos(rate * t);
+    (0.5 * (1.0 - c), 0.5 * rate * s, 0.5 * rate * rate * c)
 }
 
 /// The integral of the envelope from 0 to t < ramp, the envelope and its rate.

@@ -5,8 +5,8 @@
 //! lattice that a tank has. Of particles that are closer to another side than to their own, that one's rows are there.
 
 use super::{Edge, Edges, Polygon, dot, in_space};
+use crate::geometry::cells::Cells;
 use crate::geometry::points::{Point, Spacing};
-use std::collections::HashMap;
 
 /// Cosine of the turn from which on a corner reverses all components of a velocity: 45 degrees.
 const SHARP: f64 = std::f64::consts::FRAC_1_SQRT_2;
@@ -27,7 +27,7 @@ pub(in crate::geometry) fn rows<const D: usize>(polygon: &Polygon, spacing: Spac
     let edges = Edges::new(polygon);
     let chains = chains(&edges);
     let layers = spacing.layers() + i64::from(spacing.nodal);
-    let mut kept = Kept { points: Vec::new(), cells: HashMap::new(), dx: spacing.dx };
+    let mut kept = Kept { points: Vec::new(), cells: Cells::new(spacing.dx), dx: spacing.dx };
     for depth in (0..layers).map(|k| spacing.place(k) * spacing.dx) {
         for chain in &chains {
             row(&edges, chain, depth, spacing, &mut kept);
@@ -172,27 +172,21 @@ fn surface(
     (if length > 0.0 { out.map(|c| c / length) } else { edge.normal() }, sharp)
 }
 
-/// The particles so far, in cells of side dx.
+/// The particles so far.
 struct Kept {
     points: Vec<Point<PLANE>>,
-    cells: HashMap<[i64; 2], Vec<u32>>,
+    /// Their positions, m.
+    cells: Cells<[f64; PLANE], PLANE>,
     dx: f64,
 }
 
 impl Kept {
     /// Takes a particle that is not too close to another one.
     fn add(&mut self, point: Point<PLANE>) {
-        let home = point.position.map(|x| (x / self.dx).floor() as i64);
-        let close = (-1..=1).flat_map(|i| (-1..=1).map(move |j| [home[0] + i, home[1] + j])).any(|cell| {
-            self.cells.get(&cell).is_some_and(|others| {
-                others.iter().any(|&other| {
-                    let q = self.points[other as usize].position;
-                    libm::hypot(q[0] - point.position[0], q[1] - point.position[1]) < APART * self.dx
-                })
-            })
-        });
-        if !close {
-            self.cells.entry(home).or_default().push(self.points.len() as u32);
+        let p = point.position;
+        let apart = |q: &[f64; PLANE]| libm::hypot(q[0] - p[0], q[1] - p[1]);
+        if self.cells.around(&p).all(|q| apart(q) >= APART * self.dx) {
+            self.cells.add(&p, p);
             self.points.push(point);
         }
     }
