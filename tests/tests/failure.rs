@@ -259,6 +259,28 @@ fn a_run_with_a_silent_role_can_be_interrupted() {
     }
 }
 
+/// The coupler waits for the solid, and the solid can tell nobody that the fluid has gone.
+#[test]
+fn the_end_of_one_role_ends_the_wait_for_another() {
+    let _machine = whole_machine();
+    let running = under_way();
+    let launcher = running.pid();
+    let [fluid, solid] = ["fluid", "solid"].map(|role| role_of(launcher, role).expect("a child"));
+    kill(solid, libc::SIGSTOP);
+    std::thread::sleep(Duration::from_millis(200));
+    kill(fluid, libc::SIGKILL);
+    let outcome = running.wait();
+    assert_eq!(outcome.code(), Some(2), "{}", outcome.stderr);
+    assert!(
+        outcome.stderr.contains("the fluid process ended (signal: 9 (SIGKILL)) at step "),
+        "{}",
+        outcome.stderr
+    );
+    assert_eq!(outcome.report().status, Some(RunStatus::Failed));
+    assert!(!is_alive(solid), "it went with the run");
+    usable(&outcome, launcher);
+}
+
 #[test]
 fn nobody_has_to_read_what_a_run_says() {
     // The shell closes both ends before the program starts.

@@ -27,6 +27,7 @@ pub struct Course {
 pub struct Progress {
     messages: AtomicU64,
     awaited: AtomicUsize,
+    waits: AtomicBool,
 }
 
 impl Progress {
@@ -40,13 +41,20 @@ impl Progress {
         self.awaited.load(Ordering::Relaxed)
     }
 
+    /// Whether that message has not come yet.
+    pub fn waits(&self) -> bool {
+        self.waits.load(Ordering::Relaxed)
+    }
+
     /// A participant's message is awaited.
     pub(crate) fn await_message(&self, place: usize) {
         self.awaited.store(place, Ordering::Relaxed);
+        self.waits.store(true, Ordering::Relaxed);
     }
 
-    /// It has come.
+    /// The awaited message has come.
     pub(crate) fn note_message(&self) {
+        self.waits.store(false, Ordering::Relaxed);
         self.messages.fetch_add(1, Ordering::Relaxed);
     }
 }

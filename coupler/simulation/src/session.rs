@@ -5,7 +5,7 @@ use crate::checkpoint::Checkpoint;
 use crate::isa::{self, ISA_VARIABLE};
 use crate::options::{Launcher, RunOptions, SolidSource};
 use crate::participants::{participants, report_outcome, report_participants};
-use crate::silence::{Silence, TICK, TOLD};
+use crate::silence::{Ended, Silence, TICK, TOLD};
 use halfstep_coupling::couple::{Coupler, Outcome};
 use halfstep_coupling::course::Course;
 use halfstep_coupling::error::RunError;
@@ -180,7 +180,7 @@ impl<'a, const D: usize> Session<'a, D> {
             let watcher = scope.spawn(|| {
                 // Before the handshake nobody else notices a child that could not even start.
                 let early = watch(&mut children, &abort, &connected, &done, &stop.stop);
-                (early, Silence::new(&progress, &names).watch(&abort, &done, stop))
+                (early, Silence::new(&progress, &names).watch(&mut children, &abort, &done, stop))
             });
             let result = CouplerLink::<Processes>::open(config, Some(Arc::clone(&abort)))
                 .map_err(RunError::from)
@@ -192,13 +192,17 @@ impl<'a, const D: usize> Session<'a, D> {
                 })
                 .and_then(|link| self.lockstep(link, course));
             done.store(true, Ordering::Relaxed);
-            let (early, silent) = watcher.join().unwrap_or((None, None));
-            match (result, early, silent) {
-                (Err(error @ RunError::Link(_)), Some(ended), _) => {
-                    let external = self.options.external_names();
-                    Err(Cause { log: &log, external: &external, at: None }.of(error, Some(ended)))
+            let (early, later) = watcher.join().unwrap_or((None, None));
+            let cause = |error, ended, at| {
+                let external = self.options.external_names();
+                Err(Cause { log: &log, external: &external, at }.of(error, Some(ended)))
+            };
+            match (result, early, later) {
+                (Err(error @ RunError::Link(_)), Some(ended), _) => cause(error, ended, None),
+                (Err(error @ RunError::Link(_)), _, Some(Ended::Failed(role, status))) => {
+                    cause(error, (role, status), Some((course.clock.step(), course.clock.time())))
                 }
-                (Err(RunError::Link(_)), _, Some((role, silence))) => {
+                (Err(RunError::Link(_)), _, Some(Ended::Silent(role, silence))) => {
                     Err(RunError::StoppedAtOnce { role, seconds: silence.as_secs_f64() })
                 }
                 (result, ..) => result,
