@@ -5,9 +5,13 @@ use std::path::PathBuf;
 use std::process::Command;
 
 fn explain(scene: &str, overrides: &[&str], json: bool) -> (Option<i32>, String) {
+    told("explain", scene, overrides, json)
+}
+
+fn told(subcommand: &str, scene: &str, overrides: &[&str], json: bool) -> (Option<i32>, String) {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(scene).with_extension("toml");
     let mut command = Command::new(env!("CARGO_BIN_EXE_halfstep-under-test"));
-    command.arg("explain").arg(path);
+    command.arg(subcommand).arg(path);
     for key in overrides {
         command.args(["--set", key]);
     }
@@ -83,4 +87,23 @@ fn the_reason_is_the_key_or_the_fact() {
     assert!(text.lines().any(|l| l.starts_with("fluid") && l.contains("off")), "{text}");
     let (code, _) = explain("oscillating-plate", &["resolution=-1"], false);
     assert_eq!(code, Some(1));
+}
+
+#[test]
+fn a_check_for_scripts_says_what_it_says_to_people() {
+    let (code, text) = told("check", "dam-break-plate", &["resolution=0.004"], true);
+    assert_eq!(code, Some(0), "{text}");
+    let check: Value =
+        serde_json::from_str(&text).unwrap_or_else(|e| panic!("nothing but JSON: {e}: {text}"));
+    let (_, people) = told("check", "dam-break-plate", &["resolution=0.004"], false);
+    let [fluid, solid, wall] =
+        ["fluid", "solid", "wall"].map(|phase| check["particles"][phase].as_u64().unwrap());
+    assert!(people.contains(&format!("{fluid} fluid, {solid} solid, {wall} wall")), "{people}");
+    let steps = check["steps"].as_u64().unwrap();
+    assert!(people.contains(&format!(": {steps} steps to t = ")), "{people}");
+    let step = check["end_time"].as_f64().unwrap() / check["time_step"].as_f64().unwrap();
+    assert!((step.ceil() - steps as f64).abs() < 1.0);
+    assert_eq!(check["bodies"][0]["particles"].as_u64(), Some(solid));
+    assert_eq!(check["warnings"].as_array().map(Vec::len), Some(0), "a shipped scene has none");
+    assert!(check["expected_seconds"].as_f64().unwrap() > 0.0);
 }

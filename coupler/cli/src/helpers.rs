@@ -101,8 +101,8 @@ mod tests {
             let name = format!("{kind:?}.toml");
             let scene =
                 parse(kind.text(), Path::new(&name), &[]).unwrap_or_else(|e| panic!("{kind:?}: {e:?}"));
-            let text = halfstep::check::describe(&scene, Isa::detect());
-            assert!(!text.contains("warning"), "{kind:?}: {text}");
+            let check = halfstep::check::check(&scene, Isa::detect()).expect("two dimensions");
+            assert_eq!(check.warnings, Vec::<String>::new(), "{kind:?}");
             assert!(!scene.metrics.is_empty() && kind.text().contains("halfstep run SCENE"), "{kind:?}");
         }
     }

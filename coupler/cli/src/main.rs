@@ -1,8 +1,12 @@
 //! The `halfstep` command.
 
+mod arguments;
 mod helpers;
 
-use clap::{CommandFactory, Parser, Subcommand};
+use arguments::{
+    Arguments, CheckArguments, Command, HowArguments, ResumeArguments, RunArguments, SceneArguments,
+};
+use clap::{CommandFactory, Parser};
 use halfstep::Launcher;
 use halfstep::options::{RunOptions, SolidSource, known_solid};
 use halfstep::{isa, run};
@@ -13,153 +17,12 @@ use halfstep_output::checkpoint::{FOLDERS, MANIFEST};
 use halfstep_output::run_json::RunStatus;
 use halfstep_scene::{self as scene, Scene};
 use halfstep_sph::lane::Isa;
-use halfstep_study::command::{StudyArguments, study};
+use halfstep_study::command::study;
 use halfstep_wire::Name;
-use helpers::Kind;
+use serde::Serialize;
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-
-/// Fluid-structure co-simulation by smoothed particle hydrodynamics: a fluid process, a solid process and a coupler in
-/// lock-step over shared memory.
-#[derive(Parser)]
-#[command(name = "halfstep", version, long_version = helpers::VERSION.as_str())]
-struct Arguments {
-    #[command(subcommand)]
-    command: Command,
-}
-
-#[derive(Subcommand)]
-enum Command {
-    /// Simulates a scene
-    Run(RunArguments),
-    /// Validates a scene; prints counts, time steps, memory and expected time
-    Check(SceneArguments),
-    /// Shows which effects take part in a scene, why, and what each costs
-    Explain {
-        #[command(flatten)]
-        scene: SceneArguments,
-        /// Prints JSON
-        #[arg(long)]
-        json: bool,
-    },
-    /// Goes on with an interrupted run from its last checkpoint, to the same bits
-    Resume(ResumeArguments),
-    /// Draws plot.png and contact.png of a run from what is on disk, also of one that goes on or was killed
-    Plot {
-        /// Folder of the run
-        dir: PathBuf,
-    },
-    Study(StudyArguments),
-    /// Writes a commented scene that runs as it is
-    New {
-        /// File of the scene, or its name
-        scene: PathBuf,
-        /// What the scene is about
-        #[arg(long, value_enum, default_value = "coupled")]
-        kind: Kind,
-    },
-    /// Prints completions for a shell: bash, zsh, fish, elvish or powershell
-    Completions {
-        /// The shell
-        shell: clap_complete::Shell,
-    },
-    /// Prints the manual page
-    Man,
-    /// A role's process; started by `run`
-    #[command(hide = true)]
-    Role {
-        /// Name of the process
-        name: String,
-    },
-}
-
-#[derive(clap::Args)]
-struct SceneArguments {
-    /// Scene file (TOML)
-    scene: PathBuf,
-    /// Overrides a key of the scene: dotted, `shape.NAME.KEY` for a shape
-    #[arg(long = "set", value_name = "KEY=VALUE")]
-    set: Vec<String>,
-    /// Simulated time, s (end_time of the scene)
-    #[arg(long, value_name = "SECONDS")]
-    until: Option<String>,
-}
-
-#[derive(clap::Args)]
-struct RunArguments {
-    #[command(flatten)]
-    scene: SceneArguments,
-    /// Folder of the run (default: out/SCENE)
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
-    /// Removes an earlier run in the folder
-    #[arg(long)]
-    force: bool,
-    #[command(flatten)]
-    how: HowArguments,
-}
-
-#[derive(clap::Args)]
-struct ResumeArguments {
-    /// Folder of the run
-    dir: PathBuf,
-    /// Another end of the run, s: prolongs one that has finished
-    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
-    until: Option<f64>,
-    #[command(flatten)]
-    how: HowArguments,
-}
-
-/// How the participants are run.
-#[derive(clap::Args)]
-struct HowArguments {
-    /// Worker threads of the fluid process
-    #[arg(long, value_parser = clap::value_parser!(u64).range(1..=1024))]
-    threads: Option<u64>,
-    /// Runs the roles as threads of one process
-    #[arg(long, conflicts_with_all = ["solid", "await_solid"])]
-    in_process: bool,
-    /// Shows no progress
-    #[arg(long)]
-    quiet: bool,
-    /// A solid of your own: a command that speaks the protocol; with several solids NAME=COMMAND, repeated
-    #[arg(long, value_name = "[NAME=]COMMAND")]
-    solid: Vec<String>,
-    /// Awaits a solid that you start by hand
-    #[arg(long, value_name = "NAME", num_args = 0..=1, require_equals = true, default_missing_value = "")]
-    await_solid: Vec<String>,
-    /// How long a participant that is alive may be silent, s
-    #[arg(long, value_name = "SECONDS", default_value_t = 600.0, value_parser = seconds, allow_negative_numbers = true)]
-    patience: f64,
-    /// What to do when a run has diverged: `stop`, or `retry`, which goes back to the last checkpoint with half the
-    /// time step, at most 3 times or as often as `retry=N` says
-    #[arg(long, value_name = "stop|retry[=N]", default_value = "stop", value_parser = retries, hide_default_value = true)]
-    on_divergence: u32,
-    /// How long to wait for a solid started by hand, s
-    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = seconds, allow_negative_numbers = true)]
-    solid_wait: f64,
-}
-
-/// A time to wait.
-fn seconds(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value > 0.0 && value <= 1e6 => Ok(value),
-        Ok(_) => Err("must be greater than 0 and at most 1e6 s".into()),
-        Err(error) => Err(error.to_string()),
-    }
-}
-
-/// How often a run that has diverged is retried.
-fn retries(text: &str) -> Result<u32, String> {
-    let number = match text {
-        "stop" => return Ok(0),
-        "retry" => return Ok(3),
-        _ => text.strip_prefix("retry=").and_then(|number| number.parse().ok()),
-    };
-    number
-        .filter(|n| (1..=20).contains(n))
-        .ok_or_else(|| "must be stop, retry, or retry=N with N from 1 to 20".into())
-}
 
 fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
@@ -179,13 +42,7 @@ fn main() -> ExitCode {
     };
     match arguments.command {
         Command::Run(arguments) => run_scene(arguments, isa),
-        Command::Check(arguments) => match load(&arguments) {
-            Ok(scene) => {
-                say::tell(format_args!("{}", halfstep::check::describe(&scene, isa).trim_end()));
-                ExitCode::SUCCESS
-            }
-            Err(code) => code,
-        },
+        Command::Check(arguments) => check_scene(&arguments, isa),
         Command::Explain { scene, json } => explain_scene(&scene, json, isa),
         Command::Resume(arguments) => resume(&arguments, isa),
         Command::Plot { dir } => plot(&dir),
@@ -231,31 +88,49 @@ fn rerun(path: &Path, changed: bool) -> Result<Scene, String> {
     Ok(scene)
 }
 
+fn check_scene(arguments: &CheckArguments, isa: Isa) -> ExitCode {
+    let scene = match load(&arguments.scene) {
+        Ok(scene) => scene,
+        Err(code) => return code,
+    };
+    let Some(check) = halfstep::check::check(&scene, isa) else {
+        return usage(&"three dimensions are not available yet");
+    };
+    let code = show(&check, arguments.json);
+    let Some(picture) = &arguments.picture else { return code };
+    match halfstep_output::draw_start(&scene, picture) {
+        Ok(()) => code,
+        Err(error) => failed(&error),
+    }
+}
+
 fn explain_scene(arguments: &SceneArguments, json: bool, isa: Isa) -> ExitCode {
     let scene = match load(arguments) {
         Ok(scene) => scene,
         Err(code) => return code,
     };
     match halfstep::explain::explain(&scene, isa) {
-        Ok(explanation) if json => match serde_json::to_string_pretty(&explanation) {
-            Ok(text) => {
-                say::tell(format_args!("{text}"));
-                ExitCode::SUCCESS
-            }
-            Err(error) => {
-                say::warn(format_args!("error: {error}"));
-                ExitCode::from(2)
-            }
-        },
-        Ok(explanation) => {
-            say::tell(format_args!("{}", explanation.to_string().trim_end()));
+        Ok(explanation) => show(&explanation, json),
+        Err(error) => failed(&error),
+    }
+}
+
+/// Prints a result as text or as JSON.
+fn show<T: Display + Serialize>(result: &T, json: bool) -> ExitCode {
+    let text = if json { serde_json::to_string_pretty(result) } else { Ok(result.to_string()) };
+    match text {
+        Ok(text) => {
+            say::tell(format_args!("{}", text.trim_end()));
             ExitCode::SUCCESS
         }
-        Err(error) => {
-            say::warn(format_args!("error: {error}"));
-            ExitCode::from(2)
-        }
+        Err(error) => failed(&error),
     }
+}
+
+/// Something was started and failed.
+fn failed(error: &dyn Display) -> ExitCode {
+    say::warn(format_args!("error: {error}"));
+    ExitCode::from(2)
 }
 
 fn run_scene(arguments: RunArguments, isa: Isa) -> ExitCode {
@@ -315,7 +190,7 @@ fn plot(dir: &Path) -> ExitCode {
 }
 
 /// Nothing was started.
-fn usage(error: &dyn std::fmt::Display) -> ExitCode {
+fn usage(error: &dyn Display) -> ExitCode {
     say::warn(format_args!("error: {error}"));
     ExitCode::from(1)
 }

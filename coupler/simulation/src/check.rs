@@ -1,112 +1,217 @@
 //! What a scene asks for, before anything is run.
 
 use crate::forecast::{self, Forecast, megabytes};
+use crate::remarks::Placed;
 use crate::step_cost::step_cost;
 use crate::{effects, remarks};
 use halfstep_coupling::roles;
-use halfstep_scene::geometry;
+use halfstep_output::run_json::EffectReport;
+use halfstep_scene::geometry::{self, Counts};
 use halfstep_scene::{self as scene, Phase, Scene, TimeStep, dispatch};
 use halfstep_solid::SubStepping;
 use halfstep_sph::lane::Isa;
-use std::fmt::Write;
+use serde::Serialize;
+use std::fmt::{self, Display};
 use std::path::Path;
 
-/// A text of counts, time steps, memory and an estimate of the run time.
-///
-/// The estimate times the sums of a few half-steps of each phase on one thread; a run whose particles spread out takes
-/// longer.
-pub fn describe(scene: &Scene, isa: Isa) -> String {
-    let unknown = || "three dimensions are not available yet\n".to_owned();
-    dispatch!(scene.dimension, D => describe_in::<D>(scene, isa)).unwrap_or_else(unknown)
+/// Counts, time steps, memory and an estimate of the run time of a scene; `Display` is the text of `halfstep check`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Check {
+    /// Name of the scene.
+    pub scene: String,
+    /// Its file.
+    pub path: String,
+    /// Spacing of fluid and walls, m.
+    resolution: f64,
+    particles: Particles,
+    shapes: Vec<Placed>,
+    bodies: Vec<Body>,
+    solids: Vec<Solid>,
+    /// Largest stable step of the fluid, s.
+    fluid_dt_limit: Option<f64>,
+    /// First time step, s.
+    pub time_step: f64,
+    /// Steps to the end with it.
+    pub steps: u64,
+    end_time: f64,
+    memory_bytes: u64,
+    /// 0: nothing is exchanged.
+    shared_memory_bytes: u64,
+    disk_bytes: u64,
+    /// Where the command is given; `None`: the system does not say.
+    disk_free_bytes: Option<u64>,
+    frames: u64,
+    /// Sums of a few half-steps of each participant, timed on one thread, times the steps, s: a run whose particles
+    /// spread out takes longer. `None`: the first steps leave their bounds.
+    pub expected_seconds: Option<f64>,
+    instruction_set: &'static str,
+    effects: Vec<EffectReport>,
+    /// Where the scene means something else than its author may think.
+    pub warnings: Vec<String>,
+    #[serde(skip)]
+    bodies_listed: Option<String>,
 }
 
-fn describe_in<const D: usize>(scene: &Scene, isa: Isa) -> String {
+#[derive(Clone, Debug, Serialize)]
+struct Particles {
+    fluid: u64,
+    solid: u64,
+    wall: u64,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct Body {
+    shapes: Vec<String>,
+    particles: usize,
+    clamped: usize,
+}
+
+/// A solid of the scene.
+#[derive(Clone, Debug, Serialize)]
+struct Solid {
+    name: String,
+    particles: u64,
+    /// m.
+    spacing: f64,
+    /// Largest stable step of the whole, with its most sub-steps, s.
+    dt_limit: f64,
+    /// With a fluid alone.
+    sub_steps: Option<SubSteps>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct SubSteps {
+    count: u32,
+    /// Largest stable one, s.
+    stable_to: f64,
+}
+
+/// Checks a valid scene, with the instruction set that the estimate of time is made with; `None`: of a dimension that is
+/// not available.
+pub fn check(scene: &Scene, isa: Isa) -> Option<Check> {
+    dispatch!(scene.dimension, D => check_in::<D>(scene, isa))
+}
+
+fn check_in<const D: usize>(scene: &Scene, isa: Isa) -> Check {
     let layout = geometry::layout::<D>(scene);
-    let counts = layout.counts();
-    let mut text = String::new();
-    let mut line = |name: &str, value: String| {
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "{name:<15} {value}");
-    };
-    line("scene", format!("{} ({})", scene.name, scene.path.display()));
-    line("particles", format!("{} fluid, {} solid, {} wall", counts.fluid, counts.solid, counts.wall));
-    let placed = remarks::placed(scene, &layout);
-    for shape in &placed {
-        line(&format!("  {}", shape.name), shape.to_string());
-    }
-    if counts.solid > 0 {
-        line("bodies", remarks::bodies_listed(scene, &scene.bodies_of(&layout)));
-    }
-    for (k, solid) in scene.solids.iter().enumerate() {
-        let spacing = scene.solid_spacing(k);
-        if spacing != scene.resolution {
-            let text = format!("{:.4e} m, of the fluid and walls {:.4e} m", spacing, scene.resolution);
-            line(&format!("{} spacing", solid.name), text);
-        }
-    }
-    let mut limit = f64::INFINITY;
-    let mut solid_limits = Vec::new();
-    let mut built = Vec::new();
-    for place in 0..scene.participants().len() {
-        let Some(role) = roles::build(place, scene, isa) else { continue };
-        let own = role.dt_limit();
-        line(&format!("{} dt limit", role.name()), format!("{own:.3e} s"));
-        limit = limit.min(own);
-        if role.phase() == Phase::Solid {
-            solid_limits.push((role.name(), own));
-        }
-        built.push(role);
-    }
-    let dt = match scene.time_step {
+    let counts @ Counts { fluid, solid, wall } = layout.counts();
+    let shapes = remarks::placed(scene, &layout);
+    let bodies = scene.bodies_of(&layout);
+    let built: Vec<_> =
+        (0..scene.participants().len()).filter_map(|place| roles::build(place, scene, isa)).collect();
+    let limit = built.iter().map(|role| role.dt_limit()).fold(f64::INFINITY, f64::min);
+    let time_step = match scene.time_step {
         TimeStep::Auto => limit,
         TimeStep::Fixed(dt) => dt,
     };
-    line(
-        "time step",
-        format!("{dt:.3e} s: {:.0} steps to t = {} s", (scene.end_time / dt).ceil(), scene.end_time),
-    );
-    for (solid, (name, limit)) in solid_limits.iter().enumerate().filter(|_| scene.fluid.is_some()) {
-        let stepping = SubStepping::of(scene, solid);
-        let own = limit / f64::from(stepping.most());
-        line(
-            &format!("{name} sub-steps"),
-            format!("{} (one is stable to {own:.3e} s)", stepping.choose(dt, own)),
-        );
-    }
-    if scene.solids.len() > 1 {
-        line(
-            "between solids",
-            "nothing acts but the water: where they meet they pass through each other".into(),
-        );
-        for (solid, count) in scene.solids.iter().zip(layout.solid_counts(scene)) {
-            line(&solid.name, format!("{count} particles"));
+    let of_solids = built.iter().filter(|role| role.phase() == Phase::Solid).map(|role| role.dt_limit());
+    let solids = of_solids.zip(layout.solid_counts(scene)).enumerate().map(|(k, (dt_limit, particles))| {
+        let stepping = SubStepping::of(scene, k);
+        let stable_to = dt_limit / f64::from(stepping.most());
+        let sub_steps = SubSteps { count: stepping.choose(time_step, stable_to), stable_to };
+        Solid {
+            name: scene.solids[k].name.clone(),
+            particles,
+            spacing: scene.solid_spacing(k),
+            dt_limit,
+            sub_steps: scene.fluid.as_ref().map(|_| sub_steps),
         }
-    }
-    line("memory", format!("about {:.1} MB", scene::memory_needed(&counts) as f64 / 1e6));
+    });
+    let solids = solids.collect();
     let Forecast { shared, disk, frames } = Forecast::of(scene, &layout, &[]);
-    if shared > 0 {
-        line("shared memory", megabytes(shared));
+    let fluid_role = built.iter().find(|role| role.phase() == Phase::Fluid);
+    Check {
+        scene: scene.name.clone(),
+        path: scene.path.display().to_string(),
+        resolution: scene.resolution,
+        particles: Particles { fluid, solid, wall },
+        bodies_listed: (solid > 0).then(|| remarks::bodies_listed(scene, &bodies)),
+        bodies: bodies.iter().map(|body| named(scene, body)).collect(),
+        solids,
+        fluid_dt_limit: fluid_role.map(|role| role.dt_limit()),
+        time_step,
+        steps: (scene.end_time / time_step).ceil() as u64,
+        end_time: scene.end_time,
+        memory_bytes: scene::memory_needed(&counts),
+        shared_memory_bytes: shared,
+        disk_bytes: disk,
+        disk_free_bytes: forecast::free_disk(Path::new(".")),
+        frames,
+        expected_seconds: expected_seconds(built, time_step, scene.end_time),
+        instruction_set: isa.bits_name(),
+        effects: effects::reports(scene, &counts),
+        warnings: remarks::on(scene, &layout, &shapes),
+        shapes,
     }
-    let free = forecast::free_disk(Path::new(".")).map(|free| format!(", {} are free here", megabytes(free)));
-    line("disk", format!("about {}, {frames} frames{}", megabytes(disk), free.unwrap_or_default()));
-    let costs: Option<Vec<f64>> = built.into_iter().map(|role| step_cost(role, dt)).collect();
-    let seconds = costs.map(|costs| costs.into_iter().fold(0.0, f64::max) * scene.end_time / dt);
-    line(
-        "expected time",
-        match seconds {
-            Some(seconds) => {
-                format!("about {seconds:.0} s, one thread a role ({})", isa.bits_name())
+}
+
+fn named(scene: &Scene, body: &scene::Body) -> Body {
+    let shapes = body.shapes.iter().map(|&shape| scene.shapes[shape].name.clone()).collect();
+    Body { shapes, particles: body.particles, clamped: body.clamped }
+}
+
+fn expected_seconds(roles: Vec<Box<dyn halfstep_role::role::Role>>, dt: f64, end: f64) -> Option<f64> {
+    let costs: Option<Vec<f64>> = roles.into_iter().map(|role| step_cost(role, dt)).collect();
+    costs.map(|costs| costs.into_iter().fold(0.0, f64::max) * end / dt)
+}
+
+impl Display for Check {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut line = |name: &str, value: &dyn Display| writeln!(f, "{name:<15} {value}");
+        let Particles { fluid, solid, wall } = self.particles;
+        line("scene", &format_args!("{} ({})", self.scene, self.path))?;
+        line("particles", &format_args!("{fluid} fluid, {solid} solid, {wall} wall"))?;
+        for shape in &self.shapes {
+            line(&format!("  {}", shape.name), shape)?;
+        }
+        self.bodies_listed.iter().try_for_each(|bodies| line("bodies", bodies))?;
+        for solid in &self.solids {
+            if solid.spacing != self.resolution {
+                let [own, other] = [solid.spacing, self.resolution];
+                let text = format_args!("{own:.4e} m, of the fluid and walls {other:.4e} m");
+                line(&format!("{} spacing", solid.name), &text)?;
             }
-            None => "unknown: the first steps leave their bounds".into(),
-        },
-    );
-    text.push('\n');
-    for effect in effects::reports(scene, &counts) {
-        let _ =
-            writeln!(text, "{:<28}{:<5}{}", effect.name, if effect.on { "on" } else { "off" }, effect.why);
+        }
+        let limits = self.fluid_dt_limit.map(|limit| ("fluid", limit)).into_iter();
+        for (name, limit) in limits.chain(self.solids.iter().map(|solid| (&*solid.name, solid.dt_limit))) {
+            line(&format!("{name} dt limit"), &format_args!("{limit:.3e} s"))?;
+        }
+        let steps = format_args!("{:.3e} s: {} steps to t = {} s", self.time_step, self.steps, self.end_time);
+        line("time step", &steps)?;
+        for Solid { name, sub_steps, .. } in &self.solids {
+            if let Some(SubSteps { count, stable_to }) = sub_steps {
+                let text = format_args!("{count} (one is stable to {stable_to:.3e} s)");
+                line(&format!("{name} sub-steps"), &text)?;
+            }
+        }
+        if self.solids.len() > 1 {
+            let none = "nothing acts but the water: where they meet they pass through each other";
+            line("between solids", &none)?;
+            for solid in &self.solids {
+                line(&solid.name, &format_args!("{} particles", solid.particles))?;
+            }
+        }
+        line("memory", &format_args!("about {:.1} MB", self.memory_bytes as f64 / 1e6))?;
+        if self.shared_memory_bytes > 0 {
+            line("shared memory", &megabytes(self.shared_memory_bytes))?;
+        }
+        let free = self.disk_free_bytes.map(|free| format!(", {} are free here", megabytes(free)));
+        let (disk, free) = (megabytes(self.disk_bytes), free.unwrap_or_default());
+        line("disk", &format_args!("about {disk}, {} frames{free}", self.frames))?;
+        let isa = self.instruction_set;
+        match self.expected_seconds {
+            Some(seconds) => {
+                line("expected time", &format_args!("about {seconds:.0} s, one thread a role ({isa})"))?;
+            }
+            None => line("expected time", &"unknown: the first steps leave their bounds")?,
+        }
+        writeln!(f)?;
+        for EffectReport { name, on, why, .. } in &self.effects {
+            writeln!(f, "{name:<28}{:<5}{why}", if *on { "on" } else { "off" })?;
+        }
+        for (k, warning) in self.warnings.iter().enumerate() {
+            writeln!(f, "{}warning: {warning}", if k == 0 { "\n" } else { "" })?;
+        }
+        Ok(())
     }
-    for (k, warning) in remarks::on(scene, &layout, &placed).into_iter().enumerate() {
-        let _ = writeln!(text, "{}warning: {warning}", if k == 0 { "\n" } else { "" });
-    }
-    text
 }

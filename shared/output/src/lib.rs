@@ -39,7 +39,7 @@ pub mod writer;
 
 pub use halfstep_wire::frame::{Frame, FramePoint};
 #[cfg(feature = "pictures")]
-pub use pictures::{draw_contact, draw_plot};
+pub use pictures::{draw_contact, draw_plot, draw_start};
 pub use probes::{ProbeLog, Table, read_probes};
 pub use run_dir::RunDirectory;
 pub use run_json::RunReport;

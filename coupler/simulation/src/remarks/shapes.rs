@@ -2,6 +2,7 @@
 
 use halfstep_scene::geometry::{Layout, Plate};
 use halfstep_scene::{Geometry, Phase, Scene};
+use serde::{Serialize, Serializer};
 use std::fmt;
 
 /// From which relative difference on a size is remarked.
@@ -10,10 +11,11 @@ const NOTABLE: f64 = 0.02;
 const LOST: f64 = 0.1;
 
 /// A shape with its particles.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Placed {
     /// Name of the shape.
     pub(crate) name: String,
+    #[serde(serialize_with = "phase_name")]
     phase: Phase,
     /// Sizes along the axes that the scene asks for, m; a disc's diameter, a ring's thickness.
     asked: Vec<f64>,
@@ -115,12 +117,7 @@ impl Placed {
 impl fmt::Display for Placed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let size = |of: &[f64]| of.iter().map(|x| length(*x)).collect::<Vec<_>>().join(" x ");
-        let phase = match self.phase {
-            Phase::Fluid => "fluid",
-            Phase::Solid => "solid",
-            Phase::Wall => "wall",
-        };
-        write!(f, "{phase:<7}{} {}", size(&self.asked), self.unit)?;
+        write!(f, "{:<7}{} {}", name_of(self.phase), size(&self.asked), self.unit)?;
         if self.worst().is_some_and(|(_, factor)| (factor - 1.0).abs() >= 5e-4) {
             write!(f, " asked, {} {} computed", size(&self.computed), self.unit)?;
         }
@@ -142,6 +139,18 @@ impl fmt::Display for Placed {
         }
         Ok(())
     }
+}
+
+fn name_of(phase: Phase) -> &'static str {
+    match phase {
+        Phase::Fluid => "fluid",
+        Phase::Solid => "solid",
+        Phase::Wall => "wall",
+    }
+}
+
+fn phase_name<S: Serializer>(phase: &Phase, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(name_of(*phase))
 }
 
 /// A number with four digits that count.

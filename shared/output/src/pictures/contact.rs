@@ -85,7 +85,7 @@ pub fn draw_contact(scene: &Scene, dir: &Path) -> Result<Option<PathBuf>, Output
 
 /// Radius of a particle's disc for a spacing, both in pixels: large discs touch; small ones overlap so that no
 /// background shines through.
-fn radius(spacing: f64) -> f64 {
+pub(super) fn radius(spacing: f64) -> f64 {
     let overlap = 1.42 - 0.38 * ((spacing - 8.0) / 8.0).clamp(0.0, 1.0);
     (0.5 * spacing * overlap).max(0.75)
 }
@@ -205,18 +205,18 @@ impl Bar {
     }
 }
 
-fn label(area: &Area<'_>, text: &str, at: (i32, i32), size: u32, side: HPos) -> Drawn {
+pub(super) fn label(area: &Area<'_>, text: &str, at: (i32, i32), size: u32, side: HPos) -> Drawn {
     let style = (FONT, size).into_font().color(&RGBColor(20, 20, 20)).pos(Pos::new(side, VPos::Top));
     Ok(area.draw(&Text::new(text.to_string(), at, style))?)
 }
 
-fn frame_of(area: &Area<'_>, rect: Rect) -> Drawn {
+pub(super) fn frame_of(area: &Area<'_>, rect: Rect) -> Drawn {
     let corners = [(rect.x - 1, rect.y - 1), (rect.x + rect.width, rect.y + rect.height)];
     Ok(area.draw(&Rectangle::new(corners, RGBColor(120, 120, 120)))?)
 }
 
 /// A length to compare with, at the upper right: a tenth to a quarter of the view.
-fn scale_bar(area: &Area<'_>, view: &View, scale: f64, width: i32) -> Drawn {
+pub(super) fn scale_bar(area: &Area<'_>, view: &View, scale: f64, width: i32) -> Drawn {
     let length = units::tick_step(view.size()[0] / 10.0);
     let (factor, unit) = units::shown("m", length);
     let (right, y) = (width - 20, HEAD / 2 - 2);

@@ -1,4 +1,4 @@
-//! The two pictures of a run, and the canvas that they are drawn on.
+//! The two pictures of a run, that of a scene before its run, and the canvas that they are drawn on.
 
 pub mod canvas;
 pub mod contact;
@@ -7,6 +7,7 @@ mod fixture;
 mod panels;
 pub mod plot;
 mod stamp;
+pub mod start;
 #[cfg(test)]
 mod tests;
 pub mod units;
@@ -14,3 +15,4 @@ mod view;
 
 pub use contact::draw_contact;
 pub use plot::draw_plot;
+pub use start::draw_start;

@@ -150,3 +150,28 @@ fn one_frame_of_one_phase_is_enough_for_a_sheet() {
     assert!(!colors.contains_key(&color(WALL)));
     assert!(!colors.contains_key(&color(Scale::Fluid.index(0.5))));
 }
+
+#[test]
+fn a_scene_is_drawn_before_its_run() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/two-plates.toml");
+    let scene = halfstep_scene::load(&path, &[]).unwrap();
+    let picture = folder("start").join("start.png");
+    draw_start(&scene, &picture).unwrap();
+    let (_, _, colors) = decode(&picture);
+    let palette = palette();
+    let pixels = |index: u8| {
+        let color = [0, 1, 2].map(|c| palette[3 * usize::from(index) + c]);
+        f64::from(colors.get(&color).copied().unwrap_or(0))
+    };
+    // 2701 fluid particles, two plates of 60 free ones and 12 clamped ones each, and nothing that moves.
+    let particle = pixels(start::water()) / 2701.0;
+    for (body, particles) in [(0, 60.0), (1, 60.0)] {
+        let share = pixels(start::body_color(body)) / (particles * particle);
+        assert!((0.9..1.2).contains(&share), "{body}: {share}");
+    }
+    // The lines and letters are black as well.
+    assert!((1.0..1.6).contains(&(pixels(start::CLAMPED) / (24.0 * particle))));
+    assert!(pixels(WALL) > 1000.0 * 0.9 * particle);
+    let empty = halfstep_scene::Scene { shapes: Vec::new(), ..scene };
+    assert!(draw_start(&empty, &picture).unwrap_err().to_string().ends_with("the scene has no particles"));
+}

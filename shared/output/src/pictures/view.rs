@@ -1,4 +1,4 @@
-//! What part of space `contact.png` shows, and where on the picture.
+//! What part of space a picture of particles shows, and where on the picture.
 
 use super::contact::Instant;
 use super::stamp::Rect;
@@ -28,18 +28,10 @@ impl View {
     /// The box of all particles at the first instant, widened by where solid, bulk of the fluid and swinging walls go.
     /// `None` without particles.
     pub(crate) fn of(scene: &Scene, instants: &[Instant]) -> Option<Self> {
-        let mut initial = [Range::EMPTY; 3];
-        for phase in [FLUID, SOLID, WALL] {
-            for (frame, k) in instants.first()?.phase(phase) {
-                for (range, x) in initial.iter_mut().zip(frame.points[k]) {
-                    range.include(f64::from(x));
-                }
-            }
-        }
+        let first = instants.first()?;
+        let initial = [FLUID, SOLID, WALL].into_iter().flat_map(|phase| first.phase(phase));
+        let initial = around(initial.map(|(frame, k)| frame.points[k].map(f64::from)))?;
         let mut bounds = [initial[0], initial[1]];
-        if !bounds.iter().all(Range::is_finite) {
-            return None;
-        }
         // Walls that swing or turn are shown wherever they go; a gate that opens is not followed.
         let follows = |s: &Shape| s.motion.as_ref().is_some_and(|m| !matches!(m, Motion::Steady { .. }));
         let walls = scene.shapes.iter().any(follows);
@@ -60,13 +52,22 @@ impl View {
                 }
             }
         }
+        Some(Self::new(scene, bounds, initial[2]))
+    }
+
+    /// The box around these points, m; `None` without points.
+    pub(crate) fn of_points(scene: &Scene, points: impl Iterator<Item = [f64; 3]>) -> Option<Self> {
+        around(points).map(|[x, y, z]| Self::new(scene, [x, y], z))
+    }
+
+    fn new(scene: &Scene, bounds: [Range; 2], depth: Range) -> Self {
         let edge = 1.5 * scene.resolution;
-        let middle = 0.5 * (initial[2].low + initial[2].high);
-        Some(Self {
+        let middle = 0.5 * (depth.low + depth.high);
+        Self {
             min: bounds.map(|range| range.low - edge),
             max: bounds.map(|range| range.high + edge),
             slice: (scene.dimension == 3).then_some([middle - scene.resolution, middle + scene.resolution]),
-        })
+        }
     }
 
     /// Width and height, m.
@@ -84,6 +85,17 @@ impl View {
         let [x, y] = [f64::from(point[0]), f64::from(point[1])];
         [f64::from(panel.x) + (x - self.min[0]) * scale, f64::from(panel.y) + (self.max[1] - y) * scale]
     }
+}
+
+/// Ranges of the points' coordinates; `None` without points.
+fn around(points: impl Iterator<Item = [f64; 3]>) -> Option<[Range; 3]> {
+    let mut ranges = [Range::EMPTY; 3];
+    for point in points {
+        for (range, x) in ranges.iter_mut().zip(point) {
+            range.include(x);
+        }
+    }
+    ranges[..2].iter().all(Range::is_finite).then_some(ranges)
 }
 
 #[derive(Clone, Copy)]
