@@ -42,6 +42,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     water::expected_speed(scene, &mut all);
     magnitudes::materials(scene, &mut all);
     magnitudes::lengths(scene, &mut all);
+    magnitudes::parameters(scene, &mut all);
     all
 }
 

@@ -122,6 +122,9 @@ pub struct Scene {
     pub own_effects: BTreeMap<String, Switch>,
     /// Numerical parameters that are no physics.
     pub numerics: Numerics,
+    /// Names in `[parameters]` that no key needs; none in a resolved scene.
+    #[serde(skip)]
+    pub unused_parameters: Vec<String>,
 }
 
 /// A named set of parameter values.

@@ -46,23 +46,27 @@ ops_factory!(
 
 literal_matcher_from_pattern!(Numbers, r"^(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?");
 
-/// Takes `[parameters]` out of a document and puts numbers in the place of all formulas.
-pub(super) fn resolve(root: &mut Node, report: &Report) {
-    let Value::Table(top) = &mut root.value else { return };
+/// Takes `[parameters]` out of a document and puts numbers in the place of all formulas. Returns the names of those that
+/// no formula of a key needs.
+pub(super) fn resolve(root: &mut Node, report: &Report) -> Vec<String> {
+    let Value::Table(top) = &mut root.value else { return Vec::new() };
     let table = match top.remove("parameters") {
         None => BTreeMap::new(),
         Some(Entry { node: Node { value: Value::Table(table), .. }, .. }) => table,
         Some(entry) => {
             let kind = entry.node.value.kind();
             report.value("parameters", entry.node.origin, format!("must be a table, not {kind}"));
-            return;
+            return Vec::new();
         }
     };
     let mut parameters = Parameters { table: &table, known: BTreeMap::new(), report };
-    for name in table.keys() {
+    parameters.replace(root, "");
+    let unused: Vec<String> =
+        table.keys().filter(|name| !parameters.known.contains_key(*name)).cloned().collect();
+    for name in &unused {
         parameters.named(name, &mut Vec::new());
     }
-    parameters.replace(root, "");
+    unused
 }
 
 struct Parameters<'a> {

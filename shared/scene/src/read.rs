@@ -95,6 +95,7 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&s
         effects,
         own_effects,
         numerics,
+        unused_parameters: Vec::new(),
     };
     scene.share_spacings();
     // Its values stand where formulas were.

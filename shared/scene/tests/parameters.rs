@@ -67,6 +67,17 @@ fn an_override_of_a_parameter_changes_all_that_follows_from_it() {
 }
 
 #[test]
+fn a_parameter_that_nothing_needs_is_known() {
+    assert_eq!(scene(&[]).unused_parameters, ["slope"]);
+    // What only such a parameter needs is as useless.
+    assert_eq!(
+        scene(&["parameters.angle=1", "parameters.slope==angle"]).unused_parameters,
+        ["angle", "slope"]
+    );
+    assert_eq!(scene(&["resolution==H / rows / slope"]).unused_parameters, [""; 0]);
+}
+
+#[test]
 fn arithmetic_is_that_of_paper() {
     for (formula, value) in [
         ("1 + 2 * 3", 7.0),

@@ -26,6 +26,13 @@ pub(super) fn materials(scene: &Scene, all: &mut Vec<String>) {
     }
 }
 
+/// Parameters whose change would change nothing.
+pub(super) fn parameters(scene: &Scene, all: &mut Vec<String>) {
+    for name in &scene.unused_parameters {
+        all.push(format!("no key needs the parameter `{name}`: whatever its value, the scene is the same"));
+    }
+}
+
 /// Scenes of a size that is hardly meant.
 pub(super) fn lengths(scene: &Scene, all: &mut Vec<String>) {
     let boxes = scene.shapes.iter().map(|shape| match &shape.geometry {

@@ -29,6 +29,16 @@ fn a_scene_that_means_what_it_says_is_not_remarked_on() {
 }
 
 #[test]
+fn a_parameter_that_nothing_needs() {
+    let text = "[parameters]\nwidth = 0.1\nH = 0.1\n";
+    let water = WATER.replace("max = [0.1, 0.1]", "max = [0.1, \"=H\"]");
+    assert_eq!(
+        plain(&[text, TANK, &water, PLATE]),
+        ["no key needs the parameter `width`: whatever its value, the scene is the same"]
+    );
+}
+
+#[test]
 fn every_shipped_scene_means_what_it_says() {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
     let mut found = 0;

@@ -75,6 +75,7 @@ pub(crate) fn scene() -> Scene {
             lattice: Lattice::Centred,
             domain: None,
         },
+        unused_parameters: Vec::new(),
     }
 }
 

@@ -63,6 +63,7 @@ fn scene(shapes: Vec<Shape>) -> Scene {
             lattice: Lattice::Centred,
             domain: None,
         },
+        unused_parameters: Vec::new(),
     }
 }
 
