@@ -21,6 +21,7 @@
 
 mod columns;
 pub mod effects;
+pub mod finite_element;
 pub mod hypoelastic;
 mod ledger;
 pub mod model;

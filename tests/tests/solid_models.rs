@@ -2,6 +2,7 @@
 
 use halfstep_scene::Scene;
 use halfstep_solid::SolidModel;
+use halfstep_solid::finite_element::FiniteElement;
 use halfstep_solid::hypoelastic::Hypoelastic;
 use halfstep_solid::total_lagrangian::TotalLagrangian;
 use halfstep_sph::lane::Isa;
@@ -60,6 +61,7 @@ macro_rules! conformance {
 conformance! {
     hypoelastic: Hypoelastic, "model = \"hypoelastic\"";
     total_lagrangian: TotalLagrangian, "model = \"total-lagrangian\"";
+    finite_element: FiniteElement, "model = \"finite-element\"";
 }
 // With a memory.
 conformance!(whole relaxing_total_lagrangian 2: TotalLagrangian,

@@ -18,6 +18,7 @@ mod bodies;
 pub mod bounds;
 mod brackets;
 mod check;
+mod check_lattice;
 mod check_metric;
 mod check_probe;
 mod check_solid;
@@ -64,8 +65,8 @@ pub use participant::Participant;
 pub use probe::{Probe, ProbeKind, Reference};
 pub use resources::{expected_speed, memory_available, memory_needed};
 pub use solid::{
-    ArtificialStress, HypoelasticKeys, Material, ModelKeys, Plane, Solid, SolidModelName, SubSteps,
-    TotalLagrangianKeys,
+    ArtificialStress, FiniteElementKeys, HypoelasticKeys, Material, ModelKeys, Plane, Solid, SolidModelName,
+    SubSteps, TotalLagrangianKeys,
 };
 pub use velocity_field::VelocityField;
 

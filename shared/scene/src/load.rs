@@ -3,7 +3,7 @@
 use super::check::Check;
 use super::document::{self, SourceText};
 use super::error::{Report, SceneErrors};
-use super::{EffectName, Scene, Switch, file, overrides, parameters, read, resources};
+use super::{EffectName, Scene, Switch, check_lattice, file, overrides, parameters, read, resources};
 use std::path::Path;
 
 /// Reads a scene's file, applies the overrides (`key=value`, as after `--set`) and checks everything.
@@ -88,6 +88,9 @@ pub fn parse_with(
     }
     if report.is_empty() {
         resources::check_solids(&draft.scene, &root, &report);
+    }
+    if report.is_empty() {
+        check_lattice::check_lattice(&draft.scene, &root, &report);
     }
     if report.is_empty() { Ok(draft.scene) } else { Err(report.into_errors(path)) }
 }

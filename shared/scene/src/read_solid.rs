@@ -98,10 +98,15 @@ fn solid(section: Section<'_>, name: String, defaults: Defaults, numerics: &Nume
         sub_steps: sub_steps(&section, numerics.max_sub_steps),
     };
     let others = SolidModelName::ALL.iter().filter(|(_, other)| *other != model);
+    let mut known: Vec<&str> = rules.keys.iter().map(|(key, _)| *key).collect();
     for (key, why) in others.flat_map(|(_, other)| other.rules().keys) {
-        if let Some(node) = section.node(key) {
+        if let Some(node) = section.node(key)
+            && !known.contains(key)
+        {
             section.wrong(key, node, *why);
         }
+        // Others may have it, too.
+        known.push(key);
     }
     section.finish();
     solid

@@ -1,9 +1,11 @@
 //! The solid's section of a scene: what all models have. What only one has is in its file in `solid`.
 
+mod finite_element;
 mod hypoelastic;
 mod models;
 mod total_lagrangian;
 
+pub use finite_element::FiniteElementKeys;
 pub use hypoelastic::{ArtificialStress, HypoelasticKeys};
 pub use models::{ModelKeys, SolidModelName};
 pub use total_lagrangian::{Material, Plane, TotalLagrangianKeys};
@@ -56,7 +58,7 @@ impl Solid {
     pub fn instantaneous_shear_modulus(&self) -> f64 {
         let stiffening = match &self.model {
             ModelKeys::TotalLagrangian(keys) => keys.stiffening(),
-            ModelKeys::Hypoelastic(_) => 1.0,
+            ModelKeys::Hypoelastic(_) | ModelKeys::FiniteElement(_) => 1.0,
         };
         self.shear_modulus() * stiffening
     }

@@ -13,7 +13,7 @@ const VOLUME_CHANGE: f64 = 10.0;
 
 /// Bounds of a material that follows its own volume.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct VolumeBounds {
+pub(crate) struct VolumeBounds {
     /// Reference density, kg/m³.
     density: f64,
     /// Largest speed, m/s.
@@ -22,13 +22,13 @@ pub(super) struct VolumeBounds {
 
 impl VolumeBounds {
     /// Of the scene's solid of that index.
-    pub(super) fn new(scene: &Scene, solid: usize) -> Option<Self> {
+    pub(crate) fn new(scene: &Scene, solid: usize) -> Option<Self> {
         Bounds::of_solid(scene, solid).map(|b| Self { density: b.density, speed: b.speed })
     }
 
     /// The quantity out of bounds, if any, for J = det F and a speed: of two quantities the one that is farther out.
     /// A J that is NaN is left to the speed, which then is NaN, too, and stands nearer to the cause.
-    pub(super) fn excess(&self, volume_ratio: f64, speed: f64) -> Option<Excess> {
+    pub(crate) fn excess(&self, volume_ratio: f64, speed: f64) -> Option<Excess> {
         let of_volume = match volume_ratio {
             j if j.is_nan() => 0.0,
             j if j <= 0.0 => f64::INFINITY,

@@ -25,7 +25,7 @@ use halfstep_wire::state::StateError;
 const SKIN: f64 = 0.3;
 
 /// Particles that may touch something, sorted by where they are now.
-pub(super) struct Contact<const D: usize> {
+pub(crate) struct Contact<const D: usize> {
     pub(super) id: Vec<u32>,
     position: Vectors<D>,
     velocity: Vectors<D>,
@@ -53,7 +53,7 @@ pub(super) struct Contact<const D: usize> {
 }
 
 /// State of a particle, for [`Contact::act`].
-pub(super) struct Present<const D: usize> {
+pub(crate) struct Present<const D: usize> {
     pub position: [f64; D],
     pub velocity: [f64; D],
     pub density: f64,
@@ -62,7 +62,7 @@ pub(super) struct Present<const D: usize> {
 
 impl<const D: usize> Contact<D> {
     /// `None` where nothing can touch. `body` has a number for each particle's body.
-    pub(super) fn new(
+    pub(crate) fn new(
         scene: &Scene,
         solid: usize,
         material: &Solid,
@@ -114,7 +114,7 @@ impl<const D: usize> Contact<D> {
     }
 
     /// Smoothing length of the walls' kernel, m.
-    pub(super) fn smoothing_length(&self) -> f64 {
+    pub(crate) fn smoothing_length(&self) -> f64 {
         self.smoothing_length
     }
 
@@ -213,14 +213,14 @@ impl<const D: usize> Contact<D> {
     }
 
     /// Brings walls that move to where they are at a time, s.
-    pub(super) fn set_time(&mut self, time: f64) {
+    pub(crate) fn set_time(&mut self, time: f64) {
         if let Some(walls) = &mut self.walls {
             walls.set_time(time);
         }
     }
 
     /// Takes over the present state.
-    pub(super) fn update(&mut self, present: impl Fn(u32) -> Present<D>) {
+    pub(crate) fn update(&mut self, present: impl Fn(u32) -> Present<D>) {
         for slot in 0..self.id.len() {
             if self.id[slot] != PADDING {
                 let p = present(self.id[slot]);
@@ -240,7 +240,7 @@ impl<const D: usize> Contact<D> {
     }
 
     /// Evaluates all contacts of the state last taken over; `kernel` is the walls'.
-    pub(super) fn act<K: Kernel<D>>(&mut self, isa: Isa, kernel: K, solid: &Solid) {
+    pub(crate) fn act<K: Kernel<D>>(&mut self, isa: Isa, kernel: K, solid: &Solid) {
         if self.several {
             let law = Repel { position: &self.position, body: &self.body, spacing: self.spacing };
             pair::pass(isa, &law, &self.list, &mut self.sums);
@@ -271,7 +271,7 @@ impl<const D: usize> Contact<D> {
     }
 
     /// Calls `add` with each particle's number and its acceleration by contacts, m/s².
-    pub(super) fn accelerations(&self, mut add: impl FnMut(u32, [f64; D])) {
+    pub(crate) fn accelerations(&self, mut add: impl FnMut(u32, [f64; D])) {
         for slot in (0..self.id.len()).filter(|&s| self.id[s] != PADDING) {
             let mut a = [0.0; D];
             if self.several {
@@ -286,7 +286,7 @@ impl<const D: usize> Contact<D> {
     }
 
     /// Calls `add` with each particle's number and its acceleration by walls, m/s².
-    pub(super) fn wall_accelerations(&self, mut add: impl FnMut(u32, [f64; D])) {
+    pub(crate) fn wall_accelerations(&self, mut add: impl FnMut(u32, [f64; D])) {
         let Some(walls) = &self.walls else { return };
         for slot in (0..self.id.len()).filter(|&s| self.id[s] != PADDING) {
             add(self.id[slot], walls.acceleration(slot));
@@ -294,7 +294,7 @@ impl<const D: usize> Contact<D> {
     }
 
     /// Power of walls that move on the solid, over a particle's mass, W/kg.
-    pub(super) fn power_of_walls(&self, isa: Isa, kernel: KernelName, solid: &Solid) -> f64 {
+    pub(crate) fn power_of_walls(&self, isa: Isa, kernel: KernelName, solid: &Solid) -> f64 {
         let Some(walls) = &self.walls else { return 0.0 };
         with_kernel!(kernel, self.smoothing_length, D, |kernel| {
             walls.power(isa, kernel, self.touching(solid), &self.id)
@@ -303,7 +303,7 @@ impl<const D: usize> Contact<D> {
 
     /// What contacts add to the square of a particle's highest frequency, 1/s², and its damping by walls, 1/s: the
     /// largest of any particle in the state that was evaluated last.
-    pub(super) fn stiffness(&self, kernel: KernelName, solid: &Solid) -> (f64, f64) {
+    pub(crate) fn stiffness(&self, kernel: KernelName, solid: &Solid) -> (f64, f64) {
         let (mut springs, mut damping) = (0.0_f64, 0.0_f64);
         for slot in (0..self.id.len()).filter(|&s| self.id[s] != PADDING) {
             // The other particle gives way, too.
@@ -334,7 +334,7 @@ impl<const D: usize> Contact<D> {
     }
 
     /// Energy in the contacts between bodies, J.
-    pub(super) fn energy(&self) -> f64 {
+    pub(crate) fn energy(&self) -> f64 {
         let slots = (0..self.id.len()).filter(|&s| self.several && self.id[s] != PADDING);
         // Half of each pair's energy, k (dx - r)² / 2, belongs to either particle.
         slots.map(|s| 0.25 * self.stiffness * self.sums[s / LANES].square.0[s % LANES]).sum()

@@ -15,11 +15,11 @@ use halfstep_sph::tensor;
 use nalgebra::SMatrix;
 
 /// A matrix of the scene's dimension.
-pub(super) type Matrix<const D: usize> = SMatrix<f64, D, D>;
+pub(crate) type Matrix<const D: usize> = SMatrix<f64, D, D>;
 
 /// A law with its constants.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Law {
+pub(crate) struct Law {
     material: Material,
     /// In three dimensions: strain.
     plane: Plane,
@@ -31,13 +31,13 @@ pub(super) struct Law {
 
 /// Pressure and deviator of the Cauchy stress, Pa.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cauchy<const D: usize> {
+pub(crate) struct Cauchy<const D: usize> {
     pub pressure: f64,
     pub deviator: Matrix<D>,
 }
 
 impl Law {
-    pub(super) fn new(solid: &Solid, material: Material, plane: Plane) -> Self {
+    pub(crate) fn new(solid: &Solid, material: Material, plane: Plane) -> Self {
         let mu = solid.shear_modulus();
         Self { material, plane, lambda: solid.bulk_modulus() - 2.0 / 3.0 * mu, mu }
     }
@@ -59,7 +59,7 @@ impl Law {
     }
 
     /// J, with what happens across the plane.
-    pub(super) fn volume_ratio<const D: usize>(&self, f: &Matrix<D>) -> f64 {
+    pub(crate) fn volume_ratio<const D: usize>(&self, f: &Matrix<D>) -> f64 {
         let in_plane = tensor::determinant(f);
         match self.plane {
             Plane::Strain => in_plane,
@@ -99,7 +99,7 @@ impl Law {
     }
 
     /// First Piola-Kirchhoff stress, Pa; `j` is [`Self::volume_ratio`].
-    pub(super) fn first_piola_kirchhoff<const D: usize>(&self, f: &Matrix<D>, j: f64) -> Matrix<D> {
+    pub(crate) fn first_piola_kirchhoff<const D: usize>(&self, f: &Matrix<D>, j: f64) -> Matrix<D> {
         match self.material {
             Material::StVenantKirchhoff => {
                 let e = green(f);
@@ -117,7 +117,7 @@ impl Law {
     }
 
     /// Energy per reference volume, J/m³.
-    pub(super) fn energy<const D: usize>(&self, f: &Matrix<D>, j: f64) -> f64 {
+    pub(crate) fn energy<const D: usize>(&self, f: &Matrix<D>, j: f64) -> f64 {
         match self.material {
             Material::StVenantKirchhoff => {
                 let e = green(f);
@@ -136,7 +136,7 @@ impl Law {
     }
 
     /// Cauchy stress P F^T / J as pressure and deviator; in 2D sigma_zz is that of plane strain, or none.
-    pub(super) fn cauchy<const D: usize>(&self, f: &Matrix<D>, j: f64) -> Cauchy<D> {
+    pub(crate) fn cauchy<const D: usize>(&self, f: &Matrix<D>, j: f64) -> Cauchy<D> {
         let sigma = self.first_piola_kirchhoff(f, j) * f.transpose() / j;
         let out_of_plane = match (D, self.plane, self.material) {
             (2, Plane::Strain, Material::StVenantKirchhoff) => self.lambda * green(f).trace() / j,

@@ -3,18 +3,18 @@
 //! Campbell 2006).
 
 mod account;
-mod bounds;
+pub(crate) mod bounds;
 mod clamp;
-mod contact;
+pub(crate) mod contact;
 mod decide;
 mod evaluate;
 mod hourglass;
-mod material;
+pub(crate) mod material;
 mod model;
 mod pass;
 mod relaxation;
 mod state;
-mod step_limit;
+pub(crate) mod step_limit;
 #[cfg(test)]
 mod tests;
 

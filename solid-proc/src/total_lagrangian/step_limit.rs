@@ -93,13 +93,13 @@ impl<const D: usize> TotalLagrangian<D> {
 
 /// Largest stable step of an oscillation of angular frequency omega, 1/s, that loses its velocity at twice this rate,
 /// 1/s, if the damping takes the velocity of half a step before.
-fn sub_step(omega: f64, damping: f64) -> f64 {
+pub(crate) fn sub_step(omega: f64, damping: f64) -> f64 {
     let zeta = damping / omega;
     2.0 / omega * ((1.0 + zeta * zeta).sqrt() - zeta)
 }
 
 /// Squares of the smallest and the largest principal stretch.
-fn squared_stretches<const D: usize>(f: &Matrix<D>) -> [f64; 2] {
+pub(crate) fn squared_stretches<const D: usize>(f: &Matrix<D>) -> [f64; 2] {
     let c = f.transpose() * f;
     if D == 2 {
         let half = 0.5 * (c[(0, 0)] + c[(1, 1)]);
@@ -115,7 +115,7 @@ fn squared_stretches<const D: usize>(f: &Matrix<D>) -> [f64; 2] {
 impl Law {
     /// Largest eigenvalue of the acoustic tensor in any direction, Pa; `squares` are those of the smallest and the
     /// largest principal stretch. In plane stress that of plane strain, which is larger.
-    fn stiffness<const D: usize>(&self, f: &Matrix<D>, j: f64, [least, most]: [f64; 2]) -> f64 {
+    pub(crate) fn stiffness<const D: usize>(&self, f: &Matrix<D>, j: f64, [least, most]: [f64; 2]) -> f64 {
         let (lambda, mu) = self.constants();
         match self.material() {
             // Q = mu I + (mu + lambda (1 - ln J)) m m, m = F^-T N, which is longest across the most squeezed direction.

@@ -1,6 +1,6 @@
 //! The solid models that come with the program, and what each asks of a scene.
 
-use super::{hypoelastic, total_lagrangian};
+use super::{finite_element, hypoelastic, total_lagrangian};
 use crate::preset::Defaults;
 use crate::section::{Range, Section};
 use serde::{Deserialize, Serialize};
@@ -15,6 +15,8 @@ macro_rules! solid_models {
             Hypoelastic "hypoelastic" hypoelastic HypoelasticKeys,
             /// Hyperelastic, with neighbours of the reference configuration (Bonet and Lok 1999).
             TotalLagrangian "total-lagrangian" total_lagrangian TotalLagrangianKeys,
+            /// Squares with one point of integration on the particles' cells (Belytschko and Bachrach 1986).
+            FiniteElement "finite-element" finite_element FiniteElementKeys,
         }
     };
 }

@@ -59,10 +59,10 @@ pub(super) const RULES: Rules = Rules {
         ..defaults
     },
     keys: &[
-        ("material", "only the total-lagrangian model has a choice of materials"),
+        ("material", "only the total-lagrangian and the finite-element model have a choice of materials"),
         ("hourglass", "only the total-lagrangian model resists hourglass modes"),
         ("prony", "only the total-lagrangian model has a strain that Maxwell arms could follow; others know its rate"),
-        ("plane", "only the total-lagrangian model knows the strain across the plane"),
+        ("plane", "only the total-lagrangian and the finite-element model know the strain across the plane"),
     ],
     // One row of particles has no deformation gradient across.
     rows: 2,
@@ -72,13 +72,10 @@ pub(super) const RULES: Rules = Rules {
 
 impl TotalLagrangianKeys {
     pub(super) fn read(section: &Section<'_>, _: &Defaults) -> Self {
-        const MATERIALS: [(&str, Material); 2] =
-            [("st-venant-kirchhoff", Material::StVenantKirchhoff), ("neo-hookean", Material::NeoHookean)];
         let stiffest = "beyond, it is stiffer than the material and limits the time step";
         let (prony, plane) = (prony(section), plane(section));
-        let material = section.choice("material", Some(Material::NeoHookean), &MATERIALS);
         Self {
-            material: material.unwrap_or(Material::NeoHookean),
+            material: material(section),
             hourglass: section.number_or_auto(
                 "hourglass",
                 None,
@@ -95,7 +92,15 @@ impl TotalLagrangianKeys {
     }
 }
 
-fn plane(section: &Section<'_>) -> Plane {
+/// The law of the material.
+pub(super) fn material(section: &Section<'_>) -> Material {
+    const MATERIALS: [(&str, Material); 2] =
+        [("st-venant-kirchhoff", Material::StVenantKirchhoff), ("neo-hookean", Material::NeoHookean)];
+    section.choice("material", Some(Material::NeoHookean), &MATERIALS).unwrap_or(Material::NeoHookean)
+}
+
+/// What two dimensions mean.
+pub(super) fn plane(section: &Section<'_>) -> Plane {
     const PLANES: [(&str, Plane); 2] = [("strain", Plane::Strain), ("stress", Plane::Stress)];
     let plane = section.choice("plane", Some(Plane::Strain), &PLANES).unwrap_or(Plane::Strain);
     if let (Plane::Stress, Some(node), Some(_)) = (plane, section.node("plane"), section.node("prony")) {

@@ -1,0 +1,48 @@
+//! What a scene says to the finite-element model alone.
+
+use super::models::Rules;
+use super::total_lagrangian::{Material, Plane, material, plane};
+use crate::ArtificialViscosity;
+use crate::preset::Defaults;
+use crate::section::{Range, Section};
+use serde::{Deserialize, Serialize};
+
+/// Keys of the finite-element model.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FiniteElementKeys {
+    /// Law of the material.
+    pub material: Material,
+    /// What happens across the plane of two dimensions.
+    #[serde(default)]
+    pub plane: Plane,
+}
+
+pub(super) const RULES: Rules = Rules {
+    smoothing: Range::at_least(0.75)
+        .up_to(0.75)
+        .why("finite elements have no kernel; it is the length of the viscosity"),
+    defaults: |defaults| Defaults {
+        solid_smoothing_ratio: 0.75,
+        solid_viscosity: ArtificialViscosity { linear: 0.1, quadratic: 0.0 },
+        ..defaults
+    },
+    keys: &[
+        ("material", "only the total-lagrangian and the finite-element model have a choice of materials"),
+        ("plane", "only the total-lagrangian and the finite-element model know the strain across the plane"),
+    ],
+    rows: 1,
+    not_phase_blind: Some("the fluid's share in a velocity gradient means nothing to a deformation gradient"),
+    largest_cfl: Some((0.9, "it is stable to 1")),
+};
+
+impl FiniteElementKeys {
+    pub(super) fn read(section: &Section<'_>, _: &Defaults) -> Self {
+        let viscosity = section.section("artificial_viscosity");
+        if let Some(node) = viscosity.node("quadratic")
+            && viscosity.number("quadratic", Some(0.0), Range::at_least(0.0)) > 0.0
+        {
+            viscosity.wrong("quadratic", node, "must be 0: the viscosity of finite elements is linear");
+        }
+        Self { material: material(section), plane: plane(section) }
+    }
+}

@@ -1,0 +1,465 @@
+//! The model behind [`SolidModel`]: nodes in time.
+//!
+//! Lumped mass and velocity Verlet (kick, drift, kick), as of the total-Lagrangian particles: the central difference of
+//! explicit finite elements (Belytschko, Liu, Moran and Elkhodary 2014, section 6.2).
+
+use super::account::Account;
+use super::element::{Element, MOST_PATTERNS};
+use super::mesh::Mesh;
+use crate::columns::{ParticleColumns, Vectors, vectors};
+use crate::effects::takes_part;
+use crate::model::{Load, OutOfBounds, Particles, SolidModel};
+use crate::shown_velocity::ShownVelocity;
+use crate::side_friction;
+use crate::surface::surface_set;
+use crate::total_lagrangian::bounds::VolumeBounds;
+use crate::total_lagrangian::contact::{Contact, Present};
+use crate::total_lagrangian::material::{Law, Matrix};
+use crate::total_lagrangian::step_limit::{squared_stretches, sub_step};
+use halfstep_scene::bounds::Excess;
+use halfstep_scene::geometry::{self, SolidPoint};
+use halfstep_scene::{EffectName, EnergyPart, KernelName, ModelKeys, Motion, Plane, Scene, Solid};
+use halfstep_sph::lane::Isa;
+use halfstep_sph::with_kernel;
+use halfstep_wire::half_step::{HalfStep, Stage};
+use halfstep_wire::protocol::StateRecord;
+use halfstep_wire::{wide, wire_component};
+
+/// What time integration advances, by node, and the inner acceleration that belongs to it.
+#[derive(Clone, Debug)]
+pub(super) struct Nodes<const D: usize> {
+    /// u, m.
+    pub(super) displacement: Vectors<D>,
+    /// m/s.
+    pub(super) velocity: Vectors<D>,
+    /// By all but loads and gravity, m/s².
+    pub(super) acceleration: Vectors<D>,
+}
+
+/// The finite-element solid.
+pub struct FiniteElement<const D: usize> {
+    pub(super) material: Solid,
+    law: Law,
+    pub(super) element: Element<D>,
+    pub(super) mesh: Mesh<D>,
+    /// K of the patterns without a gradient.
+    hourglass: f64,
+    /// Viscosity, Pa s.
+    pub(super) viscosity: f64,
+    /// Deceleration by side friction, m/s².
+    side_friction: Option<f64>,
+    pub(super) kernel: KernelName,
+    pub(super) isa: Isa,
+    spacing: f64,
+    pub(super) gravity: [f64; D],
+    courant: f64,
+    /// Of a particle, kg (2D: kg/m).
+    pub(super) mass: f64,
+    points: Vec<SolidPoint<D>>,
+    shown: ParticleColumns<D>,
+    interface_set: Vec<u32>,
+    /// Nodes of clamped particles.
+    pub(super) clamped: Vec<bool>,
+    /// Of these, those that clamps move, and how.
+    pub(super) driven: Vec<(usize, Motion)>,
+    pub(super) now: Nodes<D>,
+    at_n: Nodes<D>,
+    pub(super) shown_velocity: ShownVelocity<D>,
+    /// Loads and gravity, m/s².
+    pub(super) load: Vectors<D>,
+    /// Inner acceleration of all nodes, also of those that clamps hold, m/s².
+    pub(super) inner: Vectors<D>,
+    /// F.
+    pub(super) gradient: Vec<Matrix<D>>,
+    /// J.
+    volume_ratio: Vec<f64>,
+    pub(super) contact: Option<Contact<D>>,
+    bounds: VolumeBounds,
+    /// The particle whose volume left its bounds first, or of several the one farthest out.
+    failure: Option<(u32, Excess)>,
+    pub(super) evaluations: u64,
+    pub(super) account: Option<Account<D>>,
+}
+
+impl<const D: usize> FiniteElement<D> {
+    /// The scene's solid of that index.
+    pub fn new(scene: &Scene, solid: usize, isa: Isa) -> Option<Self> {
+        let material = scene.solids.get(solid)?.clone();
+        let ModelKeys::FiniteElement(keys) = &material.model else { return None };
+        let layout = geometry::layout::<D>(scene).with_solid(scene, solid);
+        let points = &layout.solid;
+        let body = geometry::pieces(scene, &layout);
+        let dx = scene.solid_spacing(solid);
+        let (mesh, element) = (Mesh::new(points, &body, dx), Element::new(dx));
+        let contact = Contact::new(scene, solid, &material, &layout, &body);
+        let mass = material.density * element.volume();
+        let nodes = mesh.nodes();
+        let mut clamped = vec![false; nodes];
+        let mut motions: Vec<Option<Motion>> = vec![None; nodes];
+        for (p, point) in points.iter().enumerate().filter(|(_, point)| point.clamped) {
+            let motion = geometry::clamp_motion(scene, point);
+            for &node in mesh.of(p) {
+                clamped[node as usize] = true;
+                motions[node as usize].clone_from(&motion);
+            }
+        }
+        let mut velocity = mesh.spread(|p| points[p].velocity);
+        for column in &mut velocity {
+            column.iter_mut().zip(&clamped).filter(|(_, held)| **held).for_each(|(v, _)| *v = 0.0);
+        }
+        let now = Nodes { displacement: vectors(nodes), velocity, acceleration: vectors(nodes) };
+        let driven = motions.into_iter().enumerate().filter_map(|(node, motion)| Some((node, motion?)));
+        let kinematic =
+            material.artificial_viscosity.kinematic(material.smoothing_ratio * dx, material.sound_speed());
+        let mut model = Self {
+            law: Law::new(&material, keys.material, keys.plane),
+            hourglass: element.hourglass(bending_modulus(&material, keys.plane)),
+            viscosity: material.density * kinematic,
+            side_friction: takes_part(scene, solid, EffectName::SideFriction)
+                .then(|| material.side_friction / material.density),
+            kernel: scene.numerics.kernel,
+            isa,
+            spacing: dx,
+            gravity: std::array::from_fn(|d| scene.gravity[d]),
+            courant: scene.numerics.solid_cfl,
+            shown: ParticleColumns::new(points, mass),
+            mass,
+            interface_set: surface_set(points, &body, 2.0 * scene.smoothing_ratio * scene.resolution, dx),
+            clamped,
+            driven: driven.collect(),
+            at_n: now.clone(),
+            shown_velocity: ShownVelocity::new(points.iter().map(|p| p.velocity)),
+            load: vectors(nodes),
+            inner: vectors(nodes),
+            gradient: vec![Matrix::identity(); points.len()],
+            volume_ratio: vec![1.0; points.len()],
+            points: layout.solid,
+            element,
+            mesh,
+            now,
+            material,
+            contact,
+            bounds: VolumeBounds::new(scene, solid)?,
+            failure: None,
+            evaluations: 0,
+            account: None,
+        };
+        model.drive(0.0);
+        model.evaluate();
+        model.show_particles();
+        Some(model)
+    }
+
+    /// Present position of a particle, m.
+    fn position(&self, particle: usize) -> [f64; D] {
+        let moved = self.mesh.mean(particle, &self.now.displacement);
+        std::array::from_fn(|d| self.points[particle].position[d] + moved[d])
+    }
+
+    fn take_load(&mut self, load: &Load<D>) {
+        for d in 0..D {
+            self.load[d].fill(0.0);
+        }
+        for (p, force) in load.force.iter().enumerate() {
+            for &node in self.mesh.of(p) {
+                let node = node as usize;
+                let part = 1.0 / (Mesh::<D>::CORNERS as f64 * self.mass * self.mesh.share(node));
+                for d in 0..D {
+                    self.load[d][node] += force[d] * part;
+                }
+            }
+        }
+        for d in 0..D {
+            self.load[d].iter_mut().for_each(|load| *load += self.gravity[d]);
+        }
+    }
+
+    fn kick(&mut self, dt: f64) {
+        for d in 0..D {
+            let rates = self.now.acceleration[d].iter().zip(&self.load[d]).zip(&self.clamped);
+            for (v, ((inner, load), held)) in self.now.velocity[d].iter_mut().zip(rates) {
+                if !held {
+                    *v += dt * (inner + load);
+                }
+            }
+        }
+        if let Some(friction) = self.side_friction {
+            let before = self.accounted_kinetic_energy();
+            side_friction::slow(&mut self.now.velocity, dt * friction);
+            if let (Some(before), Some(after)) = (before, self.accounted_kinetic_energy())
+                && let Some(account) = &mut self.account
+            {
+                account.given.give(EnergyPart::SideFriction, after - before);
+            }
+        }
+    }
+
+    fn drift(&mut self, dt: f64) {
+        for d in 0..D {
+            for (u, v) in self.now.displacement[d].iter_mut().zip(&self.now.velocity[d]) {
+                *u += dt * v;
+            }
+        }
+    }
+
+    /// Brings what clamps move to where they are at a time, s.
+    fn drive(&mut self, time: f64) {
+        for (node, motion) in &self.driven {
+            let (placement, place) = (motion.at(time), self.mesh.reference[*node]);
+            let (moved, velocity) = (placement.displacement_of(place), placement.velocity_of(place));
+            for d in 0..D {
+                self.now.displacement[d][*node] = moved[d];
+                self.now.velocity[d][*node] = velocity[d];
+            }
+        }
+    }
+
+    /// `count` Verlet steps over `dt` from `time` on, both s.
+    fn sub_step(&mut self, count: u32, dt: f64, time: f64) {
+        let each = dt / f64::from(count);
+        for k in 1..=count {
+            if let Some(contact) = &mut self.contact {
+                contact.set_time(time + f64::from(k) * each);
+            }
+            self.kick(0.5 * each);
+            let driven = self.driven_from();
+            self.drift(each);
+            self.drive(time + f64::from(k) * each);
+            self.evaluate();
+            self.note_sub_step(each, &driven);
+            self.kick(0.5 * each);
+        }
+    }
+
+    /// Inner acceleration of the present state: stresses, patterns, contacts.
+    pub(super) fn evaluate(&mut self) {
+        self.inner.iter_mut().for_each(|column| column.fill(0.0));
+        let mut worst: Option<(u32, Excess)> = None;
+        for p in 0..self.points.len() {
+            let nodes = self.mesh.of(p);
+            let f = Matrix::identity() + self.element.gradient(nodes, &self.now.displacement);
+            let j = self.law.volume_ratio(&f);
+            if let Some(excess) = self.bounds.excess(j, 0.0)
+                && worst.is_none_or(|(_, other)| excess.ratio > other.ratio)
+            {
+                worst = Some((p as u32, excess));
+            }
+            let mut stress = self.law.first_piola_kirchhoff(&f, j);
+            let patterns = self.element.patterns(nodes, &self.now.displacement);
+            let mut on_patterns = patterns.map(|q| q.map(|q| self.hourglass * q));
+            if self.viscosity > 0.0 {
+                let (viscous, slowing) = self.viscous(p, &f);
+                stress += viscous;
+                for (force, more) in on_patterns.iter_mut().zip(slowing) {
+                    (0..D).for_each(|d| force[d] += more[d]);
+                }
+            }
+            (self.gradient[p], self.volume_ratio[p]) = (f, j);
+            for (corner, &node) in nodes.iter().enumerate() {
+                let node = node as usize;
+                let force = self.element.force(corner, &stress, &on_patterns);
+                let part = 1.0 / (self.mass * self.mesh.share(node));
+                (0..D).for_each(|d| self.inner[d][node] += force[d] * part);
+            }
+        }
+        self.evaluations += self.points.len() as u64;
+        self.failure = self.failure.or(worst);
+        if let Some(contact) = self.contact.take() {
+            self.contact = Some(self.touch(contact));
+        }
+        for d in 0..D {
+            let of = self.inner[d].iter().zip(&self.clamped).map(|(a, held)| if *held { 0.0 } else { *a });
+            self.now.acceleration[d].clear();
+            self.now.acceleration[d].extend(of);
+        }
+    }
+
+    /// Viscous stress of an element, Pa, and forces on its patterns, N (2D: N/m): as if its material were a fluid of that
+    /// viscosity, 2 eta dE/dt for the stress that belongs to Green's strain.
+    pub(super) fn viscous(&self, p: usize, f: &Matrix<D>) -> (Matrix<D>, [[f64; D]; MOST_PATTERNS]) {
+        let nodes = self.mesh.of(p);
+        let rate = self.element.gradient(nodes, &self.now.velocity);
+        let of_strain = f.transpose() * rate;
+        let slowing = self.element.hourglass(2.0 * self.viscosity);
+        let patterns = self.element.patterns(nodes, &self.now.velocity);
+        (f * (of_strain + of_strain.transpose()) * self.viscosity, patterns.map(|q| q.map(|q| slowing * q)))
+    }
+
+    fn touch(&mut self, mut contact: Contact<D>) -> Contact<D> {
+        contact.update(|id| {
+            let (p, j) = (id as usize, self.volume_ratio[id as usize]);
+            Present {
+                position: self.position(p),
+                velocity: self.mesh.mean(p, &self.now.velocity),
+                density: self.material.density / j,
+                pressure: self.law.cauchy(&self.gradient[p], j).pressure,
+            }
+        });
+        let material = &self.material;
+        with_kernel!(self.kernel, contact.smoothing_length(), D, |kernel| contact
+            .act(self.isa, kernel, material));
+        contact.accelerations(|id, a| add_to_nodes(&self.mesh, &mut self.inner, id, a));
+        contact
+    }
+
+    fn show_particles(&mut self) {
+        for p in 0..self.points.len() {
+            self.shown.position[p] = self.position(p);
+            self.shown.velocity[p] = self.mesh.mean(p, &self.now.velocity);
+            self.shown.density[p] = self.material.density / self.volume_ratio[p];
+        }
+    }
+
+    fn record(&self, particle: u32) -> StateRecord {
+        let p = particle as usize;
+        let j = self.volume_ratio[p];
+        let cauchy = self.law.cauchy(&self.gradient[p], j);
+        let mut r = StateRecord {
+            id: particle,
+            flags: u32::from(self.points[p].clamped),
+            position: wide(self.shown.position[p]),
+            velocity: wide(self.shown_velocity.of(particle)),
+            density: self.material.density / j,
+            pressure: cauchy.pressure,
+            mass: self.mass,
+            ..StateRecord::default()
+        };
+        for a in 0..D {
+            for b in a..D {
+                r.deviatoric_stress[wire_component(a, b)] = cauchy.deviator[(a, b)];
+            }
+        }
+        if D == 2 {
+            r.deviatoric_stress[2] = -cauchy.deviator.trace();
+        }
+        r
+    }
+
+    /// What was restored, evaluated again.
+    pub(super) fn show_restored(&mut self) {
+        // Damping took the velocities in the middle of the last sub-step.
+        let (acceleration, evaluations) = (self.now.acceleration.clone(), self.evaluations);
+        self.evaluate();
+        (self.now.acceleration, self.evaluations) = (acceleration, evaluations);
+        self.show_particles();
+    }
+
+    fn check(&self) -> Result<(), OutOfBounds> {
+        let excess = |(p, v): (usize, &[f64; D])| {
+            let speed = v.iter().map(|v| v * v).sum::<f64>().sqrt();
+            Some((p as u32, self.bounds.excess(1.0, speed)?))
+        };
+        let all = self.shown.view().velocity.iter().enumerate().filter_map(excess).chain(self.failure);
+        let Some((particle, worst)) = all.max_by(|a, b| a.1.ratio.total_cmp(&b.1.ratio)) else {
+            return Ok(());
+        };
+        let position = wide(self.shown.position[particle as usize]);
+        Err(OutOfBounds { particle, quantity: worst.quantity, value: worst.value, position })
+    }
+}
+
+/// Adds an acceleration of a particle, m/s², to its nodes, as a force in equal parts.
+pub(super) fn add_to_nodes<const D: usize>(
+    mesh: &Mesh<D>,
+    accelerations: &mut Vectors<D>,
+    particle: u32,
+    a: [f64; D],
+) {
+    for &node in mesh.of(particle as usize) {
+        let node = node as usize;
+        let part = 1.0 / (Mesh::<D>::CORNERS as f64 * mesh.share(node));
+        (0..D).for_each(|d| accelerations[d][node] += a[d] * part);
+    }
+}
+
+/// E' of a plate that is bent, Pa.
+fn bending_modulus(material: &Solid, plane: Plane) -> f64 {
+    match plane {
+        Plane::Strain => material.youngs_modulus / (1.0 - material.poissons_ratio.powi(2)),
+        Plane::Stress => material.youngs_modulus,
+    }
+}
+
+impl<const D: usize> SolidModel<D> for FiniteElement<D> {
+    fn particles(&self) -> Particles<'_, D> {
+        self.shown.view()
+    }
+
+    fn interface_set(&self) -> &[u32] {
+        &self.interface_set
+    }
+
+    fn records(&self, particles: &[u32], out: &mut Vec<StateRecord>) {
+        out.extend(particles.iter().map(|&p| self.record(p)));
+    }
+
+    /// omega² = 4 D M / (rho0 dx²) bounds that of every element, M the largest eigenvalue of the present acoustic
+    /// tensor: D M is no less than the stiffness against any gradient, and an element's nodes have a 2^D-th of its mass.
+    fn sub_step_limit(&self) -> f64 {
+        let stiffness = |(f, &j): (&Matrix<D>, &f64)| self.law.stiffness(f, j, squared_stretches(f));
+        let stiffest = self.gradient.iter().zip(&self.volume_ratio).map(stiffness).fold(0.0, f64::max);
+        let (springs, walls) = self
+            .contact
+            .as_ref()
+            .map_or((0.0, 0.0), |contact| contact.stiffness(self.kernel, &self.material));
+        let square = 4.0 * D as f64 / (self.material.density * self.spacing.powi(2));
+        let omega = (square * stiffest + springs).sqrt();
+        let damping = 0.5 * (square * 2.0 * self.viscosity + walls);
+        self.courant.min(LARGEST_PART) * sub_step(omega, damping)
+    }
+
+    fn advance(&mut self, half_step: &HalfStep, sub_steps: u32, load: &Load<D>) -> Result<(), OutOfBounds> {
+        self.take_load(load);
+        let span = half_step.span();
+        match half_step.stage {
+            Stage::First => {
+                self.at_n.clone_from(&self.now);
+                let (mesh, from) = (&self.mesh, &self.at_n.displacement);
+                self.shown_velocity.leave(|p| mesh.mean(p, from));
+                self.sub_step((sub_steps / 2).max(1), span, half_step.time);
+            }
+            Stage::Second => {
+                self.now.clone_from(&self.at_n);
+                self.set_account_open(true);
+                self.sub_step(sub_steps, span, half_step.time);
+                self.set_account_open(false);
+            }
+        }
+        let (mesh, now) = (&self.mesh, &self.now);
+        let place = |p: usize| mesh.mean(p, &now.displacement);
+        self.shown_velocity.arrive(half_step, sub_steps, place, |p| mesh.mean(p, &now.velocity));
+        self.show_particles();
+        self.check()
+    }
+
+    fn keep_account(&mut self) {
+        self.open_account();
+    }
+
+    fn account(&mut self, give: &mut dyn FnMut(EnergyPart, f64)) {
+        if let Some(account) = &mut self.account {
+            account.given.hand_over(give);
+        }
+    }
+
+    fn strain_energy(&self) -> f64 {
+        let of = |p: usize| {
+            let strained = self.element.volume() * self.law.energy(&self.gradient[p], self.volume_ratio[p]);
+            let patterns = self.element.patterns(self.mesh.of(p), &self.now.displacement);
+            strained + 0.5 * self.hourglass * patterns.iter().flatten().map(|q| q * q).sum::<f64>()
+        };
+        let inner: f64 = (0..self.points.len()).map(of).sum();
+        inner + self.contact.as_ref().map_or(0.0, Contact::energy)
+    }
+
+    fn state(&mut self) -> Option<&mut dyn halfstep_wire::state::State> {
+        Some(self)
+    }
+
+    fn pair_evaluations(&self) -> u64 {
+        self.evaluations
+    }
+}
+
+/// Part of the stable sub-step that a state may take.
+const LARGEST_PART: f64 = 0.9;
