@@ -102,8 +102,15 @@ impl<const D: usize> Measurement<D> {
                 let sum: f64 = records.iter().map(|r| von_mises(&r.deviatoric_stress)).sum();
                 put(sum / particles.len() as f64);
             }
-            Self::KineticEnergy => put(state.kinetic_energy()),
+            Self::KineticEnergy => put(model.kinetic_energy()),
             Self::StrainEnergy => put(model.strain_energy()),
+            Self::Centroid if !model.rigid_bodies().is_empty() => {
+                let bodies = model.rigid_bodies();
+                let mass: f64 = bodies.iter().map(|body| body.mass).sum();
+                for d in 0..D {
+                    put(bodies.iter().map(|body| body.mass * body.center[d]).sum::<f64>() / mass);
+                }
+            }
             Self::Centroid => {
                 let mass: f64 = state.mass.iter().sum();
                 for d in 0..D {

@@ -1,6 +1,6 @@
 //! The solid models that come with the program, and what each asks of a scene.
 
-use super::{hypoelastic, total_lagrangian};
+use super::{hypoelastic, rigid, total_lagrangian};
 use crate::preset::Defaults;
 use crate::section::{Range, Section};
 use serde::{Deserialize, Serialize};
@@ -15,6 +15,8 @@ macro_rules! solid_models {
             Hypoelastic "hypoelastic" hypoelastic HypoelasticKeys,
             /// Hyperelastic, with neighbours of the reference configuration (Bonet and Lok 1999).
             TotalLagrangian "total-lagrangian" total_lagrangian TotalLagrangianKeys,
+            /// Bodies that do not strain, held by joints, in contact with walls and each other.
+            Rigid "rigid" rigid RigidKeys,
         }
     };
 }
@@ -33,6 +35,8 @@ pub(crate) struct Rules {
     pub(crate) not_phase_blind: Option<&'static str>,
     /// Largest `numerics.solid_cfl`, and why, where it is below what that key allows.
     pub(crate) largest_cfl: Option<(f64, &'static str)>,
+    /// It does not strain: it has no elastic constants.
+    pub(crate) rigid: bool,
 }
 
 macro_rules! registry {
