@@ -61,11 +61,15 @@ impl Check<'_> {
         }
         let Some(motion) = &shape.motion else { return };
         let same = |other: &&Shape| other.solid == shape.solid && other.body() == shape.body();
-        if let Some(other) = self.scene.shapes.iter().filter(same).find(|s| s.motion.as_ref() != Some(motion)) {
+        if let Some(other) = self.scene.shapes.iter().filter(same).find(|s| s.motion.as_ref() != Some(motion))
+        {
             refuse("motion", &format!("is not that of `{}`, which is of the same rigid body", other.name));
         }
         if let Some(joint) = keys.joints.iter().find(|joint| joint.holds() && joint.body == shape.body()) {
-            refuse("motion", &format!("prescribes where the body is, and the joint `{}` holds it", joint.name));
+            refuse(
+                "motion",
+                &format!("prescribes where the body is, and the joint `{}` holds it", joint.name),
+            );
         }
     }
 
@@ -84,7 +88,7 @@ impl Check<'_> {
     }
 
     /// The value of a key names one body of the solid.
-    fn is_one_body(&self, solid: usize, key: &str, name: &str) -> bool {
+    pub(super) fn is_one_body(&self, solid: usize, key: &str, name: &str) -> bool {
         let shapes = || self.scene.shapes.iter().filter(|shape| shape.solid == Some(solid));
         let mut own = shapes().filter(|shape| shape.body() == name);
         let Some(first) = own.next() else {

@@ -62,7 +62,7 @@ pub use load::{load, load_with, parse, parse_with};
 pub use metric::{Metric, MetricKind, MetricReference};
 pub use motion::{Composed, Course, Motion, Part, Placement, Spline, Turn};
 pub use participant::Participant;
-pub use probe::{Probe, ProbeKind, Reference};
+pub use probe::{BodyQuantity, Probe, ProbeKind, Reference};
 pub use resources::{expected_speed, memory_available, memory_needed};
 pub use solid::{
     ArtificialStress, ContactKeys, HypoelasticKeys, Joint, JointKind, Material, ModelKeys, Plane, RigidBody,

@@ -1,19 +1,28 @@
 //! What joints, contacts and prescribed motion give the bodies over a step.
 //!
-//! Contacts and stops: the kinetic energy that their impulses change, less the work of walls that move. Dampers: their
-//! force along the way of the drift. What moves by prescription gives what its own energy takes beside the loads on it,
+//! Contacts and stops: what the kinetic energy changes by, less the work of all other forces along the velocity of the
+//! drift and of walls that move. Dampers: their force along that velocity. What moves by prescription gives what its own energy takes beside the loads on it,
 //! and the work of its pushes through joints and springs.
 
 use super::Vec3;
 use super::body::Pose;
 use super::contact::Touch;
 use super::row::Row;
-use super::step::System;
+use super::step::{Kick, System};
 use crate::ledger::Given;
 use halfstep_scene::EnergyPart;
 
 /// The account.
 pub(super) type Books = Given;
+
+/// What a meeting of bodies gave.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Met {
+    /// Something pushed.
+    touched: bool,
+    /// Work of what is driven, J.
+    driven: f64,
+}
 
 impl System {
     /// What happens now is noted.
@@ -34,37 +43,54 @@ impl System {
         }
     }
 
-    /// After the impulses of joints and contacts; `before` is the kinetic energy before them.
-    pub(super) fn book_meeting(&mut self, before: f64, rows: &[Row], impulses: &[f64], touches: &[Touch]) {
+    /// What joints and contacts did by themselves moving.
+    pub(super) fn book_meeting(&mut self, rows: &[Row], impulses: &[f64], touches: &[Touch]) -> Met {
         if !self.books_open() {
-            return;
+            return Met::default();
         }
-        let joints: f64 =
-            rows.iter().zip(impulses).map(|(row, &impulse)| self.driven_work(row, impulse, &self.poses)).sum();
-        self.books.give(EnergyPart::Clamps, joints);
+        let of_row = |row: &Row, impulse: f64| self.driven_work(row, impulse, &self.poses);
+        let joints: f64 = rows.iter().zip(impulses).map(|(row, &impulse)| of_row(row, impulse)).sum();
         let mut walls = 0.0;
         for touch in touches {
-            walls += self.driven_work(&touch.normal, touch.impulse, &self.poses);
-            let across = touch.tangents.iter().zip(&touch.friction);
-            walls += across.map(|(row, &x)| self.driven_work(row, x, &self.poses)).sum::<f64>();
+            walls += of_row(&touch.normal, touch.impulse);
+            walls += touch.tangents.iter().zip(&touch.friction).map(|(row, &x)| of_row(row, x)).sum::<f64>();
         }
+        self.books.give(EnergyPart::Clamps, joints);
         self.books.give(EnergyPart::MovingWalls, walls);
-        if !touches.is_empty() {
-            let change = self.kinetic_energy() - before;
-            self.books.give(EnergyPart::WallContact, change - walls - joints);
+        Met { touched: touches.iter().any(|touch| touch.impulse > 0.0), driven: joints + walls }
+    }
+
+    /// Contacts gave what the kinetic energy changed by, less the work of a kick, and of what moved.
+    pub(super) fn book_contacts(&mut self, met: &Met, change: f64) {
+        if self.books_open() && met.touched {
+            self.books.give(EnergyPart::WallContact, change - met.driven);
         }
     }
 
-    /// What springs, each with its whole force and the damper's part, give over `dt`, s, of the drift.
-    pub(super) fn book_springs(&mut self, springs: &[(Row, f64, f64)], dt: f64) {
+    /// Work of a kick along the velocities of the drift, J.
+    pub(super) fn work(&self, kick: &Kick, drifting: &[Pose]) -> f64 {
+        let of_body = |(k, force, moment): &(usize, Vec3, Vec3)| {
+            let rate = self.bodies[*k].angular_velocity(&drifting[*k]);
+            force.dot(&drifting[*k].velocity) + moment.dot(&rate)
+        };
+        let of_spring = |(row, force, _): &(Row, f64, f64)| {
+            let given = (0..2).filter(|&end| self.bodies[row.ends[end]].gives_way());
+            given.map(|end| force * row.of_end(end, &self.bodies, drifting)).sum::<f64>()
+        };
+        let bodies: f64 = kick.pushes.iter().map(of_body).sum();
+        kick.dt * (bodies + kick.springs.iter().map(of_spring).sum::<f64>())
+    }
+
+    /// What dampers, and springs on what is driven, give on the drift.
+    pub(super) fn book_kick(&mut self, kick: &Kick) {
         if !self.books_open() {
             return;
         }
         let of = |(row, force, damper): &(Row, f64, f64)| {
             let rate = row.rate(&self.bodies, &self.poses);
-            dt * damper * rate + self.driven_work(row, force * dt, &self.poses)
+            kick.dt * damper * rate + self.driven_work(row, force * kick.dt, &self.poses)
         };
-        let given: f64 = springs.iter().map(of).sum();
+        let given: f64 = kick.springs.iter().map(of).sum();
         self.books.give(EnergyPart::Clamps, given);
     }
 

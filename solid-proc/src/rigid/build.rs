@@ -84,6 +84,7 @@ pub(super) fn system<const D: usize>(
         tolerance: TOLERANCE * scene.solid_spacing(solid),
         wrenches: vec![zero; real],
         contact: vec![[Vec3::zeros(); 2]; real],
+        memory: Vec::new(),
         books: Given::default(),
         accounted: false,
         bodies,

@@ -35,6 +35,21 @@ impl Touch {
     }
 }
 
+/// What a contact begins the next search with: the one of the same place in its pair's list.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Remembered {
+    pub(super) ends: [usize; 2],
+    pub(super) impulse: f64,
+    pub(super) friction: [f64; 2],
+}
+
+impl Remembered {
+    pub(super) fn of(touch: &Touch) -> Self {
+        let of = |k: usize| touch.friction.get(k).copied().unwrap_or(0.0);
+        Self { ends: touch.normal.ends, impulse: touch.impulse, friction: [of(0), of(1)] }
+    }
+}
+
 /// Normals of one face agree to this cosine.
 const SAME_FACE: f64 = 1.0 - 1e-9;
 
@@ -67,6 +82,30 @@ impl System {
             }
         }
         all
+    }
+
+    /// Gives contacts the impulses of the last ones between the same bodies, where these are as many, and the bodies the
+    /// velocities after them.
+    pub(super) fn recall(&mut self, touches: &mut [Touch]) {
+        let mut first = 0;
+        while first < touches.len() {
+            let ends = touches[first].normal.ends;
+            let count = touches[first..].iter().take_while(|touch| touch.normal.ends == ends).count();
+            let known = self.memory.iter().filter(|one| one.ends == ends);
+            if known.clone().count() == count {
+                for (touch, known) in touches[first..first + count].iter_mut().zip(known) {
+                    touch.impulse = known.impulse;
+                    touch.normal.push(&self.bodies, &mut self.poses, known.impulse);
+                    for ((row, own), impulse) in
+                        touch.tangents.iter().zip(&mut touch.friction).zip(known.friction)
+                    {
+                        *own = impulse;
+                        row.push(&self.bodies, &mut self.poses, impulse);
+                    }
+                }
+            }
+            first += count;
+        }
     }
 
     fn may_touch(&self, surface: usize, ball: usize) -> bool {
@@ -127,8 +166,7 @@ impl System {
     /// A contact at a point with friction across its normal.
     fn contact(&self, normal: Row, point: Vec3) -> Touch {
         let n = normal.linear;
-        let directions =
-            if self.plane { vec![Vec3::new(-n[1], n[0], 0.0)] } else { across(&n).to_vec() };
+        let directions = if self.plane { vec![Vec3::new(-n[1], n[0], 0.0)] } else { across(&n).to_vec() };
         let row = |d: Vec3| Row::between(normal.ends, &self.poses, point, d, 0.0);
         Touch::new(normal, directions.into_iter().map(row).collect())
     }

@@ -3,6 +3,7 @@
 use super::Vec3;
 use super::body::Pose;
 use super::build;
+use super::contact::Remembered;
 use super::step::{System, Wrench};
 use crate::columns::ParticleColumns;
 use crate::model::{Load, OutOfBounds, Particles, RigidState, SolidModel};
@@ -29,6 +30,8 @@ pub struct Rigid<const D: usize> {
     pub(super) states: Vec<RigidState<D>>,
     /// State at n.
     at_n: Vec<Pose>,
+    /// Contacts at n.
+    contacts_at_n: Vec<Remembered>,
     spacing: f64,
     density: f64,
     mass: f64,
@@ -57,6 +60,7 @@ impl<const D: usize> Rigid<D> {
         let mut model = Self {
             interface_set: surface_set(&points, &body_of, reach, dx),
             at_n: system.poses.clone(),
+            contacts_at_n: Vec::new(),
             shown_velocity: ShownVelocity::new(points.iter().map(|p| p.velocity)),
             system,
             points,
@@ -187,12 +191,14 @@ impl<const D: usize> SolidModel<D> for Rigid<D> {
         match half_step.stage {
             Stage::First => {
                 self.at_n.clone_from(&self.system.poses);
+                self.contacts_at_n.clone_from(&self.system.memory);
                 let place = &self.shown.position;
                 self.shown_velocity.leave(|p| place[p]);
                 self.sub_steps((sub_steps / 2).max(1), span, half_step.time);
             }
             Stage::Second => {
                 self.system.poses.clone_from(&self.at_n);
+                self.system.memory.clone_from(&self.contacts_at_n);
                 self.system.contact.fill([Vec3::zeros(); 2]);
                 self.system.books.open = true;
                 self.sub_steps(sub_steps, span, half_step.time);

@@ -92,8 +92,7 @@ impl Factors {
             f.pivots[j] = pivot;
             for i in j + 1..n {
                 let whole = rows[i].response(&rows[j], bodies, poses);
-                let taken: f64 =
-                    (0..j).map(|k| f.lower[i * n + k] * f.lower[j * n + k] * f.pivots[k]).sum();
+                let taken: f64 = (0..j).map(|k| f.lower[i * n + k] * f.lower[j * n + k] * f.pivots[k]).sum();
                 f.lower[i * n + j] = (whole - taken) / pivot;
             }
         }

@@ -2,6 +2,7 @@
 //! probes show. All else comes from the scene.
 
 use super::Vec3;
+use super::contact::Remembered;
 use super::model::Rigid;
 use halfstep_wire::state::{Fields, State, StateError};
 use nalgebra::{Quaternion, UnitQuaternion};
@@ -46,6 +47,19 @@ impl<const D: usize> State for Rigid<D> {
         for (state, (force, moment)) in self.states.iter_mut().zip(force.into_iter().zip(moment)) {
             (state.contact_force, state.contact_moment) = (force, moment);
         }
+        let memory = &mut self.system.memory;
+        let mut ends: Vec<u32> = memory.iter().flat_map(|one| one.ends.map(|end| end as u32)).collect();
+        let mut impulses: Vec<[f64; 3]> =
+            memory.iter().map(|one| [one.impulse, one.friction[0], one.friction[1]]).collect();
+        fields.numbers("contact_ends", &mut ends)?;
+        fields.points("contact_impulse", &mut impulses)?;
+        fields.length("contact_ends", 2 * impulses.len(), ends.len())?;
+        let one = |(ends, [impulse, a, b]): (&[u32], [f64; 3])| Remembered {
+            ends: [ends[0] as usize, ends[1] as usize],
+            impulse,
+            friction: [a, b],
+        };
+        *memory = ends.chunks_exact(2).zip(impulses).map(one).collect();
         fields.part("shown_velocity", &mut self.shown_velocity)
     }
 

@@ -1,9 +1,9 @@
 //! A sub-step of all bodies.
 
 use super::Vec3;
-use super::account::Books;
+use super::account::{Books, Met};
 use super::body::{Body, Pose};
-use super::contact::Touch;
+use super::contact::{Remembered, Touch};
 use super::joint::Link;
 use super::row::{Factors, Row};
 use super::solve::{Held, solve};
@@ -31,6 +31,23 @@ impl Wrench {
     }
 }
 
+/// Which kick of a sub-step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Half {
+    First,
+    Second,
+}
+
+/// What a kick did.
+pub(super) struct Kick {
+    /// s.
+    pub(super) dt: f64,
+    /// Body, force and moment.
+    pub(super) pushes: Vec<(usize, Vec3, Vec3)>,
+    /// Rows of the springs, each with the whole force along it and the damper's part.
+    pub(super) springs: Vec<(Row, f64, f64)>,
+}
+
 /// Bodies, what holds them, and where they are.
 pub(super) struct System {
     pub(super) plane: bool,
@@ -50,6 +67,8 @@ pub(super) struct System {
     pub(super) wrenches: Vec<Wrench>,
     /// Impulse of contacts on each body over the present stage, and its moment about the centre of mass.
     pub(super) contact: Vec<[Vec3; 2]>,
+    /// Impulses of the last contacts, from which the next ones are sought.
+    pub(super) memory: Vec<Remembered>,
     pub(super) books: Books,
     /// Energy is accounted.
     pub(super) accounted: bool,
@@ -70,43 +89,55 @@ impl System {
         }
     }
 
-    /// Rows of the springs, each with the whole force along it and the damper's part.
-    fn spring_forces(&self) -> Vec<(Row, f64, f64)> {
+    /// A kick by loads, gravity and springs over `dt`, s. Dampers take the velocities before the first kick of a
+    /// sub-step and after the second: both together are of second order.
+    fn kick(&mut self, dt: f64, half: Half) -> Kick {
+        let mut springs = Vec::new();
         let mut pushes = Vec::new();
         let mut ways = Vec::new();
         for link in self.links.iter().filter(|link| link.stiffness > 0.0 || link.damping > 0.0) {
             ways.clear();
             link.ways(self.plane, &self.bodies, &self.poses, &mut ways);
             for row in &ways {
-                let damper = -link.damping * row.rate(&self.bodies, &self.poses);
-                pushes.push((*row, damper - link.stiffness * (row.gap - link.rest), damper));
+                let damper = match half {
+                    Half::First => -link.damping * row.rate(&self.bodies, &self.poses),
+                    Half::Second => 0.0,
+                };
+                springs.push((*row, damper - link.stiffness * (row.gap - link.rest), damper, link.damping));
             }
         }
-        pushes
-    }
-
-    /// A kick by loads, gravity and springs over `dt`, s.
-    fn kick(&mut self, springs: &[(Row, f64, f64)], dt: f64) {
         for k in (0..self.real).filter(|&k| self.bodies[k].gives_way()) {
             let (wrench, pose) = (self.wrenches[k], &mut self.poses[k]);
             pose.velocity += (wrench.force / self.bodies[k].mass + self.gravity) * dt;
             let moment = wrench.moment(&pose.rotation());
-            pose.spin += if self.plane { Vec3::new(0.0, 0.0, moment[2]) } else { moment } * dt;
+            let moment = if self.plane { Vec3::new(0.0, 0.0, moment[2]) } else { moment };
+            pose.spin += moment * dt;
+            pushes.push((k, wrench.force + self.gravity * self.bodies[k].mass, moment));
         }
-        for (row, force, _) in springs {
+        for (row, force, ..) in &springs {
             row.push(&self.bodies, &mut self.poses, force * dt);
         }
+        let late = springs.iter_mut().filter(|(.., damping)| half == Half::Second && *damping > 0.0);
+        for (row, force, damper, damping) in late {
+            let give = row.response(row, &self.bodies, &self.poses);
+            *damper = -*damping * row.rate(&self.bodies, &self.poses) / (1.0 + dt * *damping * give);
+            row.push(&self.bodies, &mut self.poses, *damper * dt);
+            *force += *damper;
+        }
+        let springs = springs.into_iter().map(|(row, force, damper, _)| (row, force, damper)).collect();
+        Kick { dt, pushes, springs }
     }
 
-    /// Velocities after joints and contacts of the present state.
-    fn meet(&mut self, mut touches: Vec<Touch>) {
+    /// Velocities after joints and contacts of the present state. Returns what these gave by themselves moving.
+    fn meet(&mut self, mut touches: Vec<Touch>) -> Met {
         let rows = self.joint_rows();
         if rows.is_empty() && touches.is_empty() {
-            return;
+            self.memory.clear();
+            return Met::default();
         }
         let factors = Factors::of(&rows, &self.bodies, &self.poses);
         let held = Held { rows: &rows, factors: &factors, rates: &vec![0.0; rows.len()] };
-        let before = self.kinetic_energy();
+        self.recall(&mut touches);
         let impulses = solve(&self.bodies, &mut self.poses, &held, &mut touches, self.friction);
         for touch in touches.iter().filter(|touch| touch.is_contact()) {
             let all = std::iter::once((&touch.normal, touch.impulse));
@@ -119,7 +150,8 @@ impl System {
                 }
             }
         }
-        self.book_meeting(before, &rows, &impulses, &touches);
+        self.memory = touches.iter().map(Remembered::of).collect();
+        self.book_meeting(&rows, &impulses, &touches)
     }
 
     /// Goes on for `dt` to `time`, s, so that joints stay together: their impulses act along the rows of the start.
@@ -192,21 +224,27 @@ impl System {
     pub(super) fn sub_step<const D: usize>(&mut self, dt: f64, time: f64) {
         let half = 0.5 * dt;
         let before = self.driven_before();
-        let pushes = self.spring_forces();
-        self.kick(&pushes, half);
+        let energy = self.kinetic_energy();
+        let kick = self.kick(half, Half::First);
         let resting = self.touches::<D>();
-        self.meet(resting);
+        let met = self.meet(resting);
         self.drift(dt, time + dt);
-        self.book_springs(&pushes, half);
+        let drifting = self.kinetic_energy();
+        self.book_kick(&kick);
+        self.book_contacts(&met, drifting - energy - self.work(&kick, &self.poses));
         let mut touches = self.touches::<D>();
         for touch in touches.iter_mut().filter(|touch| touch.is_contact()) {
             let approach = touch.normal.rate(&self.bodies, &self.poses).min(0.0);
             touch.target = -self.restitution * approach;
         }
-        let pushes = self.spring_forces();
-        self.book_springs(&pushes, half);
-        self.kick(&pushes, half);
-        self.meet(touches.clone());
+        let halfway = self.poses.clone();
+        let kick = self.kick(half, Half::Second);
+        let met = self.meet(touches.clone());
+        let end = std::mem::replace(&mut self.poses, halfway);
+        self.book_kick(&kick);
+        let work = self.work(&kick, &self.poses);
+        self.poses = end;
+        self.book_contacts(&met, self.kinetic_energy() - drifting - work);
         self.part::<D>(&touches);
         self.book_driven(&before);
     }

@@ -17,8 +17,15 @@ pub struct Surface {
 enum Part {
     Block(Block),
     /// Between two radii; of a disc the inner one is negative.
-    Ring { center: [f64; 3], inner: f64, outer: f64 },
-    Tank { cavity: Block, open: Vec<TankSide> },
+    Ring {
+        center: [f64; 3],
+        inner: f64,
+        outer: f64,
+    },
+    Tank {
+        cavity: Block,
+        open: Vec<TankSide>,
+    },
     Polygon(Box<Edges>),
 }
 

@@ -148,7 +148,8 @@ fn refuse(table: &Section<'_>, kind: Kind) {
             table.wrong(key, node, *why);
         }
     }
-    let own = [("axis", [Kind::Hinge, Kind::Rail].as_slice()), ("turns", &[Kind::Rail]), ("to", &[Kind::Spring])];
+    let own =
+        [("axis", [Kind::Hinge, Kind::Rail].as_slice()), ("turns", &[Kind::Rail]), ("to", &[Kind::Spring])];
     for (key, owners) in own {
         let owned = owners.iter().any(|owner| *owner as u8 == kind as u8);
         if let (false, Some(node)) = (owned, table.node(key)) {
