@@ -25,14 +25,14 @@ impl Check<'_> {
                 let place = of(&body.name, "bodies", k, &names);
                 self.is_one_body(index, &format!("{place}.name"), &body.name);
                 if names[..k].contains(&body.name.as_str()) {
-                    self.place(&format!("{place}.name"), "another table of `bodies` is about this body");
+                    self.wrong(&format!("{place}.name"), "another table of `bodies` is about this body");
                 }
             }
             let names: Vec<&str> = keys.joints.iter().map(|joint| joint.name.as_str()).collect();
             for (k, joint) in keys.joints.iter().enumerate() {
                 let place = of(&joint.name, "joints", k, &names);
                 if names[..k].contains(&joint.name.as_str()) {
-                    self.place(&format!("{place}.name"), "another joint has this name");
+                    self.wrong(&format!("{place}.name"), "another joint has this name");
                 }
                 self.joint(index, joint, &place);
             }
@@ -79,7 +79,7 @@ impl Check<'_> {
         }
         let with = format!("{key}.with");
         if joint.with == joint.body {
-            return self.place(&with, "is the body itself");
+            return self.wrong(&with, "is the body itself");
         }
         let is_wall = |shape: &Shape| shape.phase == Phase::Wall && shape.name == joint.with;
         if !self.scene.shapes.iter().any(is_wall) {
@@ -96,14 +96,14 @@ impl Check<'_> {
             known.dedup();
             let walls = if key.ends_with(".with") { ", nor a wall" } else { "" };
             let reason = format!("is no body of this solid{walls}; its bodies are {}", listed(known, "and"));
-            self.place(key, reason);
+            self.wrong(key, reason);
             return false;
         };
         if let (true, Geometry::Moved(moved)) = (first.body.is_empty(), &first.geometry)
             && moved.count > 1
         {
             let reason = format!("is {} bodies: copies of one shape, each free of the others", moved.count);
-            self.place(key, reason);
+            self.wrong(key, reason);
             return false;
         }
         true
