@@ -59,9 +59,8 @@ fn processes_and_threads_agree_and_the_ledger_closes() {
     let text = std::fs::read_to_string(repository().join("scenes/floating-box.toml")).expect("a scene");
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("box.toml");
-    let ledgers = ["fluid", "solid"].map(|phase| {
-        format!("[[probe]]\nname = \"e-{phase}\"\nkind = \"energy\"\nphase = \"{phase}\"\n")
-    });
+    let ledgers = ["fluid", "solid"]
+        .map(|phase| format!("[[probe]]\nname = \"e-{phase}\"\nkind = \"energy\"\nphase = \"{phase}\"\n"));
     std::fs::write(&path, text + "\n" + &ledgers.concat()).expect("a scene");
     let run = || scene_at(&path).set("resolution", 0.02).until(0.3);
     let (processes, threads) = (run().run(), run().in_process().run());

@@ -1,8 +1,8 @@
 //! What joints, contacts and prescribed motion give the bodies over a step.
 //!
 //! Contacts and stops: what the kinetic energy changes by, less the work of all other forces along the velocity of the
-//! drift and of walls that move. Dampers: their force along that velocity. What moves by prescription gives what its own energy takes beside the loads on it,
-//! and the work of its pushes through joints and springs.
+//! drift and of walls that move. Dampers: their force along that velocity. What moves by prescription gives what its
+//! own energy takes beside the loads on it, and the work of its pushes through joints and springs.
 
 use super::Vec3;
 use super::body::Pose;

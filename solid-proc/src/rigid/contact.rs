@@ -84,8 +84,8 @@ impl System {
         all
     }
 
-    /// Gives contacts the impulses of the last ones between the same bodies, where these are as many, and the bodies the
-    /// velocities after them.
+    /// Gives contacts the impulses of the last ones between the same bodies, where these are as many, and the bodies
+    /// the velocities after them.
     pub(super) fn recall(&mut self, touches: &mut [Touch]) {
         let mut first = 0;
         while first < touches.len() {

@@ -96,8 +96,8 @@ impl Link {
         }
     }
 
-    /// Appends the ways that the joint leaves free, m or rad, as the gaps of rows along them; `plane` as above. None of a
-    /// fixed joint and of a ball; of a spring that rests at no length one along each axis.
+    /// Appends the ways that the joint leaves free, m or rad, as the gaps of rows along them; `plane` as above. None of
+    /// a fixed joint and of a ball; of a spring that rests at no length one along each axis.
     pub(super) fn ways(&self, plane: bool, bodies: &[Body], poses: &[Pose], rows: &mut Vec<Row>) {
         let [a, b] = self.ends;
         match &self.kind {

@@ -51,8 +51,8 @@ fn each_pair<const D: usize>(scene: &Scene, layout: &Layout<D>, mut visit: impl 
 }
 
 /// A number for the connected piece of each solid particle, from 0 on in the order of their first particles. Particles
-/// of one body are connected where they are within the support of their solid's kernel; those of a rigid body that shapes
-/// name are, wherever they are.
+/// of one body are connected where they are within the support of their solid's kernel; those of a rigid body that
+/// shapes name are, wherever they are.
 pub fn pieces<const D: usize>(scene: &Scene, layout: &Layout<D>) -> Vec<u32> {
     let labels: Vec<Label<'_>> = layout.solid.iter().map(|point| label(scene, point)).collect();
     let mut parent: Vec<u32> = (0..labels.len() as u32).collect();
