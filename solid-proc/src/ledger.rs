@@ -53,8 +53,11 @@ impl<const D: usize> SolidLedger<D> {
     fn hold(&mut self, model: &dyn SolidModel<D>) {
         let state = model.particles();
         let height = |x: &[f64; D]| -(0..D).map(|d| self.gravity[d] * x[d]).sum::<f64>();
-        let potential = state.mass.iter().zip(state.position).map(|(m, x)| m * height(x)).sum();
-        self.ledger.hold([state.kinetic_energy(), model.strain_energy(), potential]);
+        let potential = match model.rigid_bodies() {
+            [] => state.mass.iter().zip(state.position).map(|(m, x)| m * height(x)).sum(),
+            bodies => bodies.iter().map(|body| body.mass * height(&body.center)).sum(),
+        };
+        self.ledger.hold([model.kinetic_energy(), model.strain_energy(), potential]);
     }
 
     /// Notes where particles are at n.

@@ -27,6 +27,7 @@ mod ledger;
 pub mod model;
 mod models;
 mod probes;
+pub mod rigid;
 mod shown_velocity;
 mod side_friction;
 mod sleep;

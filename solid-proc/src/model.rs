@@ -68,6 +68,47 @@ impl<const D: usize> Particles<'_, D> {
     }
 }
 
+/// A rigid body of a model in its present state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RigidState<const D: usize> {
+    /// Name that scenes give it.
+    pub name: String,
+    /// Mass, kg (2D: kg/m).
+    pub mass: f64,
+    /// Centre of mass, m.
+    pub center: [f64; D],
+    /// Velocity of the centre of mass, m/s.
+    pub velocity: [f64; D],
+    /// What it has turned by, rad: in the plane the third component, which goes on beyond a whole turn; in space the
+    /// rotation's axis times its angle.
+    pub angle: [f64; 3],
+    /// Angular velocity, rad/s.
+    pub angular_velocity: [f64; 3],
+    /// Kinetic energy, J (2D: J/m).
+    pub kinetic_energy: f64,
+    /// Force of contacts, mean over the last step, N (2D: N/m).
+    pub contact_force: [f64; D],
+    /// Moment of that about the centre of mass, N m (2D: N).
+    pub contact_moment: [f64; 3],
+}
+
+impl<const D: usize> RigidState<D> {
+    /// At rest at the origin.
+    pub(crate) fn named(name: String) -> Self {
+        Self {
+            name,
+            mass: 0.0,
+            center: [0.0; D],
+            velocity: [0.0; D],
+            angle: [0.0; 3],
+            angular_velocity: [0.0; 3],
+            kinetic_energy: 0.0,
+            contact_force: [0.0; D],
+            contact_moment: [0.0; 3],
+        }
+    }
+}
+
 /// A particle of the model left its bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutOfBounds {
@@ -81,7 +122,7 @@ pub struct OutOfBounds {
     pub position: [f64; 3],
 }
 
-/// A deformable solid made of particles.
+/// A solid made of particles.
 ///
 /// Particle numbers run from 0 to n - 1 and never change. A step from n to n + 1 is `advance` with its
 /// first stage (to n + 1/2, under the load of n) and then with its second (from n to n + 1, under the load of n + 1/2).
@@ -110,6 +151,22 @@ pub trait SolidModel<const D: usize>: Send {
     fn keep_account(&mut self) {}
     /// Calls `give` with what was given over the last step, J (2D: J/m), after its second stage; negative: taken.
     fn account(&mut self, _give: &mut dyn FnMut(EnergyPart, f64)) {}
+    /// The rigid bodies that the model is made of, whose mass and energy are not those of [`Self::particles`]; none of
+    /// a model that strains.
+    fn rigid_bodies(&self) -> &[RigidState<D>] {
+        &[]
+    }
+    /// Index of each particle's rigid body; empty where there are none.
+    fn body_of(&self) -> &[u32] {
+        &[]
+    }
+    /// Kinetic energy, J (2D: J/m).
+    fn kinetic_energy(&self) -> f64 {
+        match self.rigid_bodies() {
+            [] => self.particles().kinetic_energy(),
+            bodies => bodies.iter().map(|body| body.kinetic_energy).sum(),
+        }
+    }
     /// Pair evaluations so far.
     fn pair_evaluations(&self) -> u64;
     /// What the model keeps over an interruption; `None`: it cannot be saved, and no checkpoints are written.

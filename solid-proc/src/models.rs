@@ -1,7 +1,7 @@
 //! The solid models that come with the program: [`halfstep_scene::solid_models`] is the list.
 
 use crate::model::SolidModel;
-use crate::{finite_element, hypoelastic, total_lagrangian};
+use crate::{finite_element, hypoelastic, rigid, total_lagrangian};
 use halfstep_scene::{Derived, EffectName, Scene, SolidModelName};
 use halfstep_sph::lane::Isa;
 

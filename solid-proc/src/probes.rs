@@ -3,8 +3,9 @@
 use crate::model::{Load, SolidModel};
 use halfstep_role::ledger::Ledger;
 use halfstep_scene::geometry::{self, holds, nearest};
-use halfstep_scene::{Block, EnergyPart, Phase, ProbeKind, Scene};
+use halfstep_scene::{Block, BodyQuantity, EnergyPart, Phase, ProbeKind, Scene};
 use halfstep_wire::frame::von_mises;
+use halfstep_wire::wide;
 
 /// A probe of a solid.
 pub(crate) enum Measurement<const D: usize> {
@@ -21,6 +22,8 @@ pub(crate) enum Measurement<const D: usize> {
     Force(Vec<u32>),
     /// Moment of the same forces about an axis along z through a point.
     Moment(Vec<u32>, [f64; D]),
+    /// Something of the rigid body of that index.
+    Body(usize, BodyQuantity),
     /// The ledger or a part of it.
     Energy(Option<EnergyPart>),
 }
@@ -59,6 +62,10 @@ pub(crate) fn of_solid<const D: usize>(
         ProbeKind::Force { within, shape } => Some(Measurement::Force(loaded(*within, *shape))),
         ProbeKind::Moment { about, within, shape } => {
             Some(Measurement::Moment(loaded(*within, *shape), std::array::from_fn(|d| about[d])))
+        }
+        ProbeKind::Body { body, quantity } => {
+            let of_name = model.rigid_bodies().iter().position(|state| state.name == *body);
+            of_name.map(|body| Measurement::Body(body, *quantity))
         }
         ProbeKind::Energy { part, .. } => Some(Measurement::Energy(*part)),
         _ => None,
@@ -102,8 +109,15 @@ impl<const D: usize> Measurement<D> {
                 let sum: f64 = records.iter().map(|r| von_mises(&r.deviatoric_stress)).sum();
                 put(sum / particles.len() as f64);
             }
-            Self::KineticEnergy => put(state.kinetic_energy()),
+            Self::KineticEnergy => put(model.kinetic_energy()),
             Self::StrainEnergy => put(model.strain_energy()),
+            Self::Centroid if !model.rigid_bodies().is_empty() => {
+                let bodies = model.rigid_bodies();
+                let mass: f64 = bodies.iter().map(|body| body.mass).sum();
+                for d in 0..D {
+                    put(bodies.iter().map(|body| body.mass * body.center[d]).sum::<f64>() / mass);
+                }
+            }
             Self::Centroid => {
                 let mass: f64 = state.mass.iter().sum();
                 for d in 0..D {
@@ -123,7 +137,46 @@ impl<const D: usize> Measurement<D> {
                 };
                 put(particles.iter().map(of).sum());
             }
+            Self::Body(body, quantity) => of_body(model, load, *body, *quantity, &mut put),
             Self::Energy(_) => {}
         }
     }
+}
+
+/// Puts the components of something of a rigid body.
+fn of_body<const D: usize>(
+    model: &dyn SolidModel<D>,
+    load: &Load<D>,
+    body: usize,
+    quantity: BodyQuantity,
+    put: &mut impl FnMut(f64),
+) {
+    let state = &model.rigid_bodies()[body];
+    let own = || {
+        let of = model.body_of().iter().zip(&load.force).zip(model.particles().position);
+        of.filter(|((of, _), _)| **of as usize == body).map(|((_, force), position)| (force, position))
+    };
+    let moment = || {
+        let mut sum = [0.0; 3];
+        for (force, position) in own() {
+            let force = wide(*force);
+            let arm = wide(std::array::from_fn::<f64, D, _>(|d| position[d] - state.center[d]));
+            for d in 0..3 {
+                let [a, b] = [(d + 1) % 3, (d + 2) % 3];
+                sum[d] += arm[a] * force[b] - arm[b] * force[a];
+            }
+        }
+        sum
+    };
+    let vector = match quantity {
+        BodyQuantity::Position => wide(state.center),
+        BodyQuantity::Angle => state.angle,
+        BodyQuantity::Velocity => wide(state.velocity),
+        BodyQuantity::AngularVelocity => state.angular_velocity,
+        BodyQuantity::Force => wide::<D>(std::array::from_fn(|d| own().map(|(force, _)| force[d]).sum())),
+        BodyQuantity::Moment => moment(),
+        BodyQuantity::ContactForce => wide(state.contact_force),
+        BodyQuantity::ContactMoment => state.contact_moment,
+    };
+    if quantity.turns() && D == 2 { put(vector[2]) } else { vector[..D].iter().for_each(|&x| put(x)) }
 }

@@ -225,9 +225,15 @@ impl<const D: usize> Role for Solid<D> {
             sum += mass;
             density_error = density_error.max((density / self.density - 1.0).abs());
         }
+        let bodies = self.model.rigid_bodies();
+        if !bodies.is_empty() {
+            let of = |d: usize| bodies.iter().map(|body| body.mass * body.velocity[d]).sum();
+            momentum = std::array::from_fn(of);
+            sum = bodies.iter().map(|body| body.mass).sum();
+        }
         Audit {
             momentum: wide(momentum),
-            kinetic_energy: state.kinetic_energy(),
+            kinetic_energy: self.model.kinetic_energy(),
             mass: sum,
             density_error,
             gap: f64::INFINITY,

@@ -4,6 +4,7 @@ use halfstep_scene::Scene;
 use halfstep_solid::SolidModel;
 use halfstep_solid::finite_element::FiniteElement;
 use halfstep_solid::hypoelastic::Hypoelastic;
+use halfstep_solid::rigid::Rigid;
 use halfstep_solid::total_lagrangian::TotalLagrangian;
 use halfstep_sph::lane::Isa;
 use halfstep_tests::conformance::solid::{self, Make};
@@ -69,3 +70,11 @@ conformance!(whole relaxing_total_lagrangian 2: TotalLagrangian,
 // With the neighbours of the other model.
 conformance!(whole wide_total_lagrangian 2: TotalLagrangian,
     "model = \"total-lagrangian\"\nsmoothing_ratio = 1.33");
+// Without the cases of what strains: swings of a cantilever, clamps, and a time step that a stiffness limits. In space
+// without `uniform_force`, over whose long steps rounding of the moments turns the block by more than 1e-12.
+conformance!(rigid_plane 2: Rigid, "model = \"rigid\"\ncontact = { restitution = 0.5 }", Scene::clone; identity
+    interface_set rest uniform_force stage_0_is_forgotten bodies_collide wall_contact interruption);
+conformance!(rigid_space 3: Rigid, "model = \"rigid\"\ncontact = { restitution = 0.5 }", Scene::clone; identity
+    interface_set rest stage_0_is_forgotten bodies_collide wall_contact interruption);
+conformance!(finer_rigid 2: Rigid, "model = \"rigid\"\ncontact = { restitution = 0.5 }", finer_than_the_rest; identity
+    rest uniform_force stage_0_is_forgotten bodies_collide interruption);

@@ -90,8 +90,8 @@ impl ExternalSolid {
                         |r: &StateRecord| 0.5 * r.mass * r.velocity.iter().map(|v| v * v).sum::<f64>();
                     self.values.push(records.iter().map(energy).sum());
                 }
-                // What another program's solid holds is not known.
-                ProbeKind::Energy { .. } => {
+                // What another program's solid holds is not known, nor which bodies it has.
+                ProbeKind::Energy { .. } | ProbeKind::Body { .. } => {
                     let parts = kind.components(self.dimension).0.len();
                     self.values.extend(std::iter::repeat_n(f64::NAN, parts));
                 }

@@ -56,7 +56,14 @@ pub(crate) fn reports(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
     list.push(row(
         SOLID,
         solid,
-        if solid { "[solid]: stress, neighbours, time step" } else { "no [solid]: no solid process" }.into(),
+        match solid {
+            false => "no [solid]: no solid process",
+            true if scene.solids.iter().all(|solid| solid.rigid().is_some()) => {
+                "[solid]: rigid bodies, joints, contact, time step"
+            }
+            true => "[solid]: stress, neighbours, time step",
+        }
+        .into(),
     ));
     if solid {
         list.extend(halfstep_solid::effects::decide(scene).into_iter().map(self::row));

@@ -1,7 +1,7 @@
 //! Bodies: connected pieces of solid.
 
 use crate::geometry::{self, Layout};
-use crate::{Phase, Scene, dispatch};
+use crate::{Joint, Phase, Scene, Shape, Solid, dispatch};
 
 /// A connected piece of a solid.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -12,6 +12,8 @@ pub struct Body {
     pub particles: usize,
     /// Number of those that a clamp holds.
     pub clamped: usize,
+    /// A clamp, a joint or a prescribed motion holds it.
+    pub held: bool,
 }
 
 impl Scene {
@@ -31,6 +33,7 @@ impl Scene {
             let body = &mut bodies[piece as usize];
             body.particles += 1;
             body.clamped += usize::from(point.clamped);
+            body.held |= point.clamped || self.is_held(&self.shapes[point.body as usize]);
             if let Err(place) = body.shapes.binary_search(&(point.body as usize)) {
                 body.shapes.insert(place, point.body as usize);
             }
@@ -38,14 +41,23 @@ impl Scene {
         bodies
     }
 
-    /// What nothing holds would fall through walls: those that say nothing of `contact` can be touched where a body has
-    /// no clamp.
+    /// A joint or a motion of its own holds a shape's rigid body.
+    fn is_held(&self, shape: &Shape) -> bool {
+        let keys = shape.solid.and_then(|k| self.solids.get(k)).and_then(Solid::rigid);
+        keys.is_some_and(|keys| {
+            let names = |joint: &Joint| joint.body == shape.body() || joint.with == shape.body();
+            shape.motion.is_some() || keys.joints.iter().any(|joint| joint.holds() && names(joint))
+        })
+    }
+
+    /// What nothing holds would fall through walls: those that say nothing of `contact` can be touched where a body is
+    /// not held.
     pub(crate) fn touch_free_bodies(&mut self, said: &[bool]) {
-        let unsaid = |(shape, said): (&crate::Shape, &bool)| shape.phase == Phase::Wall && !said;
+        let unsaid = |(shape, said): (&Shape, &bool)| shape.phase == Phase::Wall && !said;
         if self.solids.is_empty() || !self.shapes.iter().zip(said).any(unsaid) {
             return;
         }
-        if self.bodies().iter().all(|body| body.clamped > 0) {
+        if self.bodies().iter().all(|body| body.held) {
             return;
         }
         for (shape, _) in self.shapes.iter_mut().zip(said).filter(|(_, said)| !**said) {

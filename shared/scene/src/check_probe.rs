@@ -73,6 +73,13 @@ impl Check<'_> {
             ProbeKind::Force { within, shape } | ProbeKind::Moment { within, shape, .. } => {
                 self.loaded(probe, key, within.as_ref(), *shape);
             }
+            ProbeKind::Body { body, .. } => {
+                let key = format!("{key}.body");
+                match probe.solid.filter(|&k| self.scene.solids[k].rigid().is_some()) {
+                    Some(solid) => _ = self.is_one_body(solid, &key, body),
+                    None => self.wrong(&key, "is no rigid body: the solid's model strains"),
+                }
+            }
             _ => (),
         }
     }

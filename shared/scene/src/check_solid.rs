@@ -117,7 +117,8 @@ impl Check<'_> {
             return;
         };
         let model = shape.solid.and_then(|k| self.model(k));
-        if shape.phase == Phase::Solid && shape.clamp.is_empty() {
+        let rigid = model == Some(SolidModelName::Rigid);
+        if shape.phase == Phase::Solid && shape.clamp.is_empty() && !rigid {
             return self.wrong(&key, "moves the clamps of a solid, and the shape has none");
         }
         if model == Some(SolidModelName::Hypoelastic) {

@@ -21,6 +21,7 @@ mod plate;
 mod points;
 mod polygon;
 mod region;
+mod surface;
 #[cfg(test)]
 mod tests;
 
@@ -37,6 +38,7 @@ use points::Spacing;
 pub(crate) use polygon::Fault;
 pub use polygon::{MAX_CORNERS, Polygon};
 use region::{Region, voids_before};
+pub use surface::Surface;
 
 /// Relative tolerance of every comparison of lengths, in spacings.
 const TOLERANCE: f64 = 1e-9;

@@ -21,6 +21,7 @@ mod check;
 mod check_lattice;
 mod check_metric;
 mod check_probe;
+mod check_rigid;
 mod check_solid;
 mod dimension;
 mod document;
@@ -62,11 +63,11 @@ pub use load::{load, load_with, parse, parse_with};
 pub use metric::{Metric, MetricKind, MetricReference};
 pub use motion::{Composed, Course, Motion, Part, Placement, Spline, Turn};
 pub use participant::Participant;
-pub use probe::{Probe, ProbeKind, Reference};
+pub use probe::{BodyQuantity, Probe, ProbeKind, Reference};
 pub use resources::{expected_speed, memory_available, memory_needed};
 pub use solid::{
-    ArtificialStress, FiniteElementKeys, HypoelasticKeys, Material, ModelKeys, Plane, Solid, SolidModelName,
-    SubSteps, TotalLagrangianKeys,
+    ArtificialStress, ContactKeys, FiniteElementKeys, HypoelasticKeys, Joint, JointKind, Material, ModelKeys,
+    Plane, RigidBody, RigidKeys, Solid, SolidModelName, SubSteps, TotalLagrangianKeys,
 };
 pub use velocity_field::VelocityField;
 
@@ -244,6 +245,9 @@ pub struct Shape {
     /// Solid only: particle spacing, m; `None`: the scene's resolution.
     #[serde(default)]
     pub spacing: Option<f64>,
+    /// Rigid solid only: density, kg/m³; `None`: the solid's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub density: Option<f64>,
     /// Initial velocity, m/s (a wall: the constant velocity of its surface).
     pub velocity: [f64; 3],
     /// Initial velocity field of a vibrating cantilever, added to `velocity`.

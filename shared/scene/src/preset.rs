@@ -5,6 +5,8 @@ use super::*;
 /// Every default that does not depend on other keys.
 #[derive(Clone, Copy)]
 pub(crate) struct Defaults {
+    /// Number of space dimensions.
+    pub(crate) dimension: usize,
     pub(crate) smoothing_ratio: f64,
     pub(crate) time_step: TimeStep,
     pub(crate) fluid_viscosity: ArtificialViscosity,
@@ -26,8 +28,9 @@ pub(crate) struct Defaults {
 }
 
 impl Defaults {
-    pub(super) fn of(preset: Option<Preset>) -> Self {
+    pub(super) fn of(preset: Option<Preset>, dimension: usize) -> Self {
         let own = Self {
+            dimension,
             smoothing_ratio: 1.5,
             time_step: TimeStep::Auto,
             fluid_viscosity: ArtificialViscosity { linear: 0.05, quadratic: 0.0 },
@@ -49,6 +52,7 @@ impl Defaults {
             None => own,
             // What is the same as the program's own today is repeated: a preset stays when the defaults move.
             Some(Preset::Kayaki) => Self {
+                dimension,
                 smoothing_ratio: 1.33,
                 time_step: TimeStep::Fixed(1e-5),
                 fluid_viscosity: ArtificialViscosity { linear: 1.0, quadratic: 1.0 },

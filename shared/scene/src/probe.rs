@@ -103,6 +103,89 @@ pub enum ProbeKind {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         shape: Option<usize>,
     },
+    /// Something of a rigid body.
+    Body {
+        /// Name of the body.
+        body: String,
+        /// What of it.
+        quantity: BodyQuantity,
+    },
+}
+
+/// What is measured of a rigid body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum BodyQuantity {
+    /// Centre of mass; components x, y (, z), m.
+    Position,
+    /// What the body has turned by since the start, rad: in the plane counter-clockwise, beyond whole turns; in space
+    /// the rotation's axis times its angle.
+    Angle,
+    /// Velocity of the centre of mass; components x, y (, z), m/s.
+    Velocity,
+    /// Angular velocity, rad/s.
+    AngularVelocity,
+    /// Force of the fluid; components x, y (, z), N (2D: N/m).
+    Force,
+    /// Moment of that about the centre of mass, N m (2D: N).
+    Moment,
+    /// Force of contacts with walls and other bodies; components x, y (, z), N (2D: N/m).
+    ContactForce,
+    /// Moment of that about the centre of mass, N m (2D: N).
+    ContactMoment,
+}
+
+impl BodyQuantity {
+    /// All of them, by the probes' kinds.
+    pub const ALL: [(&str, Self); 8] = [
+        ("body-position", Self::Position),
+        ("body-angle", Self::Angle),
+        ("body-velocity", Self::Velocity),
+        ("body-angular-velocity", Self::AngularVelocity),
+        ("body-force", Self::Force),
+        ("body-moment", Self::Moment),
+        ("body-contact-force", Self::ContactForce),
+        ("body-contact-moment", Self::ContactMoment),
+    ];
+
+    /// In words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Position => "centre of mass",
+            Self::Angle => "angle",
+            Self::Velocity => "velocity",
+            Self::AngularVelocity => "angular velocity",
+            Self::Force => "force",
+            Self::Moment => "moment",
+            Self::ContactForce => "contact force",
+            Self::ContactMoment => "contact moment",
+        }
+    }
+
+    /// One component about z in the plane.
+    pub fn turns(self) -> bool {
+        matches!(self, Self::Angle | Self::AngularVelocity | Self::Moment | Self::ContactMoment)
+    }
+
+    fn unit(self) -> &'static str {
+        match self {
+            Self::Position => "m",
+            Self::Angle => "rad",
+            Self::Velocity => "m/s",
+            Self::AngularVelocity => "rad/s",
+            Self::Force | Self::ContactForce => "N",
+            Self::Moment | Self::ContactMoment => "N m",
+        }
+    }
+
+    /// Name of the only component.
+    fn about_z(self) -> &'static str {
+        match self {
+            Self::Angle => "angle",
+            Self::AngularVelocity => "rate",
+            _ => "moment",
+        }
+    }
 }
 
 impl ProbeKind {
@@ -123,6 +206,10 @@ impl ProbeKind {
             Self::Energy { phase, part } => (EnergyPart::names(*phase, *part), "J"),
             Self::Force { .. } => (axes(), "N"),
             Self::Moment { .. } => (one("moment"), "N m"),
+            Self::Body { quantity, .. } if quantity.turns() && dimension == 2 => {
+                (one(quantity.about_z()), quantity.unit())
+            }
+            Self::Body { quantity, .. } => (axes(), quantity.unit()),
         }
     }
 }
@@ -141,7 +228,8 @@ impl Probe {
             | ProbeKind::Stress { .. }
             | ProbeKind::StrainEnergy
             | ProbeKind::Force { .. }
-            | ProbeKind::Moment { .. } => Phase::Solid,
+            | ProbeKind::Moment { .. }
+            | ProbeKind::Body { .. } => Phase::Solid,
             ProbeKind::Pressure { .. }
             | ProbeKind::Velocity { .. }
             | ProbeKind::Flux { .. }

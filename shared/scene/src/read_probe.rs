@@ -22,9 +22,10 @@ enum Kind {
     Centroid,
     Force,
     Moment,
+    Body(BodyQuantity),
 }
 
-const KINDS: [(&str, Kind); 14] = [
+const OTHERS: [(&str, Kind); 14] = [
     ("displacement", Kind::Displacement),
     ("position", Kind::Position),
     ("stress", Kind::Stress),
@@ -41,6 +42,12 @@ const KINDS: [(&str, Kind); 14] = [
     ("moment", Kind::Moment),
 ];
 
+/// All kinds.
+fn kinds() -> Vec<(&'static str, Kind)> {
+    let bodies = BodyQuantity::ALL.map(|(name, quantity)| (name, Kind::Body(quantity)));
+    OTHERS.into_iter().chain(bodies).collect()
+}
+
 const MOVING: [(&str, Phase); 2] = [("fluid", Phase::Fluid), ("solid", Phase::Solid)];
 
 /// A probe; `None` where it is not clear what it measures, so that nobody asks it anything.
@@ -54,7 +61,7 @@ pub(super) fn probe(
     let vector = |key| section.vector(key, dimension, None);
     let at = || vector("at");
     // Without a kind its other keys mean nothing: they are not looked at.
-    let kind = match section.choice("kind", None, &KINDS)? {
+    let kind = match section.choice("kind", None, &kinds())? {
         Kind::Displacement => ProbeKind::Displacement { at: at() },
         Kind::Position => ProbeKind::Position { at: at() },
         Kind::Stress => ProbeKind::Stress { at: at() },
@@ -79,6 +86,12 @@ pub(super) fn probe(
         Kind::Moment => {
             let (shape, within) = loaded(&section, dimension, shapes)?;
             ProbeKind::Moment { about: vector("about"), within, shape }
+        }
+        Kind::Body(quantity) => {
+            if section.node("body").is_none() {
+                section.missing("body");
+            }
+            ProbeKind::Body { body: section.string("body")?.to_owned(), quantity }
         }
     };
     let mut probe = Probe { name, kind, solid: None };

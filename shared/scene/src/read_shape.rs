@@ -2,6 +2,7 @@
 
 use super::document::Value;
 use super::error::listed;
+use super::read::DENSITY;
 use super::read_geometry;
 use super::section::{Range, Section};
 use super::*;
@@ -61,6 +62,7 @@ pub(super) fn shape(
         solid: which_solid(&section, solids).filter(|_| phase == Some(Phase::Solid)),
         spacing: spacing(&section, &geometry, dimension, lattice).filter(|_| phase == Some(Phase::Solid)),
         geometry,
+        density: section.node("density").and_then(|node| section.as_number("density", node, DENSITY)),
         velocity: section.vector("velocity", dimension, Some([0.0; 3])),
         cantilever_mode: cantilever_mode(&section),
         velocity_field: velocity_field(&section, dimension),
@@ -78,6 +80,7 @@ pub(super) fn shape(
         ("cantilever_mode", Phase::Solid, "a solid"),
         ("clamp", Phase::Solid, "a solid"),
         ("body", Phase::Solid, "a solid"),
+        ("density", Phase::Solid, "a solid"),
         ("solid", Phase::Solid, "a solid"),
         ("spacing", Phase::Solid, "a solid"),
         ("across", Phase::Solid, "a solid"),

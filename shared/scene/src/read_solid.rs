@@ -70,19 +70,30 @@ fn identifier<'a>(section: &Section<'a>, key: &'static str) -> Option<&'a str> {
     Some(text)
 }
 
+/// Keys of solids that strain.
+const ELASTIC: [&str; 5] =
+    ["youngs_modulus", "poissons_ratio", "smoothing_ratio", "artificial_viscosity", "side_friction"];
+
 fn solid(section: Section<'_>, name: String, defaults: Defaults, numerics: &Numerics) -> Solid {
     let model = section.choice("model", Some(defaults.model), SolidModelName::ALL).unwrap_or(defaults.model);
     let rules = model.rules();
     let defaults = (rules.defaults)(defaults);
+    for key in ELASTIC.into_iter().filter(|_| rules.rigid) {
+        if let Some(node) = section.node(key) {
+            section.wrong(key, node, "a rigid body does not strain, and has no use for it");
+        }
+    }
+    // Of a rigid solid, which has none.
+    let none = rules.rigid.then_some(0.0);
     let solid = Solid {
         process: process(&section, &name),
         name,
         threads: section.integer("threads", numerics.threads.solid as u32, 1, MAX_THREADS) as usize,
         density: section.number("density", None, DENSITY),
-        youngs_modulus: section.number("youngs_modulus", None, Range::positive().up_to(1e15)),
+        youngs_modulus: section.number("youngs_modulus", none, Range::positive().up_to(1e15)),
         poissons_ratio: section.number(
             "poissons_ratio",
-            None,
+            none,
             Range::at_least(0.0)
                 .below(0.5)
                 .why("at 0.5 a solid is incompressible, its bulk modulus infinite"),

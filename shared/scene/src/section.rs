@@ -122,7 +122,7 @@ impl<'a> Section<'a> {
     }
 
     /// Notes that a key is missing.
-    pub(super) fn missing(&self, key: &str) {
+    pub(crate) fn missing(&self, key: &str) {
         // The error of a value that is no table has been reported.
         if self.present || !self.report.has(&self.path) {
             self.report.place(&self.path_of(key), self.node.origin, "is missing and has no default");
@@ -159,7 +159,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    pub(super) fn as_number(&self, key: &str, node: &Node, range: Range) -> Option<f64> {
+    pub(crate) fn as_number(&self, key: &str, node: &Node, range: Range) -> Option<f64> {
         let number = match node.value {
             Value::Float(x) => x,
             Value::Integer(n) => n as f64,
@@ -174,6 +174,14 @@ impl<'a> Section<'a> {
         let reason = if number.is_finite() { range.to_string() } else { Range::ANY.to_string() };
         self.wrong(key, node, reason);
         None
+    }
+
+    /// Whether a number of a key's value is within its range; else that is noted.
+    pub(crate) fn number_in(&self, key: &str, node: &Node, number: f64, range: Range) -> bool {
+        if !range.holds(number) {
+            self.wrong(key, node, range.to_string());
+        }
+        range.holds(number)
     }
 
     /// A whole number.
@@ -196,7 +204,7 @@ impl<'a> Section<'a> {
     }
 
     /// A string.
-    pub(super) fn string(&self, key: &'static str) -> Option<&'a str> {
+    pub(crate) fn string(&self, key: &'static str) -> Option<&'a str> {
         let node = self.node(key)?;
         match &node.value {
             Value::String(text) => Some(text),
@@ -207,7 +215,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    pub(super) fn boolean(&self, key: &'static str, default: bool) -> bool {
+    pub(crate) fn boolean(&self, key: &'static str, default: bool) -> bool {
         let Some(node) = self.node(key) else { return default };
         match node.value {
             Value::Boolean(value) => value,
@@ -254,7 +262,7 @@ impl<'a> Section<'a> {
     }
 
     /// A vector with `dimension` components; the others are zero.
-    pub(super) fn vector(&self, key: &'static str, dimension: usize, default: Option<[f64; 3]>) -> [f64; 3] {
+    pub(crate) fn vector(&self, key: &'static str, dimension: usize, default: Option<[f64; 3]>) -> [f64; 3] {
         match (self.node(key), default) {
             (Some(node), _) => self.as_vector(key, node, dimension).or(default).unwrap_or([f64::NAN; 3]),
             (None, Some(default)) => default,
@@ -265,7 +273,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    pub(super) fn as_vector(&self, key: &str, node: &Node, dimension: usize) -> Option<[f64; 3]> {
+    pub(crate) fn as_vector(&self, key: &str, node: &Node, dimension: usize) -> Option<[f64; 3]> {
         let Value::Array(items) = &node.value else {
             self.wrong_kind(key, node, &format!("an array of {dimension} numbers"));
             return None;
@@ -328,7 +336,7 @@ impl<'a> Section<'a> {
     }
 
     /// The tables of an array, each under its name or its index.
-    pub(super) fn tables(&self, key: &'static str) -> Vec<Section<'a>> {
+    pub(crate) fn tables(&self, key: &'static str) -> Vec<Section<'a>> {
         let Some(node) = self.node(key) else { return Vec::new() };
         let Value::Array(items) = &node.value else {
             self.wrong_kind(key, node, &format!("an array of tables, each headed [[{key}]]"));
@@ -342,7 +350,7 @@ impl<'a> Section<'a> {
     }
 
     /// Notes an error about the table as a whole.
-    pub(super) fn whole(&self, reason: impl Into<String>) {
+    pub(crate) fn whole(&self, reason: impl Into<String>) {
         self.report.place(&self.path, self.node.origin, reason);
     }
 

@@ -3,17 +3,19 @@
 mod finite_element;
 mod hypoelastic;
 mod models;
+mod rigid;
 mod total_lagrangian;
 
 pub use finite_element::FiniteElementKeys;
 pub use hypoelastic::{ArtificialStress, HypoelasticKeys};
 pub use models::{ModelKeys, SolidModelName};
+pub use rigid::{ContactKeys, Joint, JointKind, RigidBody, RigidKeys};
 pub use total_lagrangian::{Material, Plane, TotalLagrangianKeys};
 
 use super::ArtificialViscosity;
 use serde::{Deserialize, Serialize};
 
-/// An elastic solid.
+/// A solid.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Solid {
     /// Name of the solid: `solid` for `[solid]`, else the section's.
@@ -27,9 +29,9 @@ pub struct Solid {
     pub model: ModelKeys,
     /// Reference density, kg/m³.
     pub density: f64,
-    /// Young's modulus, Pa.
+    /// Young's modulus, Pa; 0 of a solid that does not strain.
     pub youngs_modulus: f64,
-    /// Poisson's ratio.
+    /// Poisson's ratio; 0 of a solid that does not strain.
     pub poissons_ratio: f64,
     /// The solid's own smoothing length over spacing.
     pub smoothing_ratio: f64,
@@ -43,6 +45,14 @@ pub struct Solid {
 }
 
 impl Solid {
+    /// What only a rigid solid has.
+    pub fn rigid(&self) -> Option<&RigidKeys> {
+        match &self.model {
+            ModelKeys::Rigid(keys) => Some(keys),
+            _ => None,
+        }
+    }
+
     /// Name of the one that a scene describes by `[solid]`, and of the process that serves all solids by default.
     pub const DEFAULT_NAME: &str = "solid";
 
@@ -58,7 +68,7 @@ impl Solid {
     pub fn instantaneous_shear_modulus(&self) -> f64 {
         let stiffening = match &self.model {
             ModelKeys::TotalLagrangian(keys) => keys.stiffening(),
-            ModelKeys::Hypoelastic(_) | ModelKeys::FiniteElement(_) => 1.0,
+            ModelKeys::Hypoelastic(_) | ModelKeys::FiniteElement(_) | ModelKeys::Rigid(_) => 1.0,
         };
         self.shear_modulus() * stiffening
     }

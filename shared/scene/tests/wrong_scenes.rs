@@ -44,7 +44,8 @@ points = [[0.0, 0.0], [1.0, 0.01]]
 "#;
 
 /// One case a paragraph: lines taken out of [`RIGHT`] (`-`), lines put in their place (`+`), overrides (`$`), and the
-/// messages that follow (`>`). A paragraph headed `= two solids` starts from [`two_solids`] instead.
+/// messages that follow (`>`). A paragraph headed `= two solids` starts from [`two_solids`] instead,
+/// one headed `= rigid` from [`rigid`].
 const CASES: &str = include_str!("wrong_scenes.txt");
 
 fn errors(text: &str, overrides: &[&str]) -> SceneErrors {
@@ -70,6 +71,14 @@ fn two_solids() -> String {
     format!("{gate}\n{lid}")
 }
 
+/// The right scene with a rigid solid: the plate, and a wall that swings.
+fn rigid() -> String {
+    let solid = edited("youngs_modulus = 12e6\npoissons_ratio = 0.4\n", "model = \"rigid\"\n");
+    let clamp = "clamp = { min = [0.3, 0.2], max = [0.35, 0.3] }\n";
+    let joint = "\n[[solid.joints]]\nname = \"pin\"\nkind = \"hinge\"\nbody = \"plate\"\nat = [0.3, 0.3]\n";
+    replaced(&solid, clamp, "") + joint
+}
+
 /// The right scene with whole lines replaced.
 fn edited(from: &str, to: &str) -> String {
     replaced(RIGHT, from, to)
@@ -86,6 +95,7 @@ fn replaced(text: &str, from: &str, to: &str) -> String {
 fn the_scenes_that_they_are_made_of_are_right() {
     parse(RIGHT, Path::new("s.toml"), &[]).unwrap();
     parse(&two_solids(), Path::new("s.toml"), &[]).unwrap();
+    parse(&rigid(), Path::new("s.toml"), &[]).unwrap();
 }
 
 #[test]
@@ -95,9 +105,14 @@ fn every_wrong_scene_is_told_what_is_wrong_and_nothing_else() {
         let marked = |mark: &str| case.lines().filter_map(|l| l.strip_prefix(mark)).collect::<Vec<_>>();
         let [out, put, set, want] = ["- ", "+ ", "$ ", "> "].map(marked);
         let two = case.starts_with("= two solids\n");
-        let marks = out.len() + put.len() + set.len() + want.len() + usize::from(two);
+        let rigid_one = case.starts_with("= rigid\n");
+        let marks = out.len() + put.len() + set.len() + want.len() + usize::from(two || rigid_one);
         assert_eq!(marks, case.lines().count(), "{case}");
-        let base = if two { two_solids() } else { RIGHT.to_owned() };
+        let base = match (two, rigid_one) {
+            (true, _) => two_solids(),
+            (_, true) => rigid(),
+            _ => RIGHT.to_owned(),
+        };
         let lines = |lines: &[&str]| lines.iter().map(|l| format!("{l}\n")).collect::<String>();
         let text = if out.is_empty() { base } else { replaced(&base, &lines(&out), &lines(&put)) };
         let got = messages(&errors(&text, &set));

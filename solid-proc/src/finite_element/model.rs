@@ -128,7 +128,7 @@ impl<const D: usize> FiniteElement<D> {
             clamped,
             driven: driven.collect(),
             at_n: now.clone(),
-            shown_velocity: ShownVelocity::new(points.iter().map(|p| p.velocity)),
+            shown_velocity: ShownVelocity::new((0..points.len()).map(|p| mesh.mean(p, &now.velocity))),
             load: vectors(nodes),
             inner: vectors(nodes),
             gradient: vec![Matrix::identity(); points.len()],
@@ -450,6 +450,10 @@ impl<const D: usize> SolidModel<D> for FiniteElement<D> {
         };
         let inner: f64 = (0..self.points.len()).map(of).sum();
         inner + self.contact.as_ref().map_or(0.0, Contact::energy)
+    }
+
+    fn kinetic_energy(&self) -> f64 {
+        self.nodal_kinetic_energy()
     }
 
     fn state(&mut self) -> Option<&mut dyn halfstep_wire::state::State> {

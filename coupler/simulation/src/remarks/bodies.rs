@@ -41,7 +41,7 @@ pub(super) fn free(scene: &Scene, bodies: &[Body], all: &mut Vec<String>) {
     if walls().next().is_none() {
         return;
     }
-    for body in bodies.iter().filter(|body| body.clamped == 0) {
+    for body in bodies.iter().filter(|body| !body.held) {
         let name = names(scene, body);
         let mut say = |text: String| {
             // Copies of one shape say the same.
@@ -109,7 +109,7 @@ pub(super) fn standing<const D: usize>(
     let size = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
     let Some(fluid) = scene.fluid.as_ref().filter(|_| size > 0.0) else { return };
     let down = |x: &[f64; D]| (0..D).map(|d| x[d] * scene.gravity[d]).sum::<f64>() / size;
-    for body in bodies.iter().filter(|body| body.clamped == 0) {
+    for body in bodies.iter().filter(|body| !body.held) {
         let Some(solid) = scene.shapes[body.shapes[0]].solid else { continue };
         if scene.solids[solid].density >= fluid.density {
             continue;
@@ -141,6 +141,7 @@ pub(super) fn standing<const D: usize>(
 pub(crate) fn listed(scene: &Scene, bodies: &[Body]) -> String {
     let one = |body: &Body| {
         let held = match body.clamped {
+            0 if body.held => "held by joints".to_owned(),
             0 => "free".to_owned(),
             n => format!("{n} clamped"),
         };

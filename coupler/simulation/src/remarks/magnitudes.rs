@@ -22,6 +22,9 @@ pub(super) fn materials(scene: &Scene, all: &mut Vec<String>) {
     }
     for solid in &scene.solids {
         check(format!("{}.density", solid.name), solid.density, DENSITY, "kg/m³");
+        if solid.rigid().is_some() {
+            continue;
+        }
         check(format!("{}.youngs_modulus", solid.name), solid.youngs_modulus, STIFFNESS, "Pa");
     }
 }

@@ -136,6 +136,7 @@ fn axis(name: &str, kind: &ProbeKind) -> String {
         ProbeKind::Centroid { .. } => format!("{name} centre of mass"),
         ProbeKind::Front => format!("{name} reach"),
         ProbeKind::Force { .. } => format!("{name} force"),
+        ProbeKind::Body { quantity, .. } if !quantity.turns() => format!("{name} {}", quantity.name()),
         ProbeKind::Pressure { .. }
         | ProbeKind::WaterLevel { .. }
         | ProbeKind::KineticEnergy { .. }
@@ -143,7 +144,8 @@ fn axis(name: &str, kind: &ProbeKind) -> String {
         | ProbeKind::Energy { .. }
         | ProbeKind::Stress { .. }
         | ProbeKind::Flux { .. }
-        | ProbeKind::Moment { .. } => {
+        | ProbeKind::Moment { .. }
+        | ProbeKind::Body { .. } => {
             // `p1.pressure` reads well; the component of these is the quantity.
             name.replacen('.', " ", 1)
         }

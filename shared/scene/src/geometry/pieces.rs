@@ -20,6 +20,13 @@ fn label<'s, const D: usize>(scene: &'s Scene, point: &SolidPoint<D>) -> Label<'
     }
 }
 
+/// A particle of a rigid body that its shape names.
+fn is_named_rigid<const D: usize>(scene: &Scene, point: &SolidPoint<D>) -> bool {
+    let shape = &scene.shapes[point.body as usize];
+    let solid = shape.solid.and_then(|k| scene.solids.get(k));
+    !shape.body.is_empty() && solid.is_some_and(|solid| solid.rigid().is_some())
+}
+
 /// Calls `visit` with each pair of solid particles of one solid within the support of its kernel.
 fn each_pair<const D: usize>(scene: &Scene, layout: &Layout<D>, mut visit: impl FnMut(u32, u32)) {
     let points = &layout.solid;
@@ -44,7 +51,8 @@ fn each_pair<const D: usize>(scene: &Scene, layout: &Layout<D>, mut visit: impl 
 }
 
 /// A number for the connected piece of each solid particle, from 0 on in the order of their first particles. Particles
-/// of one body are connected where they are within the support of their solid's kernel.
+/// of one body are connected where they are within the support of their solid's kernel; those of a rigid body that
+/// shapes name are, wherever they are.
 pub fn pieces<const D: usize>(scene: &Scene, layout: &Layout<D>) -> Vec<u32> {
     let labels: Vec<Label<'_>> = layout.solid.iter().map(|point| label(scene, point)).collect();
     let mut parent: Vec<u32> = (0..labels.len() as u32).collect();
@@ -54,6 +62,12 @@ pub fn pieces<const D: usize>(scene: &Scene, layout: &Layout<D>) -> Vec<u32> {
             parent[a.max(b) as usize] = a.min(b);
         }
     });
+    let mut first: HashMap<Label<'_>, u32> = HashMap::new();
+    for (p, _) in layout.solid.iter().enumerate().filter(|(_, point)| is_named_rigid(scene, point)) {
+        let other = *first.entry(labels[p]).or_insert(p as u32);
+        let (a, b) = (root(&mut parent, p as u32), root(&mut parent, other));
+        parent[a.max(b) as usize] = a.min(b);
+    }
     let mut numbers = HashMap::new();
     let mut number = |p| {
         let next = numbers.len() as u32;

@@ -74,6 +74,7 @@ fn shape(phase: Phase, geometry: Geometry) -> Shape {
         phase,
         solid: (phase == Phase::Solid).then_some(0),
         geometry,
+        density: None,
         velocity: [0.0; 3],
         cantilever_mode: None,
         velocity_field: None,

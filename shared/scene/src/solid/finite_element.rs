@@ -33,6 +33,7 @@ pub(super) const RULES: Rules = Rules {
     rows: 1,
     not_phase_blind: Some("the fluid's share in a velocity gradient means nothing to a deformation gradient"),
     largest_cfl: Some((0.9, "it is stable to 1")),
+    rigid: false,
 };
 
 impl FiniteElementKeys {

@@ -29,6 +29,7 @@ pub(super) const RULES: Rules = Rules {
     rows: 1,
     not_phase_blind: None,
     largest_cfl: None,
+    rigid: false,
 };
 
 impl HypoelasticKeys {

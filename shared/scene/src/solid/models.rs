@@ -1,6 +1,6 @@
 //! The solid models that come with the program, and what each asks of a scene.
 
-use super::{finite_element, hypoelastic, total_lagrangian};
+use super::{finite_element, hypoelastic, rigid, total_lagrangian};
 use crate::preset::Defaults;
 use crate::section::{Range, Section};
 use serde::{Deserialize, Serialize};
@@ -17,6 +17,8 @@ macro_rules! solid_models {
             TotalLagrangian "total-lagrangian" total_lagrangian TotalLagrangianKeys,
             /// Squares with one point of integration on the particles' cells (Belytschko and Bachrach 1986).
             FiniteElement "finite-element" finite_element FiniteElementKeys,
+            /// Bodies that do not strain, held by joints, in contact with walls and each other.
+            Rigid "rigid" rigid RigidKeys,
         }
     };
 }
@@ -35,6 +37,8 @@ pub(crate) struct Rules {
     pub(crate) not_phase_blind: Option<&'static str>,
     /// Largest `numerics.solid_cfl`, and why, where it is below what that key allows.
     pub(crate) largest_cfl: Option<(f64, &'static str)>,
+    /// It does not strain: it has no elastic constants.
+    pub(crate) rigid: bool,
 }
 
 macro_rules! registry {

@@ -68,6 +68,7 @@ pub(super) const RULES: Rules = Rules {
     rows: 2,
     not_phase_blind: Some("the fluid's share in a velocity gradient means nothing to a deformation gradient"),
     largest_cfl: Some((0.9, "it is stable to 0.94")),
+    rigid: false,
 };
 
 impl TotalLagrangianKeys {

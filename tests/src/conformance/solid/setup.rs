@@ -23,9 +23,9 @@ pub(super) const MATERIAL: &str = r#"
     gravity = [0.0, 0.0]
     [solid]
     density = 1000.0
-    youngs_modulus = 1e6
-    poissons_ratio = 0.3
 "#;
+/// Of models that strain.
+const ELASTIC: &str = "youngs_modulus = 1e6\npoissons_ratio = 0.3\n";
 pub(super) const BLOCK: &str = r#"
     [[shape]]
     name = "block"
@@ -51,7 +51,9 @@ pub(super) const FLOOR: &str = r#"
 /// A scene of parts, the material first.
 pub(super) fn parse<const D: usize>(make: Make<D>, parts: &[&str], overrides: &[&str]) -> Scene {
     let overrides: Vec<String> = overrides.iter().map(|&o| o.into()).collect();
-    let text = [MATERIAL, make.keys, "\n"].into_iter().chain(parts.iter().copied()).collect::<String>();
+    let elastic = if make.keys.contains("\"rigid\"") { "" } else { ELASTIC };
+    let text =
+        [MATERIAL, elastic, make.keys, "\n"].into_iter().chain(parts.iter().copied()).collect::<String>();
     let plane = scene::parse(&text, Path::new("solid.toml"), &overrides).expect("a right scene");
     if D == 2 { plane } else { in_space(plane) }
 }

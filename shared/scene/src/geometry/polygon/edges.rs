@@ -43,7 +43,7 @@ impl Edge {
     }
 
     /// The side's point nearest to a point.
-    pub(super) fn foot(&self, p: &[f64; 2]) -> [f64; 2] {
+    pub(in crate::geometry) fn foot(&self, p: &[f64; 2]) -> [f64; 2] {
         let way = [self.to[0] - self.from[0], self.to[1] - self.from[1]];
         let share = dot(&[p[0] - self.from[0], p[1] - self.from[1]], &way) / dot(&way, &way);
         match share {
@@ -118,7 +118,7 @@ impl Edges {
     }
 
     /// The side nearest to a point, and its distance, m: of those within `reach`, m.
-    pub(super) fn nearest(&self, p: &[f64; 2], reach: f64) -> Option<(usize, f64)> {
+    pub(in crate::geometry) fn nearest(&self, p: &[f64; 2], reach: f64) -> Option<(usize, f64)> {
         let mut nearest: Option<(usize, f64)> = None;
         self.near(p, reach, |k| {
             let foot = self.all[k].foot(p);

@@ -1,0 +1,180 @@
+//! From a scene to its bodies and what holds them.
+
+use super::Vec3;
+use super::body::{Body, Pose};
+use super::joint::{Link, LinkKind};
+use super::step::{System, Wrench};
+use crate::effects::takes_part;
+use crate::ledger::Given;
+use halfstep_scene::geometry::{self, Layout, SolidPoint, Surface};
+use halfstep_scene::{EffectName, Joint, JointKind, Phase, RigidKeys, Scene};
+use nalgebra::Matrix3;
+
+/// Part of the spacing within which surfaces touch.
+const TOLERANCE: f64 = 1e-4;
+
+/// A point or vector of the scene.
+fn wide<const D: usize>(x: &[f64; D]) -> Vec3 {
+    Vec3::from_fn(|d, _| if d < D { x[d] } else { 0.0 })
+}
+
+/// The bodies of the scene's solid of that index, each with the name that joints and probes find it by.
+pub(super) fn system<const D: usize>(
+    scene: &Scene,
+    solid: usize,
+    keys: &RigidKeys,
+    layout: &Layout<D>,
+) -> (System, Vec<String>) {
+    let points = &layout.solid;
+    let mut groups: Vec<Vec<u32>> = Vec::new();
+    for (p, piece) in geometry::pieces(scene, layout).into_iter().enumerate() {
+        groups.resize(groups.len().max(piece as usize + 1), Vec::new());
+        groups[piece as usize].push(p as u32);
+    }
+    let names: Vec<String> = groups
+        .iter()
+        .map(|group| scene.shapes[points[group[0] as usize].body as usize].body().to_owned())
+        .collect();
+    let (mut bodies, mut poses): (Vec<Body>, Vec<Pose>) = groups
+        .into_iter()
+        .zip(&names)
+        .map(|(group, name)| body(scene, solid, keys, points, group, name))
+        .unzip();
+    let real = bodies.len();
+    bodies.push(Body::frame(None));
+    let touching = takes_part(scene, solid, EffectName::WallContact);
+    let mut walls: Vec<&str> = Vec::new();
+    for wall in scene.shapes.iter().filter(|shape| shape.phase == Phase::Wall) {
+        let touched = wall.contact && touching;
+        if touched || keys.joints.iter().any(|joint| joint.with == wall.name) {
+            let mut frame = Body::frame(wall.motion.clone());
+            if touched {
+                frame.surfaces.push(Surface::new(&wall.geometry, None));
+            }
+            bodies.push(frame);
+            walls.push(&wall.name);
+        }
+    }
+    poses.resize(bodies.len(), Pose::at(Vec3::zeros()));
+    let find = |name: &str| match names.iter().position(|body| body == name) {
+        Some(body) => body,
+        None => walls.iter().position(|wall| *wall == name).map_or(real, |wall| real + 1 + wall),
+    };
+    let mut links = Vec::new();
+    for joint in &keys.joints {
+        let ends = [find(&joint.with), find(&joint.body)];
+        if joint.holds() {
+            bodies[ends[1]].tied.push(ends[0]);
+            bodies[ends[0]].tied.push(ends[1]);
+        }
+        if joint.kind == JointKind::Fixed && ends[0] >= real {
+            bodies[ends[1]].driven = bodies[ends[0]].driven.clone();
+        } else {
+            links.push(link(joint, ends, &bodies));
+        }
+    }
+    let zero = Wrench { force: Vec3::zeros(), arms: Matrix3::zeros() };
+    let mut system = System {
+        plane: D == 2,
+        real,
+        links,
+        gravity: scene.gravity.into(),
+        friction: keys.contact.friction,
+        restitution: keys.contact.restitution,
+        tolerance: TOLERANCE * scene.solid_spacing(solid),
+        wrenches: vec![zero; real],
+        contact: vec![[Vec3::zeros(); 2]; real],
+        memory: Vec::new(),
+        books: Given::default(),
+        accounted: false,
+        bodies,
+        poses,
+    };
+    system.drive(0.0);
+    (system, names)
+}
+
+fn link(joint: &Joint, ends: [usize; 2], bodies: &[Body]) -> Link {
+    let kind = match joint.kind {
+        JointKind::Fixed => LinkKind::Fixed { at: bodies[ends[1]].center },
+        JointKind::Hinge { at, axis } => LinkKind::Hinge { at: at.into(), axis: axis.into() },
+        JointKind::Rail { at, axis, turns } => LinkKind::Rail { at: at.into(), axis: axis.into(), turns },
+        JointKind::Spring { at, to } => LinkKind::Spring { points: [to.into(), at.into()] },
+    };
+    Link {
+        ends,
+        kind,
+        stiffness: joint.stiffness,
+        damping: joint.damping,
+        rest: joint.rest,
+        limits: joint.limits,
+    }
+}
+
+/// A body of these particles, and how it begins. Each particle is a cube (square) of the material: without its own
+/// moment of inertia, m dx²/6, a box would have that of a smaller one.
+fn body<const D: usize>(
+    scene: &Scene,
+    solid: usize,
+    keys: &RigidKeys,
+    points: &[SolidPoint<D>],
+    particles: Vec<u32>,
+    name: &str,
+) -> (Body, Pose) {
+    let dx = scene.solid_spacing(solid);
+    let own = || particles.iter().map(|&p| &points[p as usize]);
+    let of_solid = scene.solids[solid].density;
+    let mass_of = |point: &SolidPoint<D>| {
+        scene.shapes[point.body as usize].density.unwrap_or(of_solid) * dx.powi(D as i32)
+    };
+    let said = keys.bodies.iter().find(|body| body.name == name);
+    let shapes_mass: f64 = own().map(mass_of).sum();
+    let shapes_center = own().map(|point| wide(&point.position) * mass_of(point)).sum::<Vec3>() / shapes_mass;
+    let cell = dx * dx / 6.0;
+    let shapes_inertia = own()
+        .map(|point| {
+            let (m, r) = (mass_of(point), wide(&point.position) - shapes_center);
+            (Matrix3::identity() * (r.norm_squared() + cell) - r * r.transpose()) * m
+        })
+        .sum::<Matrix3<f64>>();
+    let mass = said.and_then(|said| said.mass).unwrap_or(shapes_mass);
+    let center = said.and_then(|said| said.center).map_or(shapes_center, Vec3::from);
+    let inertia = match said.and_then(|said| said.inertia) {
+        Some(moments) => Matrix3::from_diagonal(&moments.into()),
+        None => shapes_inertia * (mass / shapes_mass),
+    };
+    let mut body = Body::new(D == 2, mass, center, inertia);
+    let motion = own().find_map(|point| scene.shapes[point.body as usize].motion.clone());
+    body.driven = motion.map(Some);
+    let mut shapes: Vec<(u32, u32)> = own().map(|point| (point.body, point.copy)).collect();
+    shapes.sort_unstable();
+    shapes.dedup();
+    for (shape, copy) in shapes {
+        let surface = Surface::new(&scene.shapes[shape as usize].geometry, Some(copy));
+        surface.balls::<D>(dx, &mut |place, radius| {
+            let arm = wide(&place) - center;
+            body.radius = body.radius.max(arm.norm_squared().sqrt() + radius);
+            body.balls.push((arm, radius));
+        });
+        body.surfaces.push(surface);
+    }
+    let mut pose = Pose::at(center);
+    let first = points[particles[0] as usize].velocity;
+    if own().all(|point| point.velocity == first) {
+        // To the last bit what the scene says.
+        pose.velocity = wide(&first);
+    } else {
+        let momentum: Vec3 = own().map(|point| wide(&point.velocity) * mass_of(point)).sum();
+        pose.velocity = momentum / shapes_mass;
+        let spin = own().map(|point| {
+            let arm = wide(&point.position) - shapes_center;
+            arm.cross(&wide(&point.velocity)) * mass_of(point)
+        });
+        pose.spin = spin.sum();
+    }
+    if let Some(said) = said {
+        pose.spin += body.spin(&Matrix3::identity(), &said.angular_velocity.into());
+    }
+    body.particles = particles;
+    (body, pose)
+}

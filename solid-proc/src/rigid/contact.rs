@@ -1,0 +1,173 @@
+//! Where bodies touch walls and each other, and the stops of joints.
+//!
+//! Points on a body's surface, a disc as a whole, are held against the exact surfaces of walls and of other bodies: a
+//! contact does not know the spacing of particles. Of the points on one face the outermost two count in the plane.
+
+use super::Vec3;
+use super::body::{Body, Pose};
+use super::joint::across;
+use super::row::Row;
+use super::step::System;
+
+/// A contact, or a stop that a joint has reached.
+#[derive(Clone, Debug)]
+pub(super) struct Touch {
+    /// Along the normal: b is pushed out of a.
+    pub(super) normal: Row,
+    /// Across the normal; one in the plane.
+    pub(super) tangents: Vec<Row>,
+    /// Impulses along these, N s (2D: N s/m).
+    pub(super) impulse: f64,
+    pub(super) friction: Vec<f64>,
+    /// Least rate along the normal, m/s.
+    pub(super) target: f64,
+}
+
+impl Touch {
+    fn new(normal: Row, tangents: Vec<Row>) -> Self {
+        let friction = vec![0.0; tangents.len()];
+        Self { normal, tangents, impulse: 0.0, friction, target: 0.0 }
+    }
+
+    /// A contact of bodies, and no stop of a joint.
+    pub(super) fn is_contact(&self) -> bool {
+        !self.tangents.is_empty()
+    }
+}
+
+/// What a contact begins the next search with: the one of the same place in its pair's list.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Remembered {
+    pub(super) ends: [usize; 2],
+    pub(super) impulse: f64,
+    pub(super) friction: [f64; 2],
+}
+
+impl Remembered {
+    pub(super) fn of(touch: &Touch) -> Self {
+        let of = |k: usize| touch.friction.get(k).copied().unwrap_or(0.0);
+        Self { ends: touch.normal.ends, impulse: touch.impulse, friction: [of(0), of(1)] }
+    }
+}
+
+/// Normals of one face agree to this cosine.
+const SAME_FACE: f64 = 1.0 - 1e-9;
+
+impl System {
+    /// All contacts of the present state closer than the tolerance, and stops that are reached.
+    pub(super) fn touches<const D: usize>(&self) -> Vec<Touch> {
+        let mut all = Vec::new();
+        for ball in 0..self.real {
+            for surface in (0..self.bodies.len()).filter(|&surface| surface != ball) {
+                if self.may_touch(surface, ball) {
+                    self.between::<D>(surface, ball, &mut all);
+                }
+            }
+        }
+        let mut ways = Vec::new();
+        for link in &self.links {
+            let Some([least, largest]) = link.limits else { continue };
+            ways.clear();
+            link.ways(self.plane, &self.bodies, &self.poses, &mut ways);
+            for row in &ways {
+                if row.gap < least + self.tolerance {
+                    all.push(Touch::new(Row { gap: row.gap - least, ..*row }, Vec::new()));
+                }
+                if row.gap > largest - self.tolerance {
+                    let [a, b] = row.ends;
+                    let [on_a, on_b] = row.angular;
+                    let back = Row { ends: [b, a], angular: [on_b, on_a], gap: largest - row.gap, ..*row };
+                    all.push(Touch::new(back, Vec::new()));
+                }
+            }
+        }
+        all
+    }
+
+    /// Gives contacts the impulses of the last ones between the same bodies, where these are as many, and the bodies
+    /// the velocities after them.
+    pub(super) fn recall(&mut self, touches: &mut [Touch]) {
+        let mut first = 0;
+        while first < touches.len() {
+            let ends = touches[first].normal.ends;
+            let count = touches[first..].iter().take_while(|touch| touch.normal.ends == ends).count();
+            let known = self.memory.iter().filter(|one| one.ends == ends);
+            if known.clone().count() == count {
+                for (touch, known) in touches[first..first + count].iter_mut().zip(known) {
+                    touch.impulse = known.impulse;
+                    touch.normal.push(&self.bodies, &mut self.poses, known.impulse);
+                    for ((row, own), impulse) in
+                        touch.tangents.iter().zip(&mut touch.friction).zip(known.friction)
+                    {
+                        *own = impulse;
+                        row.push(&self.bodies, &mut self.poses, impulse);
+                    }
+                }
+            }
+            first += count;
+        }
+    }
+
+    fn may_touch(&self, surface: usize, ball: usize) -> bool {
+        let (a, b) = (&self.bodies[surface], &self.bodies[ball]);
+        if a.surfaces.is_empty() || !(a.gives_way() || b.gives_way()) || b.tied.contains(&surface) {
+            return false;
+        }
+        let reach = a.radius + b.radius + self.tolerance;
+        surface >= self.real
+            || (self.poses[surface].center - self.poses[ball].center).norm_squared() < reach * reach
+    }
+
+    /// Contacts of the balls of one body with the surfaces of another.
+    fn between<const D: usize>(&self, surface: usize, ball: usize, all: &mut Vec<Touch>) {
+        let (a, b): (&Body, &Body) = (&self.bodies[surface], &self.bodies[ball]);
+        let (on_a, on_b): (&Pose, &Pose) = (&self.poses[surface], &self.poses[ball]);
+        let back = on_a.turn.inverse();
+        // Faces: normal, and the points on it that are farthest out either way.
+        let mut faces: Vec<(Vec3, [(f64, Touch); 2])> = Vec::new();
+        for (center, radius) in &b.balls {
+            let at = on_b.center + on_b.turn * center;
+            let reference = a.center + back * (at - on_a.center);
+            for of in &a.surfaces {
+                of.nearest::<D>(std::array::from_fn(|d| reference[d]), &mut |distance, normal| {
+                    let gap = distance - radius;
+                    if gap > self.tolerance {
+                        return;
+                    }
+                    let normal = on_a.turn * Vec3::from_fn(|d, _| if d < D { normal[d] } else { 0.0 });
+                    let point = at - normal * *radius;
+                    let row = Row::between([surface, ball], &self.poses, point, normal, gap);
+                    let touch = self.contact(row, point);
+                    if !self.plane {
+                        all.push(touch);
+                        return;
+                    }
+                    let along = point[1] * normal[0] - point[0] * normal[1];
+                    match faces.iter_mut().find(|(other, _)| other.dot(&normal) > SAME_FACE) {
+                        None => faces.push((normal, [(along, touch.clone()), (along, touch)])),
+                        Some((_, [low, high])) => {
+                            if along < low.0 {
+                                *low = (along, touch);
+                            } else if along > high.0 {
+                                *high = (along, touch);
+                            }
+                        }
+                    }
+                });
+            }
+        }
+        for (_, [low, high]) in faces {
+            let several = high.0 > low.0;
+            all.push(low.1);
+            all.extend(several.then_some(high.1));
+        }
+    }
+
+    /// A contact at a point with friction across its normal.
+    fn contact(&self, normal: Row, point: Vec3) -> Touch {
+        let n = normal.linear;
+        let directions = if self.plane { vec![Vec3::new(-n[1], n[0], 0.0)] } else { across(&n).to_vec() };
+        let row = |d: Vec3| Row::between(normal.ends, &self.poses, point, d, 0.0);
+        Touch::new(normal, directions.into_iter().map(row).collect())
+    }
+}

@@ -1,0 +1,35 @@
+//! The largest sub-step. A free body has no stiffness, and its accuracy asks for little: no point goes farther than a
+//! quarter of the spacing in a sub-step, so that contacts are found in time, and a body falls from rest by less than
+//! that. A spring is stable to 2 / omega; a quarter of that keeps its phase.
+
+use super::step::System;
+
+/// m/s²: where there is no gravity.
+const FALL: f64 = 9.81;
+
+impl System {
+    /// s, for this spacing, m.
+    pub(super) fn sub_step_limit(&self, spacing: f64) -> f64 {
+        let way = 0.25 * spacing;
+        let fall = self.gravity.norm_squared().sqrt().max(FALL);
+        let mut limit = (2.0 * way / fall).sqrt();
+        for (body, pose) in self.bodies.iter().zip(&self.poses).take(self.real) {
+            let rate = body.angular_velocity(pose).norm_squared().sqrt();
+            let speed = pose.velocity.norm_squared().sqrt() + rate * body.radius;
+            limit = limit.min(way / speed);
+        }
+        let mut ways = Vec::new();
+        let mut squares = 0.0;
+        let mut damping = 0.0;
+        for link in &self.links {
+            ways.clear();
+            link.ways(self.plane, &self.bodies, &self.poses, &mut ways);
+            for row in &ways {
+                let give = row.response(row, &self.bodies, &self.poses);
+                squares += link.stiffness * give;
+                damping += link.damping * give;
+            }
+        }
+        limit.min(0.5 / squares.sqrt()).min(0.5 / damping)
+    }
+}

@@ -1,0 +1,548 @@
+//! Rigid bodies by hand.
+
+use super::Rigid;
+use crate::model::{Load, SolidModel};
+use halfstep_scene::{Geometry, Phase, Scene};
+use halfstep_sph::lane::Isa;
+use halfstep_wire::half_step::HalfStep;
+use std::f64::consts::TAU;
+use std::path::Path;
+
+const G: f64 = 9.81;
+
+fn scene(keys: &str, shapes: &str) -> Scene {
+    let text = format!(
+        "resolution = 0.01\nend_time = 100.0\n[solid]\nmodel = \"rigid\"\ndensity = 500.0\n{keys}\n{shapes}"
+    );
+    halfstep_scene::parse(&text, Path::new("rigid.toml"), &[]).expect("a right scene")
+}
+
+const BOX: &str =
+    "[[shape]]\nname = \"box\"\nphase = \"solid\"\nbox = { min = [0.0, 0.0], max = [0.2, 0.1] }\n";
+const FLOOR: &str =
+    "[[shape]]\nname = \"floor\"\nphase = \"wall\"\nbox = { min = [-5.0, -1.0], max = [9.0, 0.0] }\n";
+
+fn build<const D: usize>(scene: &Scene) -> Rigid<D> {
+    Rigid::new(scene, 0, Isa::detect()).expect("a rigid solid")
+}
+
+/// Steps of one sub-step until a time, s; `see` is shown each state.
+fn run<const D: usize>(
+    model: &mut Rigid<D>,
+    end: f64,
+    dt: f64,
+    load: &Load<D>,
+    mut see: impl FnMut(f64, &mut Rigid<D>),
+) {
+    let steps = (end / dt).round() as u64;
+    for k in 0..steps {
+        for stage in HalfStep::begin(k, k as f64 * dt).lasting(dt).both() {
+            model.advance(&stage, 1, load).expect("within bounds");
+        }
+        see((k + 1) as f64 * dt, model);
+    }
+}
+
+fn free<const D: usize>(model: &Rigid<D>) -> Load<D> {
+    Load::none(model.particles().len())
+}
+
+/// In space: as deep as given, m.
+fn deepen(mut scene: Scene, depth: f64) -> Scene {
+    scene.dimension = 3;
+    for shape in &mut scene.shapes {
+        if let Geometry::Box(block) = &mut shape.geometry {
+            let beyond = if shape.phase == Phase::Wall { 1.0 } else { 0.0 };
+            (block.min[2], block.max[2]) = (-beyond, depth + beyond);
+        }
+    }
+    scene
+}
+
+fn spun(model: &mut Rigid<3>, rate: [f64; 3]) {
+    let body = &model.system.bodies[0];
+    model.system.poses[0].spin = body.spin(&nalgebra::Matrix3::identity(), &rate.into());
+    model.show();
+}
+
+#[test]
+fn a_box_has_the_moments_of_a_box() {
+    let plane = build::<2>(&scene("", BOX));
+    let body = &plane.system.bodies[0];
+    let moment = |body: &super::body::Body, axis: usize| {
+        let mut rate = super::Vec3::zeros();
+        rate[axis] = 1.0;
+        body.spin(&nalgebra::Matrix3::identity(), &rate)[axis]
+    };
+    // 0.2 x 0.1 m of 500 kg/m³: 10 kg/m, (0.2² + 0.1²) / 12 of it.
+    assert!((body.mass - 10.0).abs() < 1e-12);
+    assert!((body.center - super::Vec3::new(0.1, 0.05, 0.0)).amax() < 1e-15);
+    assert!((moment(body, 2) / (10.0 * 0.05 / 12.0) - 1.0).abs() < 1e-12);
+    let space = build::<3>(&deepen(scene("", BOX), 0.3));
+    let body = &space.system.bodies[0];
+    assert!((body.mass - 3.0).abs() < 1e-12);
+    for (axis, squares) in [(0, 0.01 + 0.09), (1, 0.04 + 0.09), (2, 0.05)] {
+        assert!((moment(body, axis) / (3.0 * squares / 12.0) - 1.0).abs() < 1e-12, "{axis}");
+    }
+    // What the scene says comes before what the shapes say; a heavy half moves the centre.
+    let said = "bodies = [{ name = \"box\", mass = 20.0, center = [0.1, 0.02], inertia = 3.0, angular_velocity = 2.0 }]";
+    let model = build::<2>(&scene(said, BOX));
+    assert_eq!((model.states[0].mass, model.states[0].center), (20.0, [0.1, 0.02]));
+    assert!((model.states[0].kinetic_energy - 0.5 * 3.0 * 4.0).abs() < 1e-12);
+    let half = BOX.replace("0.2, 0.1] }", "0.1, 0.1] }\ndensity = 1500.0\nbody = \"float\"")
+        + &BOX
+            .replace("\"box\"", "\"right\"")
+            .replace("[0.0, 0.0]", "[0.1, 0.0]")
+            .replace("0.1] }", "0.1] }\nbody = \"float\"");
+    let model = build::<2>(&scene("", &half));
+    assert_eq!(model.states.len(), 1);
+    assert!((model.states[0].mass - 20.0).abs() < 1e-12);
+    assert!((model.states[0].center[0] - (15.0 * 0.05 + 5.0 * 0.15) / 20.0).abs() < 1e-12);
+}
+
+#[test]
+fn a_thrown_body_flies_a_parabola_and_turns_evenly() {
+    let said = "bodies = [{ name = \"box\", angular_velocity = 3.0 }]";
+    let shape = format!("{BOX}velocity = [2.0, 5.0]\n");
+    let mut model = build::<2>(&scene(said, &shape));
+    let load = free(&model);
+    run(&mut model, 1.0, 1e-3, &load, |_, _| {});
+    let state = &model.states[0];
+    assert!((state.center[0] - 2.1).abs() < 1e-11 && (state.center[1] - (5.05 - 0.5 * G)).abs() < 1e-11);
+    assert!((state.angle[2] - 3.0).abs() < 1e-12);
+    // A corner particle's place.
+    let (r0, angle) = ([0.005 - 0.1, 0.005 - 0.05], 3.0_f64);
+    let right = [
+        state.center[0] + r0[0] * angle.cos() - r0[1] * angle.sin(),
+        state.center[1] + r0[0] * angle.sin() + r0[1] * angle.cos(),
+    ];
+    let at = model.particles().position[0];
+    assert!((at[0] - right[0]).abs() < 1e-12 && (at[1] - right[1]).abs() < 1e-12);
+}
+
+/// T = T0 2 K(sin(A/2)) / pi, K by the arithmetic-geometric mean.
+fn pendulum_period(t0: f64, amplitude: f64) -> f64 {
+    let (mut a, mut b) = (1.0, (0.5 * amplitude).cos());
+    for _ in 0..30 {
+        (a, b) = (0.5 * (a + b), (a * b).sqrt());
+    }
+    t0 / a
+}
+
+#[test]
+fn a_pendulum_has_its_period_at_any_amplitude() {
+    // Hung at its upper left corner, it starts to the right of the lowest place by the angle of its diagonal.
+    for at in [[0.1, 0.1], [0.1, 0.5]] {
+        for amplitude in [0.1_f64, 2.5] {
+            let keys = format!(
+                "joints = [{{ name = \"pin\", kind = \"hinge\", body = \"box\", at = [{}, {}] }}]",
+                at[0], at[1]
+            );
+            let mut model = build::<2>(&scene(&keys, BOX));
+            let load = free(&model);
+            // Turned about the pin before it starts.
+            let arm = at[1] - 0.05;
+            let pose = &mut model.system.poses[0];
+            pose.angle = amplitude;
+            pose.center = super::Vec3::new(at[0] + arm * amplitude.sin(), at[1] - arm * amplitude.cos(), 0.0);
+            model.system.bodies[0].drift(&mut model.system.poses[0], 0.0);
+            let i = 10.0 * 0.05 / 12.0 + 10.0 * arm * arm;
+            let right = pendulum_period(TAU * (i / (10.0 * G * arm)).sqrt(), amplitude);
+            let dt = right / 2000.0;
+            let start = -10.0 * G * arm * amplitude.cos();
+            let (mut last, mut crossings, mut worst) = (amplitude, Vec::new(), 0.0_f64);
+            run(&mut model, 2.2 * right, dt, &load, |t, model| {
+                let (angle, energy) = {
+                    let state = &model.states[0];
+                    (state.angle[2], state.kinetic_energy + 10.0 * G * (state.center[1] - at[1]))
+                };
+                if last > 0.0 && angle <= 0.0 {
+                    crossings.push(t - dt * angle / (angle - last));
+                }
+                last = angle;
+                worst = worst.max((energy - start).abs());
+                // The pin stays.
+                let pin = model.system.bodies[0].place(&model.system.poses[0], &[at[0], at[1], 0.0].into());
+                assert!((pin - super::Vec3::new(at[0], at[1], 0.0)).amax() < 1e-12);
+            });
+            let period = crossings[1] - crossings[0];
+            println!(
+                "amplitude {amplitude}: period {period:.6} s, right {right:.6} s, energy {:.1e}",
+                worst / start.abs()
+            );
+            assert!((period / right - 1.0).abs() < 1e-5, "{period} {right}");
+            assert!(worst < 1e-4 * 20.0 * G * arm);
+        }
+    }
+}
+
+#[test]
+fn a_pendulum_is_of_second_order() {
+    let end = |steps: f64| {
+        let keys = "joints = [{ name = \"pin\", kind = \"hinge\", body = \"box\", at = [0.0, 0.1] }]";
+        let mut model = build::<2>(&scene(keys, BOX));
+        let load = free(&model);
+        run(&mut model, 0.5, 0.5 / steps, &load, |_, _| {});
+        model.states[0].angle[2]
+    };
+    let (coarse, middle, fine) = (end(100.0), end(200.0), end(400.0));
+    let order = ((coarse - middle) / (middle - fine)).log2();
+    println!("order {order:.3}");
+    assert!((order - 2.0).abs() < 0.1, "{order}");
+}
+
+#[test]
+fn a_spring_swings_and_a_damper_decays() {
+    // 10 kg/m on 4000 N/m², from 1 cm above its rest: the way x = 0.01 cos(20 t).
+    let keys = "joints = [{ name = \"k\", kind = \"rail\", body = \"box\", at = [0.1, 0.05], axis = [1.0, 0.0], \
+                stiffness = 4000.0, damping = 40.0, rest = -0.01 }]";
+    let mut model = build::<2>(&scene(keys, BOX));
+    let load = free(&model);
+    // omega0 = 20, delta = 40 / 20 = 2 1/s.
+    let (delta, omega) = (2.0, (400.0_f64 - 4.0).sqrt());
+    let mut worst = 0.0_f64;
+    run(&mut model, 1.0, 1e-4, &load, |t, model| {
+        let x = model.states[0].center[0] - 0.1;
+        let way = 0.01 * (-delta * t).exp() * ((omega * t).cos() + delta / omega * (omega * t).sin()) - 0.01;
+        worst = worst.max((x - way).abs());
+        assert!((model.states[0].center[1] - 0.05).abs() < 1e-13, "the rail carries it");
+        assert!(model.states[0].angle[2].abs() < 1e-15);
+    });
+    println!("largest distance from the solution: {worst:.1e} m");
+    assert!(worst < 2e-7, "{worst}");
+}
+
+#[test]
+fn a_torque_free_body_keeps_momentum_and_energy_and_tumbles() {
+    let mut scene = scene("", BOX);
+    scene.gravity = [0.0; 3];
+    let mut model = build::<3>(&deepen(scene, 0.3));
+    // Moments about x, y, z: 0.1, 0.13, 0.05 (times 3/12): about x, the middle one, it is unstable.
+    spun(&mut model, [10.0, 1e-3, 1e-3]);
+    let load = free(&model);
+    let (spin, energy) = (model.system.poses[0].spin, model.states[0].kinetic_energy);
+    let mut flips = 0;
+    let mut last = 1.0_f64;
+    let mut worst = 0.0_f64;
+    run(&mut model, 10.0, 1e-3, &load, |_, model| {
+        let pose = &model.system.poses[0];
+        assert!((pose.spin - spin).amax() < 1e-12 * spin.norm());
+        worst = worst.max((model.states[0].kinetic_energy / energy - 1.0).abs());
+        let axis = pose.rotation()[(0, 0)];
+        if axis * last < 0.0 {
+            flips += 1;
+        }
+        last = axis;
+    });
+    println!("{flips} flips, energy to {worst:.1e}");
+    assert!(flips >= 2, "it turns over again and again: {flips}");
+    assert!(worst < 1e-4, "{worst}");
+}
+
+#[test]
+fn the_free_rotation_is_of_second_order() {
+    let mut scene = scene("", BOX);
+    scene.gravity = [0.0; 3];
+    let scene = deepen(scene, 0.3);
+    let end = |steps: f64| {
+        let mut model = build::<3>(&scene);
+        spun(&mut model, [3.0, 2.0, 1.0]);
+        let load = free(&model);
+        run(&mut model, 1.0, 1.0 / steps, &load, |_, _| {});
+        model.system.poses[0].rotation()
+    };
+    let (coarse, middle, fine) = (end(50.0), end(100.0), end(200.0));
+    let order = ((coarse - middle).norm() / (middle - fine).norm()).log2();
+    println!("order {order:.3}");
+    assert!((order - 2.0).abs() < 0.1, "{order}");
+}
+
+#[test]
+fn a_ball_joint_and_an_axis_hold_in_space() {
+    for (axis, freedom) in [("", 3), (", axis = [0.0, 0.0, 1.0]", 1)] {
+        let mut scene = scene("", BOX);
+        let keys = match &mut scene.solids[0].model {
+            halfstep_scene::ModelKeys::Rigid(keys) => keys,
+            _ => unreachable!("rigid"),
+        };
+        keys.joints.push(halfstep_scene::Joint {
+            name: "pin".into(),
+            body: "box".into(),
+            with: String::new(),
+            kind: halfstep_scene::JointKind::Hinge {
+                at: [0.0, 0.1, 0.0],
+                axis: if axis.is_empty() { [0.0; 3] } else { [0.0, 0.0, 1.0] },
+            },
+            stiffness: 0.0,
+            damping: 0.0,
+            rest: 0.0,
+            limits: None,
+        });
+        let mut model = build::<3>(&deepen(scene, 0.3));
+        let load = free(&model);
+        let start = model.states[0].center[1] * 3.0 * G;
+        run(&mut model, 1.0, 1e-3, &load, |_, model| {
+            let pose = model.system.poses[0];
+            let pin = model.system.bodies[0].place(&pose, &[0.0, 0.1, 0.0].into());
+            assert!((pin - super::Vec3::new(0.0, 0.1, 0.0)).amax() < 1e-12);
+            let upright = pose.rotation()[(2, 2)];
+            if freedom == 1 {
+                assert!((upright - 1.0).abs() < 1e-12, "{upright}");
+            }
+            let energy = model.states[0].kinetic_energy + 3.0 * G * model.states[0].center[1];
+            assert!((energy - start).abs() < 1e-3 * 3.0 * G * 0.1, "{energy} {start}");
+        });
+        if freedom == 3 {
+            assert!(model.system.poses[0].rotation()[(2, 2)] < 0.99, "its centre is deeper than the pin");
+        }
+    }
+}
+
+#[test]
+fn a_double_pendulum_keeps_its_energy_and_its_pins() {
+    let second = BOX
+        .replace("\"box\"", "\"second\"")
+        .replace("[0.0, 0.0]", "[0.22, 0.0]")
+        .replace("0.2, 0.1]", "0.42, 0.1]");
+    let keys = "joints = [{ name = \"a\", kind = \"hinge\", body = \"box\", at = [0.0, 0.05] },\n\
+                { name = \"b\", kind = \"hinge\", body = \"second\", with = \"box\", at = [0.21, 0.05] }]";
+    let mut model = build::<2>(&scene(keys, &(BOX.to_owned() + &second)));
+    let load = free(&model);
+    let energy = |model: &Rigid<2>| -> f64 {
+        model.states.iter().map(|s| s.kinetic_energy + s.mass * G * s.center[1]).sum()
+    };
+    let start = energy(&model);
+    let mut worst = 0.0_f64;
+    run(&mut model, 2.0, 2e-4, &load, |_, model| {
+        let pin: super::Vec3 = [0.21, 0.05, 0.0].into();
+        let [a, b] = [0, 1].map(|k| model.system.bodies[k].place(&model.system.poses[k], &pin));
+        assert!((a - b).amax() < 1e-12);
+        worst = worst.max((energy(model) - start).abs());
+    });
+    println!("energy to {:.1e} of what it falls", worst / (20.0 * G * 0.3));
+    assert!(worst < 1e-3 * 20.0 * G * 0.3, "{worst}");
+}
+
+#[test]
+fn a_hinge_stops_at_its_limit() {
+    let keys = "joints = [{ name = \"pin\", kind = \"hinge\", body = \"box\", at = [0.0, 0.05], limits = [-0.5, 0.5] }]";
+    let mut model = build::<2>(&scene(keys, BOX));
+    let load = free(&model);
+    let mut lowest = 0.0_f64;
+    run(&mut model, 2.0, 1e-3, &load, |_, model| lowest = lowest.min(model.states[0].angle[2]));
+    assert!((lowest + 0.5).abs() < 1e-5, "{lowest}");
+    assert!((model.states[0].angle[2] + 0.5).abs() < 1e-5 && model.states[0].kinetic_energy < 1e-20);
+}
+
+#[test]
+fn a_body_moves_as_prescribed() {
+    let shape = format!("{BOX}motion = {{ angular_velocity = 2.0, pivot = [0.0, 0.0] }}\n");
+    let mut model = build::<2>(&scene("", &shape));
+    let load = free(&model);
+    run(&mut model, 4.0, 1e-2, &load, |_, _| {});
+    assert!((model.states[0].angle[2] - 8.0).abs() < 1e-12, "more than a turn: {:?}", model.states[0].angle);
+    let (c, s) = (8.0_f64.cos(), 8.0_f64.sin());
+    let right = [0.1 * c - 0.05 * s, 0.1 * s + 0.05 * c];
+    for d in 0..2 {
+        assert!((model.states[0].center[d] - right[d]).abs() < 1e-12);
+    }
+    let mut records = Vec::new();
+    model.records(&[0], &mut records);
+    assert_eq!(records[0].flags, 1);
+}
+
+#[test]
+fn a_falling_box_comes_to_rest_on_the_floor() {
+    let shape = BOX.replace("[0.0, 0.0]", "[0.0, 0.05]").replace("0.2, 0.1]", "0.2, 0.15]");
+    for restitution in [0.0, 0.6] {
+        let keys = format!("contact = {{ restitution = {restitution} }}");
+        let mut model = build::<2>(&scene(&keys, &(shape.clone() + FLOOR)));
+        let load = free(&model);
+        let (mut lowest, mut after) = (f64::INFINITY, 0.0_f64);
+        run(&mut model, 2.0, 5e-4, &load, |t, model| {
+            lowest = model.states[0].center[1].min(lowest);
+            // Between the first two impacts.
+            if t > 0.105 && t < 0.2 {
+                after = after.max(model.states[0].center[1] - 0.05);
+            }
+        });
+        println!("restitution {restitution}: lowest {:.2e}, rises again by {after:.5} m", lowest - 0.05);
+        assert!(lowest > 0.05 - 1e-6, "{lowest}");
+        assert!((after - restitution * restitution * 0.05).abs() < 1e-3, "{after}");
+        let state = &model.states[0];
+        assert!((state.center[1] - 0.05).abs() < 2e-6 && state.kinetic_energy < 1e-12, "{state:?}");
+        assert!((state.contact_force[1] / (10.0 * G) - 1.0).abs() < 1e-9, "{:?}", state.contact_force);
+    }
+}
+
+#[test]
+fn a_sliding_block_stops_after_its_way() {
+    let keys = "contact = { friction = 0.3 }";
+    let shape = format!("{BOX}velocity = [1.0, 0.0]\n{FLOOR}");
+    let mut model = build::<2>(&scene(keys, &shape));
+    let load = free(&model);
+    run(&mut model, 1.0, 5e-4, &load, |_, _| {});
+    let way = model.states[0].center[0] - 0.1;
+    let right = 1.0 / (2.0 * 0.3 * G);
+    println!("way {way:.6} m, v² / (2 mu g) {right:.6} m");
+    assert!((way / right - 1.0).abs() < 1e-3, "{way} {right}");
+    assert!(model.states[0].kinetic_energy < 1e-20);
+}
+
+#[test]
+fn a_block_on_a_slope_holds_below_the_angle_of_friction() {
+    // A slope is gravity at an angle.
+    let go = |friction: f64| {
+        let mut scene = scene(&format!("contact = {{ friction = {friction} }}"), &(BOX.to_owned() + FLOOR));
+        let angle = 0.3_f64;
+        scene.gravity = [G * angle.sin(), -G * angle.cos(), 0.0];
+        let mut model = build::<2>(&scene);
+        let load = free(&model);
+        run(&mut model, 1.0, 5e-4, &load, |_, _| {});
+        model.states[0].center[0] - 0.1
+    };
+    let holding = go(1.01 * 0.3_f64.tan());
+    assert!(holding.abs() < 1e-12, "{holding}");
+    let sliding = go(0.9 * 0.3_f64.tan());
+    let right = 0.5 * 0.1 * G * 0.3_f64.sin();
+    println!("slides {sliding:.6} m, g (sin - mu cos) t² / 2 = {right:.6} m");
+    assert!((sliding / right - 1.0).abs() < 1e-6, "{sliding} {right}");
+}
+
+#[test]
+fn a_disc_rolls_down_a_slope() {
+    let disc =
+        "[[shape]]\nname = \"disc\"\nphase = \"solid\"\ndisc = { center = [0.0, 0.1], radius = 0.1 }\n";
+    let mut scene = scene("contact = { friction = 0.5 }", &(disc.to_owned() + FLOOR));
+    let angle = 0.3_f64;
+    scene.gravity = [G * angle.sin(), -G * angle.cos(), 0.0];
+    let mut model = build::<2>(&scene);
+    let load = free(&model);
+    run(&mut model, 1.0, 5e-4, &load, |_, _| {});
+    let state = &model.states[0];
+    // a = g sin / (1 + I / (m r²)).
+    let body = &model.system.bodies[0];
+    let inertia = body.spin(&nalgebra::Matrix3::identity(), &super::Vec3::z())[2];
+    let right = 0.5 * G * angle.sin() / (1.0 + inertia / (body.mass * 0.01));
+    println!("rolls {:.6} m, right {right:.6} m", state.center[0]);
+    assert!((state.center[0] / right - 1.0).abs() < 1e-3);
+    assert!(
+        (state.angle[2] + state.center[0] / 0.1).abs() < 1e-3 * state.center[0] / 0.1,
+        "it does not slide"
+    );
+}
+
+#[test]
+fn a_stack_of_four_stays() {
+    stack(4, 0.3);
+}
+
+#[test]
+#[ignore = "20 s"]
+fn a_stack_of_ten_stays() {
+    stack(10, 1.0);
+}
+
+/// Boxes that stand on each other are at rest after a time, s, where they were.
+fn stack(count: usize, end: f64) {
+    let boxes: String = (0..count)
+        .map(|k| {
+            let (low, high) = (0.1 * k as f64, 0.1 * (k + 1) as f64);
+            format!("[[shape]]\nname = \"b{k}\"\nphase = \"solid\"\nbox = {{ min = [0.0, {low}], max = [0.2, {high}] }}\n")
+        })
+        .collect();
+    let mut model = build::<2>(&scene("contact = { friction = 0.4 }", &(boxes + FLOOR)));
+    let load = free(&model);
+    run(&mut model, end, 1e-3, &load, |_, _| {});
+    for (k, state) in model.states.iter().enumerate() {
+        let right = 0.05 + 0.1 * k as f64;
+        assert!((state.center[1] - right).abs() < 1e-5 && (state.center[0] - 0.1).abs() < 2e-5, "{state:?}");
+        assert!(state.kinetic_energy < 1e-15, "{state:?}");
+    }
+    assert!((model.states[count - 1].contact_force[1] / (10.0 * G) - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn a_cradle_hands_the_momentum_on() {
+    let discs: String = (0..3)
+        .map(|k| {
+            let x = 0.21 * f64::from(k);
+            let v = if k == 0 { 1.0 } else { 0.0 };
+            format!(
+                "[[shape]]\nname = \"d{k}\"\nphase = \"solid\"\ndisc = {{ center = [{x}, 1.0], radius = 0.1 }}\n\
+                 velocity = [{v}, 0.0]\n"
+            )
+        })
+        .collect();
+    let mut scene = scene("contact = { restitution = 1.0 }", &discs);
+    scene.gravity = [0.0; 3];
+    let mut model = build::<2>(&scene);
+    let load = free(&model);
+    run(&mut model, 0.1, 1e-4, &load, |_, _| {});
+    let speeds: Vec<f64> = model.states.iter().map(|s| s.velocity[0]).collect();
+    assert!(
+        speeds[0].abs() < 1e-12 && speeds[1].abs() < 1e-12 && (speeds[2] - 1.0).abs() < 1e-12,
+        "{speeds:?}"
+    );
+}
+
+/// What contacts, stops, dampers and prescribed motion give explains every change of the energy.
+#[test]
+fn the_books_close() {
+    let moved = "[[shape]]\nname = \"plate\"\nphase = \"wall\"\nbox = { min = [-5.0, -1.0], max = [9.0, 0.0] }\n\
+                 motion = { amplitude = [0.02, 0.03], period = 0.5 }\n";
+    let spring = "contact = { friction = 0.2, restitution = 0.3 }\n\
+                  joints = [{ name = \"k\", kind = \"spring\", body = \"box\", with = \"plate\", at = [0.0, 0.1], \
+                  to = [0.0, 0.3], stiffness = 500.0, damping = 5.0 }]";
+    for (keys, shapes) in
+        [(spring, BOX.to_owned() + moved), ("contact = { friction = 0.2 }", BOX.to_owned() + moved)]
+    {
+        let mut model = build::<2>(&scene(keys, &shapes));
+        let load = free(&model);
+        model.keep_account();
+        let held = |model: &Rigid<2>| {
+            model.states[0].kinetic_energy + model.strain_energy() + 10.0 * G * model.states[0].center[1]
+        };
+        let start = held(&model);
+        let (mut given, mut most, mut worst) = (0.0, 0.0_f64, 0.0_f64);
+        run(&mut model, 1.5, 2e-4, &load, |_, model| {
+            model.account(&mut |_, joules| {
+                given += joules;
+                most = most.max(joules.abs());
+            });
+            worst = worst.max((held(model) - start - given).abs());
+        });
+        println!("rest {worst:.1e} J of {:.2} J", (held(&model) - start).abs().max(10.0 * G * 0.03));
+        assert!(worst < 2e-3 * 10.0 * G * 0.03, "{worst}");
+        assert!(most > 0.0);
+    }
+}
+
+#[test]
+fn a_load_that_is_no_number_is_named() {
+    let mut model = build::<2>(&scene("", BOX));
+    let mut load = free(&model);
+    load.force[17] = [f64::NAN, 0.0];
+    let [first, _] = HalfStep::begin(0, 0.0).lasting(1e-3).both();
+    let failure = model.advance(&first, 1, &load).expect_err("NaN");
+    assert_eq!(failure.particle, 17);
+}
+
+/// A quarter of a body's weight on one side turns it with the moment of that force.
+#[test]
+fn a_force_off_the_centre_turns_the_body() {
+    let mut scene = scene("", BOX);
+    scene.gravity = [0.0; 3];
+    let mut model = build::<2>(&scene);
+    let mut load = free(&model);
+    let near = |&p: &usize| {
+        let x = model.particles().reference[p];
+        (x[0] - 0.195).abs() + (x[1] - 0.055).abs() < 1e-9
+    };
+    let p = (0..model.particles().len()).find(near).expect("there");
+    load.force[p] = [0.0, 1.0];
+    run(&mut model, 1e-2, 1e-3, &load, |_, _| {});
+    let right = 1.0 * 0.095 / (10.0 * 0.05 / 12.0) * 1e-2;
+    assert!((model.states[0].angular_velocity[2] / right - 1.0).abs() < 1e-5);
+    assert!((model.states[0].velocity[1] - 1e-3).abs() < 1e-15);
+}
