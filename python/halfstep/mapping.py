@@ -67,6 +67,28 @@ class Rigid:
         return np.array([*forces.sum(axis=0), (x * forces[:, 1] - y * forces[:, 0]).sum()])
 
 
+class Hinged(Rigid):
+    """Points of a rigid body in the plane that turns about a fixed point: its unknown is the angle, q = [angle].
+
+    `rest`: the points where the body is as in the scene, N x 2. `hinge`: the fixed point.
+    """
+
+    def __init__(self, rest, hinge):
+        super().__init__(rest, hinge)
+
+    def positions(self, q):
+        """N x 2, m. `q`: angle (rad, counter-clockwise)."""
+        return super().positions([0.0, 0.0, q[0]])
+
+    def velocities(self, v):
+        """N x 2, m/s, at the positions that were asked for last. `v`: rad/s."""
+        return super().velocities([0.0, 0.0, v[0]])
+
+    def back(self, forces):
+        """Moment about the hinge, at the positions that were asked for last."""
+        return super().back(forces)[2:]
+
+
 class MidLine:
     """Points of a slender body in the plane: each a fixed way off the mid-line, along its normal.
 

@@ -3,7 +3,7 @@
 import unittest
 
 import numpy as np
-from halfstep.mapping import Linear, MidLine, Rigid
+from halfstep.mapping import Hinged, Linear, MidLine, Rigid
 
 RANDOM = np.random.default_rng(7)
 
@@ -49,6 +49,16 @@ class Mappings(unittest.TestCase):
         # A quarter turn about the centre.
         quarter = Rigid([[1.0, 0.0]], [0.0, 0.0]).positions([0.0, 0.0, np.pi / 2])
         self.assertLess(np.abs(quarter - [[0.0, 1.0]]).max(), 1e-15)
+
+    def test_hinged(self):
+        rest = RANDOM.normal(size=(20, 2))
+        mapping = Hinged(rest, [0.5, 0.0])
+        self.power_is_kept(mapping, np.array([0.4]), np.array([-1.5]))
+        self.assertLess(np.abs(mapping.positions([0.0]) - rest).max(), 1e-15)
+        # Its lever is the distance to the hinge.
+        lever = Hinged([[1.5, 0.0]], [0.5, 0.0])
+        lever.positions([0.0])
+        self.assertEqual(lever.back(np.array([[7.0, 2.0]])), 2.0)
 
     def test_mid_line(self):
         nodes = np.column_stack([np.zeros(6), np.linspace(0.0, 1.0, 6)])

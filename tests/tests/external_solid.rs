@@ -6,7 +6,7 @@ use halfstep_tests::curve::Curve;
 use halfstep_tests::process::{kill, leftovers};
 use halfstep_tests::python::python;
 use halfstep_tests::run::{repository, scene, whole_machine};
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 const STIFFNESS: f64 = 2e4;
 
@@ -149,9 +149,11 @@ fn a_block_started_by_hand_moves_as_one_that_the_run_starts() {
     eventually(30.0, "the variables of the solid", || variables.exists());
     // As the message on the terminal says.
     let line = format!(". '{}' && {}", variables.canonicalize().unwrap().display(), command());
-    let mut by_hand = Command::new("sh").arg("-c").arg(&line).spawn().unwrap();
+    let by_hand = Command::new("sh").arg("-c").arg(&line).stderr(Stdio::piped()).spawn().unwrap();
     let run = running.wait().finished();
-    assert!(by_hand.wait().unwrap().success());
+    let by_hand = by_hand.wait_with_output().unwrap();
+    let warned = String::from_utf8_lossy(&by_hand.stderr);
+    assert!(by_hand.status.success() && warned.is_empty(), "it ends without a word: {warned}");
     assert_eq!(run.probes, started.probes, "who starts it makes no difference, to the last bit");
     assert_eq!(run.state_hash(), started.state_hash());
     let said = &run.outcome.stderr;

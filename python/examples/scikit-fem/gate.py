@@ -66,6 +66,7 @@ def internal(u):
 class Plate:
     def __init__(self):
         self.u = self.v = np.zeros(basis.N)
+        self.steps = 1
         # Less than what the shortest wave on the mesh allows, 0.29 of an element.
         speed = np.sqrt((lame + 2 * shear) / density)
         self.limit = 0.25 * ((high - low) / counts).min() / speed
@@ -74,9 +75,9 @@ class Plate:
         return np.where(held, 0.0, (load + weight + internal(self.u)) / mass)
 
     def advance(self, load, dt):
-        steps = int(np.ceil(dt / self.limit))
-        h, a = dt / steps, self.acceleration(load)
-        for _ in range(steps):
+        self.steps = int(np.ceil(dt / self.limit))
+        h, a = dt / self.steps, self.acceleration(load)
+        for _ in range(self.steps):
             v = self.v + 0.5 * h * a
             self.u = self.u + h * v
             a = self.acceleration(load)
@@ -85,4 +86,4 @@ class Plate:
 
 solid = halfstep.Solid(points.position, points.mass, points.density, clamped=points.clamped)
 mapping = halfstep.mapping.Linear.by_component(points.position, basis.probes(points.position.T))
-halfstep.integrate.advance_once(solid, mapping, Plate())
+halfstep.integrate.advance_once(solid, mapping, Plate(), sub_steps=lambda plate: plate.steps)
