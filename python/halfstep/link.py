@@ -78,12 +78,13 @@ class Link:
         processes = environment.processes()
         own, partners = processes[name], (processes["fluid"], "coupler")
         solids = len(set(processes.values()) - {processes["fluid"]})
-        wake = self._event(own, len(partners))
+        self.partners, self.is_connected = len(partners), False
+        self.wake = self._event(own, self.partners)
         # The fluid and the coupler are called by each other and by every process of solids.
         calls = [self._event(partner, solids + 1) for partner in partners]
         forces = self._channel("force", 1, wire.FORCE_RECORD, wire.FORCE_HEADER)
         states = self._channel("state", 2, wire.STATE_RECORD, wire.STATE_HEADER)
-        self.listener = wake.listener_builder().create()
+        self.listener = self.wake.listener_builder().create()
         self.inbox = forces.subscriber_builder().create()
         self.outbox = states.publisher_builder().initial_max_slice_len(self.capacity).create()
         limit = float(environment["HANDSHAKE_SECONDS"])
@@ -91,7 +92,11 @@ class Link:
         # This connects the subscriber.
         self.inbox.has_samples()
         self.notifiers = [call.notifier_builder().create() for call in calls]
-        self._wait(lambda: wake.dynamic_config.number_of_notifiers == len(partners), HANDSHAKE_MS, limit)
+        self._wait(lambda: self._callers() == self.partners, HANDSHAKE_MS, limit)
+        self.is_connected = True
+
+    def _callers(self):
+        return self.wake.dynamic_config.number_of_notifiers
 
     def _event(self, process, callers):
         service = self.node.service_builder(iox2.ServiceName.new(f"halfstep/{process}/wake")).event()
@@ -116,14 +121,19 @@ class Link:
                 raise RunEnded("the run's launcher has ended")
             if now - asked > SECONDS_BETWEEN_QUESTIONS:
                 asked = now
-                if any(isinstance(node, iox2.NodeState.Dead) for node in self._nodes()):
-                    raise RunEnded("another process of the run has died")
+                if self._is_left() and not (found := find()):
+                    raise RunEnded("another process of the run has ended")
+                if found:
+                    return found
             if now - began > limit:
                 raise RunEnded(f"no message for {limit:g} s")
         return found
 
-    def _nodes(self):
-        return iox2.Node.list(iox2.ServiceType.Ipc, self.config)
+    def _is_left(self):
+        """Whether a partner has ended: it lies dead, or somebody has cleaned up after it, or it has left by itself."""
+        nodes = iox2.Node.list(iox2.ServiceType.Ipc, self.config)
+        gone = self.is_connected and self._callers() < self.partners
+        return gone or any(isinstance(node, iox2.NodeState.Dead) for node in nodes)
 
     def send(self, records, **header):
         """Publishes a state: an array of records, and fields of the header by name."""
@@ -157,7 +167,7 @@ class Link:
 
     def close(self):
         """Leaves the run. The connection is of no use afterwards."""
-        for own in ("notifiers", "outbox", "inbox", "listener", "node"):
+        for own in ("notifiers", "outbox", "inbox", "listener", "wake", "node"):
             self.__dict__.pop(own, None)
         self.claim.leave()
 

@@ -1,13 +1,19 @@
 #!/bin/sh
 # Makes target/python, a Python environment with what the Python tests need and with python/halfstep as it stands, and
 # prints its interpreter. Does nothing when it is already as the requirements want it; may run several times at once.
+# `setup.sh EXAMPLE` makes target/python-EXAMPLE for a folder of python/examples that the tests do not need.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 package=$(cd "$here/../../python" && pwd)
-wanted="$here/requirements.txt $package/examples/scikit-fem/requirements.txt $package/examples/mujoco/requirements.txt"
+examples=$package/examples
+if [ $# -gt 0 ]; then
+    wanted=$examples/$1/requirements.txt
+else
+    wanted="$here/requirements.txt $examples/scikit-fem/requirements.txt $examples/mujoco/requirements.txt"
+fi
 target=${CARGO_TARGET_DIR:-$here/../../target}
 mkdir -p "$target"
-venv=$(cd "$target" && pwd)/python
+venv=$(cd "$target" && pwd)/python${1:+-$1}
 exec 9>"$venv.lock"
 flock 9
 # shellcheck disable=SC2086

@@ -1,6 +1,6 @@
 //! `halfstep compare`: the table has a built-in model and a program of one's own, and the picture is drawn.
 
-use halfstep_tests::python::python;
+use halfstep_tests::python::{python, python_of};
 use halfstep_tests::run::{program, repository, whole_machine};
 use std::process::{Command, Output};
 
@@ -47,4 +47,26 @@ fn what_cannot_be_compared_is_refused() {
         assert_eq!(output.status.code(), Some(1), "{said}");
         assert!(said.contains(reason), "{said}");
     }
+}
+
+/// The gate by NGSolve, to beyond its peak: within 3 % of the built-in plate. NGSolve comes with its own environment.
+#[test]
+#[ignore = "long"]
+fn ngsolve_bends_as_particles_do() {
+    let _machine = whole_machine();
+    let folder = tempfile::tempdir().unwrap();
+    let script = repository().join("python/examples/ngsolve/gate.py");
+    let elements =
+        format!("ngsolve=OMP_NUM_THREADS=1 {} {}", python_of("ngsolve").display(), script.display());
+    let coarse = ["--set", "resolution=0.0025", "--set", "shape.plate.across=5", "--until", "0.15", "--json"];
+    let solids =
+        ["--solid", "total-lagrangian", "--solid", &elements, "--out", folder.path().to_str().unwrap()];
+    let output = compare(&[&coarse[..], &solids].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    let [own, elements] = told["solids"].as_array().unwrap().as_slice() else { panic!("{told}") };
+    println!("{} m and {} m, apart by {}", own["peak"], elements["peak"], elements["distance"][0]);
+    assert!((number(&elements["peak"]) / number(&own["peak"]) - 1.0).abs() < 0.03, "{told}");
+    assert!(number(&elements["distance"][0]) < 0.03, "{told}");
 }
