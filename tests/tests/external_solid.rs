@@ -7,6 +7,7 @@ use halfstep_tests::process::{kill, leftovers};
 use halfstep_tests::python::python;
 use halfstep_tests::run::{repository, scene, whole_machine};
 use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
 
 const STIFFNESS: f64 = 2e4;
 
@@ -162,6 +163,29 @@ fn a_block_started_by_hand_moves_as_one_that_the_run_starts() {
     assert!(said.contains("the solid is connected"), "{said}");
     assert!(!variables.exists(), "they belong to a run that is over");
     assert_eq!(leftovers(launcher), Vec::<String>::new());
+}
+
+/// The launcher of such a solid is not its parent: it notices by the wake-up call that is missing.
+#[test]
+fn a_block_started_by_hand_ends_with_a_killed_run() {
+    let _machine = whole_machine();
+    let running = scene("spring-block").argument("--await-solid").start();
+    let launcher = running.pid();
+    let variables = running.dir().join("solid.env");
+    eventually(30.0, "the variables of the solid", || variables.exists());
+    let line = format!(". '{}' && exec {}", variables.canonicalize().unwrap().display(), command());
+    let by_hand = Command::new("sh").arg("-c").arg(&line).stderr(Stdio::piped()).spawn().unwrap();
+    let rows = running.dir().join("probes.csv");
+    eventually(30.0, "steps", || std::fs::read_to_string(&rows).is_ok_and(|text| text.lines().count() > 5));
+    kill(launcher, libc::SIGKILL);
+    running.wait();
+    let began = Instant::now();
+    let ended = by_hand.wait_with_output().unwrap();
+    // A question a second; the limit only tells it from the patience of 600 s.
+    assert!(began.elapsed() < Duration::from_secs(20), "{:?}", began.elapsed());
+    let said = String::from_utf8_lossy(&ended.stderr);
+    assert!(!ended.status.success() && said.contains("another process of the run has ended"), "{said}");
+    eventually(20.0, "the removal of the run's objects", || leftovers(launcher).is_empty());
 }
 
 #[test]
