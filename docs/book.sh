@@ -11,7 +11,7 @@ cp docs/book.toml docs/book.css "$book"
 
 # The pages where they stand in the repository, with what they show or link to.
 git ls-files --cached --others --exclude-standard -- \
-    '*.md' ':!.github' 'docs/**.png' 'validation/**' scenes 'LICENSE*' CITATION.cff 'tests/python/*.py' |
+    '*.md' ':!.github' 'docs/**.png' 'validation/**' scenes 'LICENSE*' CITATION.cff 'tests/python/*.py' 'python/**' |
     while read -r file; do
         mkdir -p "$book/src/$(dirname "$file")"
         cp "$file" "$book/src/$file"
@@ -40,7 +40,10 @@ others() { # FOLDER: its pages beside the first one, README.md.
     entries '' docs/plate-study.md docs/stability.md docs/theory/README.md
     # shellcheck disable=SC2046
     entries '    ' $(others docs/theory)
-    entries '' docs/architecture.md docs/protocol.md docs/decisions/README.md
+    entries '' docs/architecture.md docs/protocol.md
+    # shellcheck disable=SC2046
+    entries '    ' python/README.md $(find python/examples -name README.md | LC_ALL=C sort)
+    entries '' docs/decisions/README.md
     # shellcheck disable=SC2046
     entries '    ' $(others docs/decisions)
     entries '' CONTRIBUTING.md CHANGELOG.md shared/output/assets/README.md

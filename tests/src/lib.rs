@@ -10,6 +10,7 @@ pub mod fluid_alone;
 pub mod linear_waves;
 pub mod patch;
 pub mod process;
+pub mod python;
 pub mod run;
 pub mod soak;
 pub mod sources;

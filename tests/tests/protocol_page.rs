@@ -2,13 +2,17 @@
 
 use halfstep_link::{LinkConfig, Participant, ProcessLink, Processes, Slot};
 use halfstep_tests::conformance::link::{Run, eventually};
+use halfstep_tests::python::python;
 use halfstep_wire::Name;
 use halfstep_wire::failure::Quantity;
-use halfstep_wire::protocol::{ForceHeader, ForceRecord, LAYOUT, PROTOCOL, Plain, ProbeHeader};
+use halfstep_wire::protocol::{
+    ForceHeader, ForceRecord, LAST_STAGE, LAYOUT, PROTOCOL, Plain, ProbeHeader, SCHEMA,
+};
 use halfstep_wire::protocol::{StateHeader, StateRecord, ability, order, status};
 use iceoryx2::prelude::*;
 use std::collections::BTreeMap;
 use std::mem::offset_of;
+use std::process::Command;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -152,13 +156,54 @@ fn byte_offsets() {
     }
 }
 
+/// The Python package has the bytes of this page, which are those of the structures.
+#[test]
+fn the_python_package_has_these_bytes() {
+    let output = Command::new(python()).args(["-m", "halfstep.wire"]).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let told = String::from_utf8(output.stdout).unwrap();
+    let mut expected = String::new();
+    for (name, kind, length) in [
+        ("StateRecord", StateRecord::NAME, size_of::<StateRecord>()),
+        ("ForceRecord", ForceRecord::NAME, size_of::<ForceRecord>()),
+        ("StateHeader", StateHeader::NAME, size_of::<StateHeader>()),
+        ("ForceHeader", ForceHeader::NAME, size_of::<ForceHeader>()),
+        ("ProbeHeader", ProbeHeader::NAME, size_of::<ProbeHeader>()),
+    ] {
+        expected += &format!("{name} {kind} {length}\n");
+        for row in table(&format!("### {name}: {length} bytes")) {
+            expected += &format!("{} {} {}\n", row[0], row[1], row[2]);
+        }
+    }
+    expected += &format!("protocol {PROTOCOL}\nschema {SCHEMA}\n");
+    for (name, number) in [
+        ("go", order::GO),
+        ("write frame", order::WRITE_FRAME),
+        ("write checkpoint", order::WRITE_CHECKPOINT),
+        ("stop", order::STOP),
+        ("send probes", order::SEND_PROBES),
+        ("checkpoints", ability::CHECKPOINTS),
+        ("ok", status::OK),
+        ("diverged", status::DIVERGED),
+        ("failed", status::FAILED),
+        ("finished", status::FINISHED),
+        ("last stage", LAST_STAGE),
+    ] {
+        expected += &format!("{name} {number}\n");
+    }
+    for number in 1..=6 {
+        expected += &format!("{} {number}\n", Quantity::from_wire(number).unwrap());
+    }
+    assert_eq!(told, expected);
+}
+
 #[test]
 fn environment() {
     let documented: Vec<String> = table("## Start").into_iter().map(|mut row| row.remove(0)).collect();
     let config = LinkConfig::of_two(1, 1);
     let variables = config.to_env_of(&config.participants[1]);
     let mut actual: Vec<&str> = variables.into_iter().map(|(key, _)| key).collect();
-    actual.extend(["HALFSTEP_SCENE", "HALFSTEP_OUT", "HALFSTEP_CHECKPOINT"]);
+    actual.extend(["HALFSTEP_SCENE", "HALFSTEP_OUT", "HALFSTEP_PARTICLES", "HALFSTEP_CHECKPOINT"]);
     assert_eq!(documented, actual);
     assert!(PAGE.contains(&format!("The version of the protocol is {PROTOCOL}.")));
 }

@@ -1,6 +1,7 @@
 //! The tutorial is what a newcomer types: its scene is written down, its commands are run in order, and what the page
 //! shows of their answers is in them.
 
+use halfstep_tests::python::python;
 use halfstep_tests::run::{program, repository};
 use std::path::Path;
 use std::process::{Command, Output};
@@ -26,6 +27,12 @@ fn blocks(page: &str) -> Vec<Block> {
 /// must only be one of that name.
 fn typed(line: &str, folder: &Path) -> Option<Output> {
     let words: Vec<&str> = line.split_whitespace().collect();
+    if let Some((before, after)) = line.split_once("'python3 my_wall.py'") {
+        let mut command = Command::new(program());
+        command.args(before.split_whitespace().skip(1)).arg(format!("{} my_wall.py", python().display()));
+        let output = command.args(after.split_whitespace()).current_dir(folder).output();
+        return Some(output.expect("the program starts"));
+    }
     match words.as_slice() {
         ["halfstep", arguments @ ..] => {
             let output = Command::new(program()).args(arguments).current_dir(folder).output();
@@ -48,6 +55,7 @@ fn every_command_of_the_tutorial_does_what_the_page_says() {
     for Block { info, text } in blocks(&page) {
         match info.as_str() {
             "toml" => std::fs::write(folder.path().join("wall.toml"), text).unwrap(),
+            "python" => std::fs::write(folder.path().join("my_wall.py"), text).unwrap(),
             "sh" | "sh fails" => {
                 answer.clear();
                 for line in text.lines() {

@@ -1,8 +1,10 @@
 //! The arguments of the `halfstep` command.
 
+use crate::fake_fluid::FakeFluidArguments;
 use crate::helpers::{self, Kind};
 use clap::{Parser, Subcommand};
 use halfstep_study::command::StudyArguments;
+use halfstep_study::compare_command::CompareArguments;
 use std::path::PathBuf;
 
 /// Fluid-structure co-simulation by smoothed particle hydrodynamics: a fluid process, a solid process and a coupler in
@@ -36,6 +38,8 @@ pub(crate) enum Command {
         dir: PathBuf,
     },
     Study(StudyArguments),
+    Compare(CompareArguments),
+    FakeFluid(FakeFluidArguments),
     /// Writes a commented scene that runs as it is
     New {
         /// File of the scene, or its name

@@ -1,6 +1,7 @@
 //! The `halfstep` command.
 
 mod arguments;
+mod fake_fluid;
 mod helpers;
 
 use arguments::{
@@ -18,6 +19,7 @@ use halfstep_output::run_json::RunStatus;
 use halfstep_scene::{self as scene, Scene};
 use halfstep_sph::lane::Isa;
 use halfstep_study::command::study;
+use halfstep_study::compare_command::compare;
 use halfstep_wire::Name;
 use serde::Serialize;
 use std::fmt::Display;
@@ -29,6 +31,12 @@ fn main() -> ExitCode {
         Ok(arguments) => arguments,
         Err(error) => {
             let _ = error.print();
+            if let Some(scene) = swallowed_scene(&error, &mut std::env::args()) {
+                say::warn(format_args!(
+                    "\nhint: --solid is followed by the command that starts the solid, and took the scene `{scene}` for \
+                     it: halfstep run {scene} --solid 'COMMAND'"
+                ));
+            }
             // Help and version are no errors.
             return ExitCode::from(u8::from(error.use_stderr()));
         }
@@ -47,11 +55,20 @@ fn main() -> ExitCode {
         Command::Resume(arguments) => resume(&arguments, isa),
         Command::Plot { dir } => plot(&dir),
         Command::Study(arguments) => study(arguments),
+        Command::Compare(arguments) => compare(arguments),
+        Command::FakeFluid(arguments) => fake_fluid::try_solid(arguments),
         Command::New { scene, kind } => helpers::new(&scene, kind),
         Command::Completions { shell } => helpers::completions(Arguments::command(), shell),
         Command::Man => helpers::manual(Arguments::command()),
         Command::Role { name } => ExitCode::from(halfstep::serve_role(&name, isa)),
     }
+}
+
+/// The scene that `--solid` took for its command, where that is why a scene is missing.
+fn swallowed_scene(error: &clap::Error, arguments: &mut dyn Iterator<Item = String>) -> Option<String> {
+    let is_missing = error.kind() == clap::error::ErrorKind::MissingRequiredArgument;
+    let after = arguments.skip_while(|argument| argument != "--solid").nth(1);
+    after.filter(|word| is_missing && word.ends_with(".toml"))
 }
 
 fn load(arguments: &SceneArguments) -> Result<scene::Scene, ExitCode> {
@@ -325,6 +342,18 @@ mod tests {
         let other = Scene { resolution: 0.5 * scene.resolution, ..scene };
         std::fs::write(&path, other.to_json().unwrap()).unwrap();
         assert!(rerun(&path, false).unwrap_err().ends_with("it was changed"));
+    }
+
+    #[test]
+    fn a_scene_that_was_taken_for_a_command_is_named() {
+        let typed = |line: &str| line.split(' ').map(String::from).collect::<Vec<_>>();
+        let hint = |line: &str| {
+            let error = Arguments::try_parse_from(typed(line)).err()?;
+            swallowed_scene(&error, &mut typed(line).into_iter())
+        };
+        assert_eq!(hint("halfstep run --solid wall.toml").as_deref(), Some("wall.toml"));
+        assert_eq!(hint("halfstep run --quiet"), None);
+        assert_eq!(hint("halfstep run wall.toml --solid other.toml"), None);
     }
 
     #[test]

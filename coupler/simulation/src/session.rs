@@ -5,6 +5,7 @@ use crate::checkpoint::Checkpoint;
 use crate::isa::{self, ISA_VARIABLE};
 use crate::options::{Launcher, RunOptions, SolidSource};
 use crate::participants::{participants, report_outcome, report_participants};
+use crate::particles::{self, PARTICLES_VARIABLE};
 use crate::silence::{Ended, Silence, TICK, TOLD};
 use halfstep_coupling::couple::{Coupler, Outcome};
 use halfstep_coupling::course::Course;
@@ -38,6 +39,8 @@ pub(crate) struct Session<'a, const D: usize> {
     directory: &'a RunDirectory,
     checkpoint: Option<&'a Checkpoint>,
     config: LinkConfig,
+    /// What external solids are told of their particles: their place in [`Scene::solids`], and the text of a file.
+    particles: Vec<(usize, String)>,
 }
 
 impl<'a, const D: usize> Session<'a, D> {
@@ -54,7 +57,19 @@ impl<'a, const D: usize> Session<'a, D> {
         if options.external.iter().any(|(_, source)| *source == SolidSource::ByHand) {
             config.handshake_seconds = options.solid_wait;
         }
-        Ok(Self { scene, options, directory, checkpoint, config })
+        let names = options.external_names();
+        let solids = scene.solids.iter().enumerate();
+        let external = solids.filter(|(_, solid)| names.iter().any(|name| name.as_str() == solid.name));
+        let particles = external.map(|(k, _)| (k, particles::table(scene, layout, k))).collect();
+        Ok(Self { scene, options, directory, checkpoint, config, particles })
+    }
+
+    /// Writes what an external solid is told of its particles; returns the file.
+    fn tell_particles(&self, place: usize, folder: &Path) -> Result<PathBuf, RunError> {
+        let path = folder.join(particles::file_name(self.config.participants[place].name.as_str()));
+        let told = self.particles.iter().find(|(solid, _)| solid + 1 == place);
+        output::atomic::replace_bytes(&path, told.map_or("", |(_, text)| text).as_bytes())?;
+        Ok(path)
     }
 
     /// Worker threads of a process: the most that one of its participants asks for.
@@ -150,8 +165,11 @@ impl<'a, const D: usize> Session<'a, D> {
         let checkpoint = self.checkpoint.map(|checkpoint| (CHECKPOINT_VARIABLE, checkpoint.folder.as_path()));
         let mut told = vec![(SCENE_VARIABLE, scene_file.as_path()), (FOLDER_VARIABLE, &folder)];
         told.extend(checkpoint);
-        for participant in &config.participants {
+        for (place, participant) in config.participants.iter().enumerate() {
             if let Some(SolidSource::Command(line)) = self.options.source(participant.name) {
+                let particles = self.tell_particles(place, &folder)?;
+                let mut told = told.clone();
+                told.push((PARTICLES_VARIABLE, &particles));
                 children.spawn_shell(participant, line, config, &told)?;
             }
         }
@@ -249,12 +267,15 @@ impl<'a, const D: usize> Session<'a, D> {
     fn invite(&self, scene: &Path, folder: &Path) -> Result<(), RunError> {
         let quoted = |path: &dyn Display| format!("'{}'", path.to_string().replace('\'', r"'\''"));
         for (participant, file) in self.awaited() {
+            let place = self.config.participants.iter().position(|p| p.name == participant.name);
+            let particles = self.tell_particles(place.unwrap_or_default(), folder)?;
             let mut text = String::new();
             for (key, value) in self.config.to_env_of(participant) {
                 text += &format!("export {key}={}\n", quoted(&value));
             }
             text += &format!("export {SCENE_VARIABLE}={}\n", quoted(&scene.display()));
             text += &format!("export {FOLDER_VARIABLE}={}\n", quoted(&folder.display()));
+            text += &format!("export {PARTICLES_VARIABLE}={}\n", quoted(&particles.display()));
             if let Some(checkpoint) = self.checkpoint {
                 text += &format!("export {CHECKPOINT_VARIABLE}={}\n", quoted(&checkpoint.folder.display()));
             }
@@ -345,7 +366,7 @@ impl<'a, const D: usize> Session<'a, D> {
 }
 
 /// Watches for a child that ends, or for Ctrl-C, during the handshake.
-fn watch(
+pub(crate) fn watch(
     children: &mut Children,
     abort: &AtomicBool,
     connected: &AtomicBool,

@@ -4,6 +4,8 @@
 mod chart;
 pub mod choose;
 pub mod command;
+pub mod compare;
+pub mod compare_command;
 pub mod convergence;
 pub mod error;
 pub mod fit;

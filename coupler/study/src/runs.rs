@@ -58,6 +58,8 @@ pub struct Job {
     pub scene: PathBuf,
     /// Overrides, `KEY=VALUE`.
     pub overrides: Vec<String>,
+    /// Further arguments of `halfstep run`.
+    pub more: Vec<String>,
     /// End time, s.
     pub end_time: f64,
     /// Expected cost, in any unit.
@@ -74,6 +76,7 @@ impl Job {
             dir: folder.join("runs").join(format!("{}-{repeat}", setting.slug())),
             scene: scene.path.clone(),
             overrides: setting.overrides.clone(),
+            more: Vec::new(),
             end_time: scene.end_time,
             // Steps go with end over spacing.
             cost: particles * scene.end_time / (scene.resolution * scene.numerics.cfl),
@@ -84,6 +87,7 @@ impl Job {
         let mut command = Command::new(own_path()?);
         command.arg("run").arg(&self.scene).arg("--quiet").arg("--force").arg("--out").arg(&self.dir);
         command.args(self.overrides.iter().flat_map(|o| ["--set", o]));
+        command.args(&self.more);
         let said = File::create(self.dir.join("messages.txt"))?;
         command.stdin(Stdio::null()).stdout(said.try_clone()?).stderr(said);
         // Ctrl-C is for the study, which then asks its runs to stop; without the study they stop, too.

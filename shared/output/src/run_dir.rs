@@ -16,7 +16,10 @@ pub const FILES: [&str; 7] =
 /// Whether a file in the run's folder is one that a run leaves.
 fn is_run_file(name: &str) -> bool {
     let between = |start: &str, end: &str| name.strip_prefix(start).is_some_and(|rest| rest.ends_with(end));
-    FILES.contains(&name) || between("report-", ".json") || between("solid-", ".env")
+    FILES.contains(&name)
+        || between("report-", ".json")
+        || between("solid-", ".env")
+        || between("particles-", ".csv")
 }
 
 /// Whether a file in the folder of a checkpoint is part of one.

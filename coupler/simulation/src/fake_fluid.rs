@@ -1,0 +1,267 @@
+//! `halfstep fake-fluid`: pushes a solid of another program with a known load, so that it can be tried alone. The
+//! solid's side of the exchange is that of a run; fluid and coupler are stand-ins.
+
+use crate::cause::Cause;
+use crate::particles::{self, PARTICLES_VARIABLE};
+use crate::session::watch;
+use halfstep_coupling::error::RunError;
+use halfstep_coupling::external::ExternalSolid;
+use halfstep_coupling::roles::probes_of;
+use halfstep_coupling::supervise::{Children, StopFlags};
+use halfstep_link::{
+    self as link, Claim, CouplerLink, CouplerPort, Expect, FLUID, LinkConfig, LinkError, Participant, Port,
+    ProcessLink, Processes, StateMessage,
+};
+use halfstep_output::probes::ProbeLog;
+use halfstep_output::{Table, atomic, read_probes};
+use halfstep_role::serve::{FOLDER_VARIABLE, SCENE_VARIABLE};
+use halfstep_scene::geometry::{self, holds};
+use halfstep_scene::{Block, Scene, dispatch};
+use halfstep_wire::Name;
+use halfstep_wire::half_step::HalfStep;
+use halfstep_wire::protocol::{
+    ForceHeader, ForceRecord, LAST_STAGE, StateHeader, StateRecord, order, status,
+};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+/// Place of the solid among the participants.
+const SOLID: usize = 1;
+
+/// A force on the solid's particles, shared in proportion to their masses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Load {
+    /// The whole force, N (2D: N/m).
+    pub force: [f64; 3],
+    /// Only on particles that begin in this box; `None`: on all.
+    pub within: Option<Block>,
+    /// Time in which the force grows from zero, linearly, s.
+    pub ramp: f64,
+}
+
+/// What is tried, and for how long.
+#[derive(Clone, Debug)]
+pub struct Trial {
+    /// Which solid of the scene it stands for.
+    pub solid: Name,
+    /// A line for the shell that starts it.
+    pub command: String,
+    /// What pushes it.
+    pub load: Load,
+    /// Longest time step, s; the solid may allow less.
+    pub time_step: f64,
+    /// Folder of the trial: an empty one, or one of an earlier trial.
+    pub out: PathBuf,
+    /// Ends the trial.
+    pub stop: StopFlags,
+}
+
+/// What came of it.
+#[derive(Clone, Debug)]
+pub struct Tried {
+    /// Steps.
+    pub steps: u64,
+    /// The end, s.
+    pub time: f64,
+    /// Number of the solid's particles, and how many of them the load was on.
+    pub particles: [usize; 2],
+    /// The solid's probes against time, as in probes.csv.
+    pub probes: Table,
+}
+
+/// Runs a trial to the scene's end. The folder has scene.json, the table of particles, probes.csv and log.txt then.
+///
+/// # Errors
+/// The solid did not come, ended early, or sent what a run would refuse; the folder cannot be written.
+pub fn run(scene: &Scene, trial: &Trial) -> Result<Tried, RunError> {
+    let place =
+        1 + scene.solids.iter().position(|solid| solid.name == trial.solid.as_str()).unwrap_or_default();
+    let particles = dispatch!(scene.dimension, D => {
+        particles::table(scene, &geometry::layout::<D>(scene), place - 1)
+    });
+    let particles = particles.unwrap_or_default();
+    let system = |what: &str, e: std::io::Error| RunError::System(format!("{what}: {e}"));
+    std::fs::create_dir_all(&trial.out).map_err(|e| system(&trial.out.display().to_string(), e))?;
+    let out = trial.out.canonicalize().map_err(|e| system("the trial's folder", e))?;
+    let file = |name: &str| out.join(name);
+    let (told, table) = (file("scene.json"), file(&particles::file_name(trial.solid.as_str())));
+    let text = scene.to_json().map_err(|e| RunError::System(e.to_string()))?;
+    atomic::replace_bytes(&told, text.as_bytes())?;
+    atomic::replace_bytes(&table, particles.as_bytes())?;
+
+    let alone = |name: Name, capacity| Participant { name, process: name, capacity, probes: 0 };
+    let capacity = particles.lines().count().max(4096) as u32;
+    let config = LinkConfig::new(vec![alone(Name::FLUID, 1), alone(trial.solid, capacity)]);
+    let _claim = Claim::new(&config)?;
+    let log = file("log.txt");
+    std::fs::write(&log, "").map_err(|e| system("log.txt", e))?;
+    let mut children = Children::new(&log);
+    let variables = [(SCENE_VARIABLE, told.as_path()), (FOLDER_VARIABLE, &out), (PARTICLES_VARIABLE, &table)];
+    children.spawn_shell(&config.participants[SOLID], &trial.command, &config, &variables)?;
+
+    let stand_in = ExternalSolid::new(scene, place, trial.solid, &out)?;
+    let columns: Vec<String> = probes_of(scene, place).flat_map(|p| p.columns(scene.dimension)).collect();
+    let path = file("probes.csv");
+    let mut pusher = Pusher {
+        scene,
+        trial,
+        solid: stand_in,
+        log: ProbeLog::create(&path, &columns)?,
+        clock: (0, 0.0),
+        pushed: Vec::new(),
+    };
+    let (abort, connected, done) =
+        (Arc::new(AtomicBool::new(false)), AtomicBool::new(false), AtomicBool::new(false));
+    let (ended, early) = std::thread::scope(|threads| {
+        let watcher = threads.spawn(|| watch(&mut children, &abort, &connected, &done, &trial.stop.stop));
+        let raised = Arc::clone(&abort);
+        let config = &config;
+        let fluid = threads.spawn(move || fluid(config, raised));
+        let ended = CouplerLink::<Processes>::open(config, Some(Arc::clone(&abort)))
+            .inspect(|_| connected.store(true, Ordering::Relaxed))
+            .map_err(RunError::from)
+            .and_then(|link| pusher.run(link));
+        done.store(true, Ordering::Relaxed);
+        if ended.is_err() {
+            abort.store(true, Ordering::Relaxed);
+        }
+        // What the fluid misses, the coupler misses, too.
+        let _ = fluid.join();
+        (ended, watcher.join().unwrap_or(None))
+    });
+    let (steps, time) = pusher.clock;
+    let particles = [pusher.pushed.len(), pusher.pushed.iter().filter(|share| **share > 0.0).count()];
+    pusher.solid.finish()?;
+    drop(pusher);
+    match ended {
+        Ok(()) => {
+            children.wait(Duration::from_secs(5));
+            Ok(Tried { steps, time, particles, probes: read_probes(&path)? })
+        }
+        Err(error) => {
+            children.wait(Duration::from_millis(300));
+            let missed = match error {
+                RunError::Link(LinkError::PeerDied { peer }) => Some(peer),
+                _ => None,
+            };
+            let cause = early.or_else(|| children.culprit(missed));
+            children.stop(Duration::from_secs(1));
+            let at = connected.load(Ordering::Relaxed).then_some((steps, time));
+            Err(Cause { log: &log, external: &[trial.solid], at }.of(error, cause))
+        }
+    }
+}
+
+/// A fluid that says nothing of interest, on time.
+fn fluid(config: &LinkConfig, abort: Arc<AtomicBool>) -> Result<(), LinkError> {
+    let mut link = ProcessLink::<Processes>::open(config, Name::FLUID, Some(abort))?;
+    let (mut states, mut forces) = (Vec::new(), Vec::new());
+    let mut half_step = HalfStep::begin(0, 0.0);
+    loop {
+        let (expect, header) = (Expect::of(&half_step), half_step.state_header());
+        let state = link.receive_peer(0, 0, &expect.dt(header.dt), &mut states)?;
+        if state.status != status::OK {
+            return Ok(());
+        }
+        let header = StateHeader { dt_limit: f64::MAX, ..header };
+        link.send_state(0, &header, &[])?;
+        let answer = link.receive_forces(0, &expect, &mut forces)?;
+        if answer.order & order::STOP != 0 {
+            let last = StateHeader { stage: LAST_STAGE, status: status::FINISHED, ..header };
+            return link.send_state(0, &last, &[]);
+        }
+        half_step = half_step.with_step(answer.dt, answer.next_time).next();
+    }
+}
+
+/// A coupler that answers with the load.
+struct Pusher<'a> {
+    scene: &'a Scene,
+    trial: &'a Trial,
+    solid: ExternalSolid,
+    log: ProbeLog,
+    /// Step n and its time, s.
+    clock: (u64, f64),
+    /// Share of the load of each particle.
+    pushed: Vec<f64>,
+}
+
+impl Pusher<'_> {
+    fn run(&mut self, mut link: CouplerLink<Processes>) -> Result<(), RunError> {
+        loop {
+            let (step, time) = self.clock;
+            let stops = time >= self.scene.end_time || self.trial.stop.stop.load(Ordering::Relaxed);
+            let (mut dt, mut next_time) = (0.0, time);
+            for stage in 0..2 {
+                let half_step = HalfStep::begin(step, time).with_step(dt, next_time).both()[stage];
+                let expect = Expect::of(&half_step).dt(half_step.state_header().dt);
+                // The solid first: one that fails says so, and then the stand-in for the fluid ends, too.
+                let state = link.receive_state(SOLID, &expect)?;
+                if state.header().status != status::OK {
+                    return Err(RunError::RoleFailed { role: self.trial.solid, step, said: None });
+                }
+                drop(link.receive_state(FLUID, &expect)?);
+                let records = state.records();
+                if step == 0 && stage == 0 {
+                    self.begin(records)?;
+                }
+                if stage == 0 && !stops {
+                    let left = self.scene.end_time - time;
+                    dt = self.trial.time_step.min(state.header().dt_limit).min(left);
+                    next_time = if dt < left { time + dt } else { self.scene.end_time };
+                }
+                let forces = self.forces(half_step.before(), records);
+                if stage == 0 {
+                    self.log.row(time, self.solid.measure(records, &forces))?;
+                }
+                let order = if stops { order::STOP } else { order::GO };
+                let header = ForceHeader { order, ..half_step.with_step(dt, next_time).force_header() };
+                link.send_forces(SOLID, &header, if stops { &[] } else { &forces })?;
+                drop(state);
+                link.send_forces(FLUID, &header, &[])?;
+                if stops {
+                    for place in [FLUID, SOLID] {
+                        drop(link.receive_state(place, &Expect::last(step))?);
+                    }
+                    return Ok(());
+                }
+            }
+            self.clock = (step + 1, next_time);
+        }
+    }
+
+    fn begin(&mut self, records: &[StateRecord]) -> Result<(), RunError> {
+        if records.is_empty() {
+            return Err(RunError::NoParticles { solid: self.trial.solid });
+        }
+        self.solid.begin(records);
+        let is_pushed = |r: &StateRecord| self.trial.load.within.is_none_or(|b| holds(&b, &r.position, 0.0));
+        let shares = records.iter().map(|r| if is_pushed(r) { r.mass } else { 0.0 });
+        self.pushed = shares.collect();
+        let sum: f64 = self.pushed.iter().sum();
+        if sum <= 0.0 {
+            return Err(RunError::System(
+                "none of the solid's particles begins in the box of --within".into(),
+            ));
+        }
+        self.pushed.iter_mut().for_each(|share| *share /= sum);
+        Ok(())
+    }
+
+    fn forces(&self, time: f64, records: &[StateRecord]) -> Vec<ForceRecord> {
+        let load = self.trial.load;
+        let grown = if load.ramp > 0.0 { (time / load.ramp).min(1.0) } else { 1.0 };
+        let on = |(record, share): (&StateRecord, &f64)| {
+            let stress_force = load.force.map(|f| grown * share * f);
+            ForceRecord { id: record.id, flags: 0, cross_viscosity: [0.0; 3], stress_force }
+        };
+        records.iter().zip(&self.pushed).map(on).collect()
+    }
+}
+
+/// Removes what trials that were killed left behind.
+pub fn clean_up() {
+    link::cleanup_stale();
+}

@@ -1,0 +1,122 @@
+//! The command line of `halfstep compare`.
+
+use super::compare::{Candidate, Comparison, default_probe};
+use super::error::StudyError;
+use super::runs::{self, Job, Program};
+use super::{claim, report_of};
+use halfstep_coupling::say;
+use halfstep_coupling::supervise::StopFlags;
+use halfstep_output::read_probes;
+use halfstep_output::run_json::RunStatus;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Runs a scene with different solids and compares them: a table and a picture
+///
+/// Exit status: 0 done; 1 scene or usage error; 2 no run finished; 130 interrupted.
+#[derive(Clone, Debug, clap::Args)]
+pub struct CompareArguments {
+    /// Scene file (TOML) with [fluid] and [solid]
+    scene: PathBuf,
+    /// A solid: the name of a built-in model, or a command that speaks the protocol, [NAME=]COMMAND; two or more
+    #[arg(long, value_name = "MODEL|COMMAND", required = true)]
+    solid: Vec<String>,
+    /// Overrides a key of the scene in every run
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Simulated time, s (end_time of the scene)
+    #[arg(long, value_name = "SECONDS")]
+    until: Option<String>,
+    /// The column of probes.csv that is compared, as tip.x (default: the first metric's)
+    #[arg(long, value_name = "PROBE.COMPONENT")]
+    probe: Option<String>,
+    /// Folder (default: out/compare-SCENE)
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Prints the results as JSON and nothing else
+    #[arg(long)]
+    json: bool,
+    /// Shows no progress
+    #[arg(long)]
+    quiet: bool,
+}
+
+/// Runs the comparison.
+pub fn compare(arguments: CompareArguments) -> ExitCode {
+    match run(arguments) {
+        Ok(code) => code,
+        Err(StudyError::Scene(errors)) => {
+            say::warn(format_args!("{:?}", miette::Report::new(errors)));
+            ExitCode::from(1)
+        }
+        Err(error) => {
+            say::warn(format_args!("error: {error}"));
+            ExitCode::from(1)
+        }
+    }
+}
+
+fn run(arguments: CompareArguments) -> Result<ExitCode, StudyError> {
+    let candidates: Vec<Candidate> = arguments.solid.iter().map(|text| Candidate::parse(text)).collect();
+    let names: Vec<&str> = candidates.iter().map(Candidate::name).collect();
+    if let Some(k) = (0..names.len()).find(|&k| names[..k].contains(&names[k])) {
+        let name = names[k];
+        return Err(StudyError::Usage(format!("two solids are called `{name}`: call one NAME=COMMAND")));
+    }
+    let mut base = arguments.set;
+    base.extend(arguments.until.map(|t| format!("end_time={t}")));
+    let scene = halfstep_scene::load(&arguments.scene, &base)?;
+    if scene.fluid.is_none() || scene.solids.len() != 1 {
+        let reason = "a comparison needs a scene with [fluid] and one solid, [solid]";
+        return Err(StudyError::Usage(format!("{}: {reason}", scene.name)));
+    }
+    let probe = arguments.probe.or_else(|| default_probe(&scene));
+    let probe = probe.ok_or_else(|| StudyError::Usage(format!("{} has no [[probe]]", scene.name)))?;
+    let folder =
+        arguments.out.unwrap_or_else(|| PathBuf::from("out").join(format!("compare-{}", scene.name)));
+    std::fs::create_dir_all(&folder).map_err(StudyError::system(folder.display()))?;
+    let _claim = claim(&folder)?;
+    let mut jobs = Vec::new();
+    for candidate in &candidates {
+        let mut overrides = base.clone();
+        let mut more = Vec::new();
+        match candidate {
+            Candidate::Model(name) => overrides.push(format!("solid.model={name}")),
+            Candidate::Program { command, .. } => more = vec!["--solid".into(), command.clone()],
+        }
+        // A model that cannot compute the scene is refused before anything runs.
+        halfstep_scene::load(&arguments.scene, &overrides)?;
+        jobs.push(Job {
+            label: candidate.name().into(),
+            dir: folder.join("runs").join(candidate.name()),
+            scene: arguments.scene.clone(),
+            overrides,
+            more,
+            end_time: scene.end_time,
+            cost: 1.0,
+        });
+    }
+    let stop = StopFlags::of_signals().map_err(StudyError::system("cannot watch for signals"))?.stop;
+    if !runs::execute(&jobs, 1, arguments.quiet, &Program::own()?, &stop)? {
+        say::warn(format_args!("interrupted"));
+        return Ok(ExitCode::from(130));
+    }
+    let mut ended = Vec::new();
+    for (candidate, job) in candidates.into_iter().zip(&jobs) {
+        let table = read_probes(&job.dir.join("probes.csv")).ok();
+        ended.push((candidate, job.dir.clone(), report_of(job), table));
+    }
+    let comparison = Comparison::new(&scene, &probe, ended)?;
+    comparison.write(&scene, &folder)?;
+    if arguments.json {
+        say::tell(format_args!("{}", comparison.json()?));
+    } else {
+        say::tell(format_args!("{}", comparison.text().trim_end()));
+        say::tell(format_args!("\ncompare.json, compare.png and the runs are in {}", folder.display()));
+    }
+    if comparison.solids.iter().all(|solid| solid.status != Some(RunStatus::Finished)) {
+        say::warn(format_args!("error: no run finished"));
+        return Ok(ExitCode::from(2));
+    }
+    Ok(ExitCode::SUCCESS)
+}

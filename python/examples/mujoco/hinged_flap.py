@@ -1,0 +1,57 @@
+"""A flap on a hinge with a spring and a damper, by MuJoCo: `hinged_flap.py STIFFNESS DAMPING`, for hinged-flap.toml.
+
+STIFFNESS in N m/rad, DAMPING in N m s/rad, both per metre of depth. The hinge is the flap's lower left corner.
+"""
+
+import sys
+
+import halfstep
+import mujoco
+import numpy as np
+
+stiffness, damping = float(sys.argv[1]), float(sys.argv[2])
+scene, points = halfstep.description(), halfstep.particles()
+box = scene["shapes"][points.shape[0]]["geometry"]["box"]
+low, high = np.array(box["min"][:2]), np.array(box["max"][:2])
+half = (high - low) / 2
+
+model = mujoco.MjModel.from_xml_string(f"""
+<mujoco>
+  <option gravity="0 {scene['gravity'][1]} 0" integrator="RK4"/>
+  <worldbody>
+    <body pos="{low[0]} {low[1]} 0">
+      <joint type="hinge" axis="0 0 1" stiffness="{stiffness}" damping="{damping}"/>
+      <geom type="box" pos="{half[0]} {half[1]} 0" size="{half[0]} {half[1]} 0.5" mass="{points.mass.sum()}"/>
+    </body>
+  </worldbody>
+</mujoco>
+""")
+
+
+class Flap:
+    """Its unknown is the angle, rad."""
+
+    def __init__(self):
+        self.data = mujoco.MjData(model)
+
+    @property
+    def u(self):
+        return self.data.qpos.copy()
+
+    @property
+    def v(self):
+        return self.data.qvel.copy()
+
+    def acceleration(self, load):
+        self.data.qfrc_applied[:] = load
+        mujoco.mj_forward(model, self.data)
+        return self.data.qacc.copy()
+
+    def advance(self, load, dt):
+        self.data.qfrc_applied[:] = load
+        model.opt.timestep = dt
+        mujoco.mj_step(model, self.data)
+
+
+solid = halfstep.Solid(points.position, points.mass, points.density)
+halfstep.integrate.advance_once(solid, halfstep.mapping.Hinged(points.position, low), Flap())

@@ -1,0 +1,183 @@
+"""A solid of a run, as a loop over half steps."""
+
+import atexit
+import os
+import sys
+
+import numpy as np
+
+from . import checkpoint, scene, wire
+from .link import Environment, Link
+
+
+class Step:
+    """One half step: the forces on the state that was published last, and how far to go from step n with them.
+
+    - `number`: n. `stage` 0: the forces are those at n, and the state at n + 1/2 is to be published. `stage` 1: the
+      forces are those at n + 1/2, and the state at n + 1 is to be published. Both go from the state at n.
+    - `dt`: length of the whole step, s. `span`: how far this stage goes from n, s: dt / 2, then dt.
+    - `time`: time at n, s. `next_time`: time at n + 1, s.
+    - `forces`: N x D, N (2D: N/m), the whole action of the fluid. Gravity is the solid's own.
+    """
+
+    def __init__(self, solid, header, records):
+        self.number, self.stage = int(header["step"]), int(header["stage"])
+        self.time, self.dt, self.next_time = (float(header[key]) for key in ("time", "dt", "next_time"))
+        self.span = self.dt if self.stage else 0.5 * self.dt
+        d = solid.dimension
+        acceleration, force = records["cross_viscosity"][:, :d], records["stress_force"][:, :d]
+        self.forces = solid.records["mass"][:, None] * acceleration + force
+        self._solid = solid
+
+    def publish(self, position, velocity, **more):
+        """Takes the state after this half step: N x D, m and m/s; `velocity` may be one for all.
+
+        More, where there is something to say: `stress` (N x 6: xx, yy, zz, xy, yz, xz, Pa) and `pressure` (N, Pa) for
+        pictures and probes, `density` (N, kg/m3), `dt_limit` (s), `sub_steps`, `stored_energy` (J).
+        """
+        self._solid._set(position, velocity, **more)
+
+
+class Solid:
+    """The solid of a run: particles, and a loop over half steps.
+
+    `position`: N x D, m. `mass`: N or one for all, kg (2D: kg/m). `density`: the same, kg/m3. `velocity`: N x D or one
+    for all, m/s. `clamped`: mask of particles whose velocity is prescribed. `body`: number of the connected body of
+    each. `dt_limit`: largest time step that the solid allows, s. `save`: a function that returns the state at n as a
+    dictionary of arrays; with it the run can be interrupted and resumed, and `saved()` has that dictionary then.
+    """
+
+    def __init__(
+        self, position, mass, density, *, velocity=0.0, clamped=None, body=None, dt_limit=1e30, save=None,
+        environment=None,
+    ):
+        self.environment = environment or Environment()
+        position = np.asarray(position, float)
+        count, self.dimension = position.shape
+        if count > self.environment.number("CAPACITY"):
+            sys.exit(f"{count} particles, but messages of the run have room for {self.environment['CAPACITY']}")
+        self.records = np.zeros(count, wire.STATE_RECORD.dtype)
+        self.records["id"] = np.arange(count)
+        self.records["mass"], self.records["density"] = mass, density
+        flags = np.zeros(count, np.uint32)
+        if clamped is not None:
+            flags |= np.where(clamped, wire.CLAMPED, 0).astype(np.uint32)
+        if body is not None:
+            flags |= np.asarray(body, np.uint32) << wire.BODY_SHIFT
+        self.records["flags"] = flags
+        self.header = {"dt_limit": dt_limit, "sub_steps": 1}
+        self.save, self.safe = save, 0
+        self._is_due, self._done = True, False
+        self.step, self.stage, self.time = 0, 0, 0.0
+        state = checkpoint.read(self.environment)
+        if state is not None:
+            self.step, self.time = int(state["halfstep.step"]), float(state["halfstep.time"])
+        self._set(position, velocity)
+        self.link = Link(self.environment)
+        atexit.register(self._leave)
+
+    def _set(self, position, velocity, stress=None, pressure=None, density=None, dt_limit=None, sub_steps=None,
+             stored_energy=None):
+        d, records = self.dimension, self.records
+        records["position"][:, :d] = position
+        records["velocity"][:, :d] = velocity
+        for field, values in (("deviatoric_stress", stress), ("pressure", pressure), ("density", density)):
+            if values is not None:
+                records[field] = values
+        for field, value in (("dt_limit", dt_limit), ("sub_steps", sub_steps), ("audit.stored_energy", stored_energy)):
+            if value is not None:
+                self.header[field] = value
+        self._is_due = True
+
+    def __iter__(self):
+        dt = 0.0
+        while True:
+            self._publish(dt)
+            answer, forces = self.link.receive()
+            if (answer["step"], answer["stage"]) != (self.step, self.stage):
+                found = f"step {answer['step']}, stage {answer['stage']}"
+                raise RuntimeError(f"an answer to {found} came instead of one to step {self.step}, stage {self.stage}")
+            if answer["order"] & wire.WRITE_CHECKPOINT and self.save:
+                self.safe = int(answer["checkpoint"])
+                own = {"halfstep.step": self.step, "halfstep.time": self.time}
+                checkpoint.write(self.environment, self.safe, self.save() | own)
+            if answer["order"] & wire.STOP:
+                self._last(wire.FINISHED)
+                return
+            yield Step(self, answer, forces)
+            dt = float(answer["dt"])
+            if self.stage == 1:
+                self.step, self.time, dt = self.step + 1, float(answer["next_time"]), 0.0
+            self.stage = 1 - self.stage
+
+    def _publish(self, dt):
+        if not self._is_due:
+            raise RuntimeError(f"no state was published in step {self.step}, stage {1 - self.stage}")
+        self._is_due = False
+        self.link.send(self.records, **self._head(), dt=dt, **self._sums())
+
+    def _head(self):
+        abilities = wire.CHECKPOINTS if self.save else 0
+        place = {"step": self.step, "stage": self.stage, "time": self.time}
+        return place | self.header | {"abilities": abilities, "checkpoint_safe": self.safe}
+
+    def _sums(self):
+        """What run.json tells of the particles: sums at stage 0."""
+        records = self.records
+        mass, velocity = records["mass"], records["velocity"]
+        if self.stage == 1:
+            return {}
+        return {
+            "audit.momentum": mass @ velocity,
+            "audit.kinetic_energy": 0.5 * float(mass @ (velocity**2).sum(axis=1)),
+            "audit.mass": float(mass.sum()),
+            "audit.gap": np.inf,
+            "particles": len(records),
+        }
+
+    def _last(self, status, **failure):
+        self._done = True
+        head = self._head() | {"stage": wire.LAST_STAGE if status == wire.FINISHED else self.stage, "status": status}
+        if status == wire.FINISHED:
+            head |= {"audit.mass": float(self.records["mass"].sum()), "particles": len(self.records)}
+        self.link.send(self.records[:0], **head, **failure)
+        self.link.close()
+
+    def diverged(self, quantity, value, particle):
+        """Ends the run: a quantity of a particle left its bounds. Quantities are those of `wire.QUANTITIES`."""
+        place = [pair.split(":")[0] for pair in self.environment["PARTICIPANTS"].split(",")].index(self.link.name)
+        told = {"participant": place, "quantity": wire.QUANTITIES[quantity], "particle": particle, "value": value,
+                "position": self.records["position"][particle]}
+        self._last(wire.DIVERGED, **{f"failure.{key}": value for key, value in told.items()})
+        sys.exit(2)
+
+    def _leave(self):
+        """At the end of the program: who ends in the middle of a run says so."""
+        if not self._done:
+            self._last(wire.FAILED)
+
+
+def environment():
+    """The variables of the run."""
+    return Environment()
+
+
+def saved():
+    """The state that the run goes on from, as `save` gave it; `None` for a run from its start."""
+    return checkpoint.read(Environment())
+
+
+def description():
+    """The scene as a dictionary: every default filled in, SI units."""
+    return scene.read(Environment())
+
+
+def particles():
+    """The particles that the program itself would give this solid."""
+    own = Environment()
+    return scene.particles(own, scene.read(own)["dimension"])
+
+
+def folder():
+    """The run's folder."""
+    return os.path.abspath(Environment()["OUT"])

@@ -1,0 +1,22 @@
+//! The Python environments of tests and examples.
+
+use crate::run::repository;
+use std::path::PathBuf;
+use std::process::Command;
+
+/// The interpreter that has the package `halfstep` and what tests and the small examples need.
+pub fn python() -> PathBuf {
+    interpreter(&[])
+}
+
+/// The interpreter of an example that needs more: a folder of `python/examples`.
+pub fn python_of(example: &str) -> PathBuf {
+    interpreter(&[example])
+}
+
+fn interpreter(arguments: &[&str]) -> PathBuf {
+    let output = Command::new("sh").arg(repository().join("tests/python/setup.sh")).args(arguments).output();
+    let output = output.expect("sh starts");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).expect("a path").trim().into()
+}

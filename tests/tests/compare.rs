@@ -1,0 +1,72 @@
+//! `halfstep compare`: the table has a built-in model and a program of one's own, and the picture is drawn.
+
+use halfstep_tests::python::{python, python_of};
+use halfstep_tests::run::{program, repository, whole_machine};
+use std::process::{Command, Output};
+
+fn compare(arguments: &[&str]) -> Output {
+    let scene = repository().join("scenes/elastic-gate.toml");
+    Command::new(program()).arg("compare").arg(scene).arg("--quiet").args(arguments).output().unwrap()
+}
+
+/// The gate's plate by particles and by scikit-fem's finite elements, to where the tip has gone 8 mm: their curves are
+/// as near as two solvers of one equation.
+#[test]
+fn finite_elements_bend_as_particles_do() {
+    let _machine = whole_machine();
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    let script = repository().join("python/examples/scikit-fem/gate.py");
+    let elements = format!("elements={} {}", python().display(), script.display());
+    let coarse = ["--set", "resolution=0.0025", "--set", "shape.plate.across=5", "--until", "0.027"];
+    let solids = ["--solid", "total-lagrangian", "--solid", &elements, "--out", out, "--json"];
+    let output = compare(&[&coarse[..], &solids].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(told["probe"], "tip.x [m]");
+    let [own, elements] = told["solids"].as_array().unwrap().as_slice() else { panic!("{told}") };
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    println!("{} m and {} m, apart by {}", own["peak"], elements["peak"], elements["distance"][0]);
+    assert!((0.006..0.010).contains(&number(&own["peak"])), "{told}");
+    assert_eq!(number(&own["distance"][0]), 0.0);
+    assert!(number(&elements["distance"][0]) < 0.01, "{told}");
+    assert_eq!(elements["status"], "finished");
+    for file in ["compare.json", "compare.png"] {
+        assert!(folder.path().join(file).exists(), "{file}");
+    }
+}
+
+#[test]
+fn what_cannot_be_compared_is_refused() {
+    for (arguments, reason) in [
+        (&["--solid", "hypoelastic", "--solid", "hypoelastic"][..], "two solids are called `hypoelastic`"),
+        (&["--solid", "hypoelastic", "--set", "solid.model=none"], "solid.model"),
+    ] {
+        let output = compare(arguments);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(1), "{said}");
+        assert!(said.contains(reason), "{said}");
+    }
+}
+
+/// The gate by NGSolve, to beyond its peak: within 3 % of the built-in plate. NGSolve comes with its own environment.
+#[test]
+#[ignore = "long"]
+fn ngsolve_bends_as_particles_do() {
+    let _machine = whole_machine();
+    let folder = tempfile::tempdir().unwrap();
+    let script = repository().join("python/examples/ngsolve/gate.py");
+    let elements =
+        format!("ngsolve=OMP_NUM_THREADS=1 {} {}", python_of("ngsolve").display(), script.display());
+    let coarse = ["--set", "resolution=0.0025", "--set", "shape.plate.across=5", "--until", "0.15", "--json"];
+    let solids =
+        ["--solid", "total-lagrangian", "--solid", &elements, "--out", folder.path().to_str().unwrap()];
+    let output = compare(&[&coarse[..], &solids].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    let [own, elements] = told["solids"].as_array().unwrap().as_slice() else { panic!("{told}") };
+    println!("{} m and {} m, apart by {}", own["peak"], elements["peak"], elements["distance"][0]);
+    assert!((number(&elements["peak"]) / number(&own["peak"]) - 1.0).abs() < 0.03, "{told}");
+    assert!(number(&elements["distance"][0]) < 0.03, "{told}");
+}

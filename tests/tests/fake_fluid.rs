@@ -1,0 +1,69 @@
+//! `halfstep fake-fluid`: a solid alone under a known load.
+
+use halfstep_output::read_probes;
+use halfstep_tests::Curve;
+use halfstep_tests::process::leftovers;
+use halfstep_tests::python::python;
+use halfstep_tests::run::{program, repository, whole_machine};
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+fn trial(scene: &str, solid: &str, out: &Path, more: &[&str]) -> Output {
+    let scene = repository().join("scenes").join(scene);
+    let mut command = Command::new(program());
+    command.arg("fake-fluid").arg(scene).arg("--out").arg(out).arg("--solid").arg(solid).args(more);
+    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let launcher = child.id();
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(leftovers(launcher), Vec::<String>::new());
+    output
+}
+
+/// A mass on a spring under a sudden load: x = F/k (1 - cos(omega t)).
+#[test]
+fn a_block_on_a_spring_swings_as_its_formula_says() {
+    const STIFFNESS: f64 = 2e4;
+    const FORCE: f64 = 100.0;
+    let _machine = whole_machine();
+    let folder = tempfile::tempdir().unwrap();
+    let line = format!(
+        "{} {} {STIFFNESS}",
+        python().display(),
+        repository().join("tests/python/spring_block.py").display()
+    );
+    let more = ["--force=100,0", "--until", "0.2", "--time-step", "2e-4"];
+    let output = trial("spring-block.toml", &line, folder.path(), &more);
+    let (said, error) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success(), "{error}");
+    assert!(said.starts_with("1000 steps to t = 0.2 s; the load is on 224 of 224 particles"), "{said}");
+    let omega = (STIFFNESS / (8000.0 * 0.04 * 0.14)).sqrt();
+    let table = read_probes(&folder.path().join("probes.csv")).unwrap();
+    let curve = Curve { times: table.times(), values: table.column("block.x").unwrap() };
+    for (time, x) in curve.times.iter().zip(&curve.values) {
+        let exact = FORCE / STIFFNESS * (1.0 - (omega * time).cos());
+        assert!((x - exact).abs() < 1e-6, "{time} s: {x}, exactly {exact}");
+    }
+}
+
+#[test]
+fn a_solid_that_fails_says_why() {
+    let _machine = whole_machine();
+    let folder = tempfile::tempdir().unwrap();
+    let script = folder.path().join("failing.py");
+    let text = "import halfstep\npoints = halfstep.particles()\n\
+        solid = halfstep.Solid(points.position, points.mass, points.density)\n\
+        for step in solid:\n    if step.number == 3: raise ValueError('no convergence')\n\
+        \x20   step.publish(points.position, 0.0)\n";
+    std::fs::write(&script, text).unwrap();
+    let line = format!("{} {}", python().display(), script.display());
+    for (line, more, reason) in [
+        (line.as_str(), &["--force=1,0"][..], "the solid failed at step 3: ValueError: no convergence"),
+        ("exit 3", &["--force=1,0"], "before the run had begun"),
+        (&line, &["--force=1,0", "--within=5,5,6,6"], "none of the solid's particles begins in the box"),
+    ] {
+        let output = trial("spring-block.toml", line, folder.path(), more);
+        let error = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{error}");
+        assert!(error.contains(reason), "{error}");
+    }
+}

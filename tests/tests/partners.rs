@@ -1,0 +1,63 @@
+//! Solvers of others as solids: the examples in `python/examples`.
+
+use halfstep_tests::python::python;
+use halfstep_tests::run::{repository, scene_at};
+
+/// Spacing of the floating box's water, m.
+const COARSE: f64 = 0.02;
+
+/// A box of MuJoCo's floats as Archimedes says and heaves with the period of linear potential flow in this tank: 0.771
+/// s by finite elements (Laplace's equation, linear free surface, the box's motion). A period and a half, coarse.
+#[test]
+fn a_box_of_mujoco_floats_and_heaves() {
+    let folder = repository().join("python/examples/mujoco");
+    let line = format!("{} {}", python().display(), folder.join("floating_box.py").display());
+    let run = scene_at(&folder.join("floating-box.toml"))
+        .set("resolution", COARSE)
+        .until(1.4)
+        .argument("--solid")
+        .argument(line)
+        .run();
+    let heave = run.curve("box.y");
+    // Water and the half of the box that is under it fill the tank, 0.8 m wide, to the height of the box's centre.
+    let water = run.report.particles.fluid as f64 * COARSE * COARSE;
+    let level = (water + 0.2 * 0.05) / 0.8;
+    let mean = heave.between(0.38, 1.16).mean();
+    println!("mean height {mean} m, at rest {level} m");
+    assert!((mean - level).abs() < 0.0025, "{mean} m, expected {level} m");
+    let extreme = |from: f64, to: f64, sign: f64| {
+        let part = heave.between(from, to);
+        let k = (0..part.values.len())
+            .max_by(|&a, &b| (sign * part.values[a]).total_cmp(&(sign * part.values[b])));
+        part.times[k.expect("rows")]
+    };
+    let period = extreme(0.9, 1.4, -1.0) - extreme(0.1, 0.6, -1.0);
+    println!("period {period} s");
+    assert!((period / 0.771 - 1.0).abs() < 0.08, "{period} s");
+    assert!(run.report.audit.action_reaction.unwrap() <= 1e-12);
+}
+
+/// A flap of MuJoCo's on a hinge with a spring stands where the moments of spring, weight and water are in balance.
+#[test]
+fn a_flap_of_mujoco_holds_back_water() {
+    const STIFFNESS: f64 = 40.0;
+    let folder = repository().join("python/examples/mujoco");
+    let line = format!("{} {} {STIFFNESS} 1", python().display(), folder.join("hinged_flap.py").display());
+    let run = scene_at(&folder.join("hinged-flap.toml"))
+        .set("resolution", 0.01)
+        .argument("--solid")
+        .argument(line)
+        .run();
+    let mean = run.curve("tip.x").between(0.3, 1.0).mean();
+    // The angle: water of the area 0.2 m x 0.1 m, a flap of 0.02 m x 0.14 m and 2000 kg/m3 that leans on the spring.
+    let (mut angle, mut depth) = (0.0_f64, 0.1);
+    for _ in 0..100 {
+        depth = 0.02 / (0.2 + 0.5 * depth * angle.tan());
+        let water = 1000.0 * 9.81 * depth.powi(3) / (6.0 * angle.cos().powi(2));
+        let weight = 2000.0 * 0.02 * 0.14 * 9.81 * (0.01 * angle.cos() + 0.07 * angle.sin());
+        angle = (water + weight) / STIFFNESS;
+    }
+    let expected = 0.14 * angle.sin() - 0.01 * (1.0 - angle.cos());
+    println!("tip {mean} m, expected {expected} m");
+    assert!((mean / expected - 1.0).abs() < 0.05, "{mean} m, expected {expected} m");
+}

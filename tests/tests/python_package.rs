@@ -1,0 +1,38 @@
+//! The Python package `python/halfstep`: its own tests, and whether it can be installed.
+
+use halfstep_tests::python::python;
+use halfstep_tests::run::repository;
+use std::process::Command;
+
+/// Runs a program that must succeed; what it says on standard output.
+fn output(command: &mut Command) -> String {
+    let output = command.output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// Mappings and the integration that advances a solver once a step.
+#[test]
+fn the_packages_own_tests_pass() {
+    let tests = repository().join("python/tests");
+    output(Command::new(python()).args(["-m", "unittest", "discover", "-s"]).arg(tests));
+}
+
+/// `pip install ./python`: whoever installs it has all modules, and learns how to start a solid.
+#[test]
+fn the_package_can_be_installed() {
+    let folder = tempfile::tempdir().unwrap();
+    let (source, target) = (folder.path().join("python"), folder.path().join("installed"));
+    output(Command::new("cp").arg("-r").arg(repository().join("python")).arg(&source));
+    let pip = ["-m", "pip", "install", "--quiet", "--no-deps", "--no-build-isolation", "--target"];
+    output(
+        Command::new(python()).args(pip).arg(&target).arg(&source).env("PIP_DISABLE_PIP_VERSION_CHECK", "1"),
+    );
+    let line = "import halfstep; print(halfstep.__file__); halfstep.Solid([[0.0, 0.0]], 1.0, 1.0)";
+    let mut alone = Command::new(python());
+    alone.args(["-c", line]).env("PYTHONPATH", &target).current_dir(folder.path());
+    let ended = alone.output().unwrap();
+    let (said, error) = (String::from_utf8_lossy(&ended.stdout), String::from_utf8_lossy(&ended.stderr));
+    assert!(said.starts_with(&target.display().to_string()), "{said}");
+    assert!(!ended.status.success() && error.contains("halfstep run SCENE --solid"), "{error}");
+}
