@@ -1,9 +1,11 @@
 //! The solid's section of a scene: what all models have. What only one has is in its file in `solid`.
 
+mod fracture;
 mod hypoelastic;
 mod models;
 mod total_lagrangian;
 
+pub use fracture::Fracture;
 pub use hypoelastic::{ArtificialStress, HypoelasticKeys};
 pub use models::{ModelKeys, SolidModelName};
 pub use total_lagrangian::{Material, Plane, TotalLagrangianKeys};

@@ -1,5 +1,6 @@
 //! What a scene says to the total-Lagrangian model alone.
 
+use super::Fracture;
 use super::models::Rules;
 use crate::ArtificialViscosity;
 use crate::document::{Node, Value};
@@ -21,6 +22,9 @@ pub struct TotalLagrangianKeys {
     /// What happens across the plane of two dimensions.
     #[serde(default)]
     pub plane: Plane,
+    /// Strength and fracture energy; `None`: it does not break.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fracture: Option<Fracture>,
 }
 
 /// What two dimensions mean to a solid.
@@ -62,6 +66,7 @@ pub(super) const RULES: Rules = Rules {
         ("material", "only the total-lagrangian model has a choice of materials"),
         ("hourglass", "only the total-lagrangian model resists hourglass modes"),
         ("prony", "only the total-lagrangian model has a strain that Maxwell arms could follow; others know its rate"),
+        ("fracture", "only the total-lagrangian model breaks"),
         ("plane", "only the total-lagrangian model knows the strain across the plane"),
     ],
     // One row of particles has no deformation gradient across.
@@ -86,6 +91,7 @@ impl TotalLagrangianKeys {
             ),
             prony,
             plane,
+            fracture: fracture(section, plane, material),
         }
     }
 
@@ -93,6 +99,18 @@ impl TotalLagrangianKeys {
     pub(crate) fn stiffening(&self) -> f64 {
         1.0 + self.prony.iter().map(|[g, _]| g).sum::<f64>()
     }
+}
+
+fn fracture(section: &Section<'_>, plane: Plane, material: Option<Material>) -> Option<Fracture> {
+    let (fracture, node) = (Fracture::read(section)?, section.node("fracture")?);
+    if section.node("prony").is_some() {
+        section.wrong("fracture", node, "cannot stand with `prony`: what damage does to Maxwell arms is not known");
+    }
+    if (plane, material) == (Plane::Stress, Some(Material::NeoHookean)) {
+        let why = "the strain across the plane would depend on the damage";
+        section.wrong("fracture", node, format!("with `plane` = \"stress\" needs `material` = \"st-venant-kirchhoff\": {why}"));
+    }
+    Some(fracture)
 }
 
 fn plane(section: &Section<'_>) -> Plane {
