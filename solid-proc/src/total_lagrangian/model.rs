@@ -332,6 +332,7 @@ impl<const D: usize> TotalLagrangian<D> {
             self.tear();
             if self.fracture.as_ref().is_some_and(Fracture::is_accepted) {
                 self.keep_gradients();
+                self.open_faces();
             }
             self.note_sub_step(each, &driven);
             self.kick(0.5 * each);

@@ -11,7 +11,7 @@ use halfstep_sph::tensor;
 /// row it is stretched by 2 (straight) or 1 (diagonal) of them, along it by nothing.
 const STRETCHED: f64 = 0.5;
 /// Smallest determinant of the moment matrix with which a particle that was cut off from neighbours keeps a
-/// deformation gradient, over that of a corner of the lattice: there it is 1/4, in space 1/8.
+/// deformation gradient, over that of a corner of the lattice: there it is 1/4 of that inside, in space 1/8.
 const SMALLEST: f64 = 0.5;
 /// Longest pair over dx whose cells share a face.
 const STRAIGHT: f64 = 1.05;
@@ -48,8 +48,13 @@ impl<const D: usize> TotalLagrangian<D> {
         if torn.is_empty() {
             return;
         }
+        self.sever(torn);
+    }
+
+    /// Cuts these pairs in the present state, which has been evaluated, and evaluates what is left.
+    pub(super) fn sever(&mut self, pairs: Vec<[usize; 2]>) {
         let before = self.energy();
-        self.cut(torn);
+        self.cut(pairs);
         self.divide();
         self.evaluate(0.0);
         let taken = before - self.energy();
@@ -78,17 +83,28 @@ impl<const D: usize> TotalLagrangian<D> {
         }
     }
 
-    /// Notes a cut: its face, where cells shared one.
-    pub(super) fn note_cut(&mut self, pair: [usize; 2]) {
-        let distance = self.apart(pair[0], pair[1]).norm();
-        let face = distance < STRAIGHT * self.spacing;
-        let area = self.spacing.powi(D as i32 - 1);
-        let Some(fracture) = &mut self.fracture else { return };
-        fracture.cuts.push(pair);
-        if face {
+    /// Notes a cut, and that the two may touch from now on.
+    fn note_cut(&mut self, pair: [usize; 2]) {
+        let distance = self.distance(pair).min(self.spacing);
+        if let Some(fracture) = &mut self.fracture {
             fracture.faces.push(Face { pair, distance });
-            fracture.area += area;
         }
+    }
+
+    /// Area of the faces of cells between which pairs are cut, m² (2D: m).
+    pub(super) fn cut_area(&self) -> f64 {
+        let Some(fracture) = &self.fracture else { return 0.0 };
+        let straight = |face: &&Face| self.apart(face.pair[0], face.pair[1]).norm() < STRAIGHT * self.spacing;
+        self.spacing.powi(D as i32 - 1) * fracture.faces.iter().filter(straight).count() as f64
+    }
+
+    /// M of a slot.
+    pub(super) fn moment(&self, slot: usize) -> Matrix<D> {
+        let weighted = |(j, slope): (usize, f64)| {
+            let x = self.apart(slot, j);
+            x * x.transpose() * (-self.volume * slope)
+        };
+        self.pairs.neighbours(slot).map(weighted).fold(Matrix::zeros(), |sum, of_pair| sum + of_pair)
     }
 
     /// The moment matrix of a particle that was cut off from neighbours: whether it is free and has lost its deformation
@@ -97,12 +113,8 @@ impl<const D: usize> TotalLagrangian<D> {
         if self.rigid_clamps && self.fixed.clamped[slot] != 0.0 {
             return true;
         }
-        let mut moment = Matrix::<D>::zeros();
-        for (j, slope) in self.pairs.neighbours(slot) {
-            let x = self.apart(slot, j);
-            moment += x * x.transpose() * (-self.volume * slope);
-        }
-        let corner = 0.5_f64.powi(D as i32);
+        let moment = self.moment(slot);
+        let corner = 0.5_f64.powi(D as i32) * self.fracture.as_ref().map_or(1.0, |fracture| fracture.inside);
         let enough = tensor::determinant(&moment) >= SMALLEST * corner;
         let correction = tensor::moment_inverse(&moment).filter(|_| enough);
         self.correction[slot] = correction.unwrap_or_else(Matrix::zeros);

@@ -1,39 +1,42 @@
-//! Faces of a crack inside a body: a body does not see itself, so what a cut leaves opposite each other repels as
-//! bodies do, from the distance on that it had before.
+//! The two sides of a cut.
+//!
+//! They repel as bodies do, k (d - r), but from the distance d on that they have when they are cut, at most dx: nothing
+//! pushes at that moment. While they are farther apart d grows with their distance, up to dx. A body does not see itself,
+//! so inside of one the whole force is here; between two bodies it is what is to be added to that of their contact,
+//! k (dx - r).
 
 use super::Fracture;
 use crate::total_lagrangian::model::TotalLagrangian;
 
-/// Two particles whose cells shared a face, by their slots.
+/// A pair that is cut, by its slots.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Face {
     pub(super) pair: [usize; 2],
-    /// Their distance in the reference configuration, m.
+    /// d, m.
     pub(super) distance: f64,
 }
 
-impl<const D: usize> Fracture<D> {
-    /// Both sides are of one body: else bodies repel each other.
-    fn within_body(&self, [a, b]: [u32; 2]) -> bool {
-        self.body[a as usize] == self.body[b as usize]
-    }
-}
-
 impl<const D: usize> TotalLagrangian<D> {
-    /// Calls `visit` with the faces that touch: slots, x_ij / r, overlap in m.
-    fn touching_faces(&self, mut visit: impl FnMut([usize; 2], [f64; D], f64)) {
+    /// Present distance of a pair, m.
+    pub(super) fn distance(&self, [i, j]: [usize; 2]) -> f64 {
+        let (x, y) = (self.position_at(i), self.position_at(j));
+        (0..D).map(|d| (x[d] - y[d]).powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// Calls `visit` with the faces that touch: slots, x_ij / r, and the overlaps beside that of bodies in contact, and of
+    /// these, m.
+    fn touching_faces(&self, mut visit: impl FnMut([usize; 2], [f64; D], [f64; 2])) {
         let Some(fracture) = &self.fracture else { return };
         for Face { pair, distance } in &fracture.faces {
-            let [i, j] = *pair;
-            if !fracture.within_body([self.id[i], self.id[j]]) {
+            let r = self.distance(*pair);
+            if r <= 0.0 || r >= self.spacing {
                 continue;
             }
+            let [i, j] = *pair;
             let (x, y) = (self.position_at(i), self.position_at(j));
-            let apart: [f64; D] = std::array::from_fn(|d| x[d] - y[d]);
-            let r = apart.iter().map(|x| x * x).sum::<f64>().sqrt();
-            if r > 0.0 && r < *distance {
-                visit(*pair, apart.map(|x| x / r), distance - r);
-            }
+            let bodies = fracture.within_body([self.id[i], self.id[j]]);
+            let seen = if bodies { 0.0 } else { self.spacing - r };
+            visit(*pair, std::array::from_fn(|d| (x[d] - y[d]) / r), [(distance - r).max(0.0), seen]);
         }
     }
 
@@ -47,7 +50,9 @@ impl<const D: usize> TotalLagrangian<D> {
     pub(in crate::total_lagrangian) fn push_faces(&mut self) {
         let mut pushes = Vec::new();
         let stiffness = self.face_stiffness() / self.mass;
-        self.touching_faces(|pair, along, overlap| pushes.push((pair, along.map(|n| n * overlap * stiffness))));
+        self.touching_faces(|pair, along, [own, seen]| {
+            pushes.push((pair, along.map(|n| n * (own - seen) * stiffness)));
+        });
         for ([i, j], push) in pushes {
             for (slot, sign) in [(i, 1.0), (j, -1.0)] {
                 if self.is_free(slot) {
@@ -59,19 +64,42 @@ impl<const D: usize> TotalLagrangian<D> {
         }
     }
 
-    /// Energy in faces that touch, J (2D: J/m).
+    /// Energy in faces that touch, beside that of bodies in contact, J (2D: J/m).
     pub(in crate::total_lagrangian) fn face_energy(&self) -> f64 {
         let mut sum = 0.0;
-        self.touching_faces(|_, _, overlap| sum += overlap * overlap);
+        self.touching_faces(|_, _, [own, seen]| sum += own * own - seen * seen);
         0.5 * self.face_stiffness() * sum
     }
 
-    /// What faces that touch add to the square of a particle's highest frequency, 1/s²: the largest of any particle.
+    /// What faces that touch inside of bodies add to the square of a particle's highest frequency, 1/s²: the largest of any
+    /// particle.
     pub(in crate::total_lagrangian) fn face_springs(&self) -> f64 {
         let mut touched: Vec<usize> = Vec::new();
-        self.touching_faces(|pair, _, _| touched.extend(pair));
+        self.touching_faces(|pair, _, [own, seen]| {
+            if own > 0.0 && seen == 0.0 {
+                touched.extend(pair);
+            }
+        });
         touched.sort_unstable();
         let most = touched.chunk_by(|a, b| a == b).map(<[usize]>::len).max().unwrap_or(0);
         2.0 * self.face_stiffness() / self.mass * most as f64
+    }
+
+    /// Faces that are apart recover their distance, at the end of an accepted sub-step.
+    pub(in crate::total_lagrangian) fn open_faces(&mut self) {
+        let Some(mut fracture) = self.fracture.take() else { return };
+        for face in &mut fracture.faces {
+            if face.distance < self.spacing {
+                face.distance = face.distance.max(self.distance(face.pair).min(self.spacing));
+            }
+        }
+        self.fracture = Some(fracture);
+    }
+}
+
+impl<const D: usize> Fracture<D> {
+    /// Both sides are of one body.
+    fn within_body(&self, [a, b]: [u32; 2]) -> bool {
+        self.body[a as usize] == self.body[b as usize]
     }
 }

@@ -33,6 +33,7 @@ use crate::model::FractureSummary;
 use faces::Face;
 use halfstep_scene::{EffectName, Fracture as Keys, Scene};
 use halfstep_sph::neighbours::PADDING;
+use halfstep_sph::tensor;
 use softening::Softening;
 
 /// Part of its strength with which a particle is broken: its stretched pairs with other broken ones are cut. Above, a
@@ -46,6 +47,8 @@ pub(super) struct Fracture<const D: usize> {
     modulus: f64,
     /// What happens now is not taken back.
     accepted: bool,
+    /// det M inside of the lattice.
+    inside: f64,
     /// From a particle under the intact surface to the surface, m; zero inside.
     outward: Vec<[f64; D]>,
     /// Width of the band of a crack through a particle, m.
@@ -61,12 +64,9 @@ pub(super) struct Fracture<const D: usize> {
     /// Slots with damage, ascending.
     damaged: Vec<usize>,
     /// Pairs that are cut, in the order of the cuts.
-    cuts: Vec<[usize; 2]>,
     faces: Vec<Face>,
     /// Energy taken, J (2D: J/m).
     taken: f64,
-    /// Area of cut faces, m² (2D: m).
-    area: f64,
     /// Body of each particle.
     body: Vec<u32>,
     bodies: u32,
@@ -84,6 +84,7 @@ impl<const D: usize> Fracture<D> {
             keys,
             modulus: material.strip_modulus(D),
             accepted: false,
+            inside: 1.0,
             outward: Vec::new(),
             band: Vec::new(),
             strain: Vec::new(),
@@ -91,10 +92,8 @@ impl<const D: usize> Fracture<D> {
             damage: Vec::new(),
             last: Vec::new(),
             damaged: Vec::new(),
-            cuts: Vec::new(),
             faces: Vec::new(),
             taken: 0.0,
-            area: 0.0,
             bodies: body.iter().max().map_or(0, |last| last + 1),
             body: body.to_vec(),
             loose: 0,
@@ -121,9 +120,6 @@ impl<const D: usize> Fracture<D> {
         Softening::new(self.onset[slot], self.modulus, self.keys.energy / self.band[slot])
     }
 
-    fn summary(&self) -> FractureSummary {
-        FractureSummary { energy: self.taken, area: self.area, bodies: self.bodies, loose: self.loose }
-    }
 }
 
 impl<const D: usize> TotalLagrangian<D> {
@@ -131,10 +127,12 @@ impl<const D: usize> TotalLagrangian<D> {
     pub(super) fn prepare_fracture(&mut self) {
         let Some(mut fracture) = self.fracture.take() else { return };
         let slots = self.id.len();
+        let determinant = |slot: usize| tensor::determinant(&self.moment(slot));
+        fracture.inside = (0..slots).filter(|&slot| self.is_free(slot)).map(determinant).fold(0.0, f64::max);
         let none = vec![0.0; slots];
         (fracture.strain, fracture.onset, fracture.damage) = (none.clone(), none.clone(), none);
         fracture.last = vec![Matrix::identity(); slots];
-        fracture.outward = (0..slots).map(|slot| self.outward(slot)).collect();
+        fracture.outward = (0..slots).map(|slot| self.outward(slot, fracture.inside)).collect();
         // Toward a rigid clamp a particle sees the opening gain times, and alone.
         let band = |slot: usize| Keys::BAND * self.spacing / (1.0 + self.fixed.excess_gain[slot]);
         fracture.band = (0..slots).map(band).collect();
@@ -143,7 +141,9 @@ impl<const D: usize> TotalLagrangian<D> {
 
     /// What fracture has done.
     pub(super) fn summary(&self) -> FractureSummary {
-        self.fracture.as_ref().map_or_else(FractureSummary::default, Fracture::summary)
+        let Some(fracture) = &self.fracture else { return FractureSummary::default() };
+        let Fracture { taken, bodies, loose, .. } = *fracture;
+        FractureSummary { energy: taken, area: self.cut_area(), bodies, loose }
     }
 
     /// d of a slot.

@@ -1,14 +1,16 @@
 //! What fracture keeps over an interruption: strains, onsets and cuts, by particle number; all else follows.
 
 use super::Fracture;
+use super::faces::Face;
 use crate::total_lagrangian::model::TotalLagrangian;
 use halfstep_wire::state::{Fields, State, StateError};
 
 /// The fields as a file has them.
 struct Saved<'a, const D: usize> {
     fracture: &'a mut Fracture<D>,
-    /// Slots of the cuts, two after two.
+    /// Slots of the cuts, two after two, and the distances from which on they touch, m.
     cuts: &'a mut Vec<u32>,
+    distances: &'a mut Vec<f64>,
 }
 
 impl<const D: usize> State for Saved<'_, D> {
@@ -19,7 +21,9 @@ impl<const D: usize> State for Saved<'_, D> {
         fields.length("strain", slots, self.fracture.strain.len())?;
         fields.length("onset", slots, self.fracture.onset.len())?;
         fields.real("taken", &mut self.fracture.taken)?;
-        fields.numbers("cuts", self.cuts)
+        fields.numbers("cuts", self.cuts)?;
+        fields.reals("distances", self.distances)?;
+        fields.length("cuts", 2 * self.distances.len(), self.cuts.len())
     }
 }
 
@@ -27,13 +31,15 @@ impl<const D: usize> TotalLagrangian<D> {
     /// Visits what is damaged and cut; loading, it damages and cuts, before contacts are loaded.
     pub(in crate::total_lagrangian) fn fracture_fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
         let Some(fracture) = &mut self.fracture else { return Ok(()) };
-        let mut cuts: Vec<u32> = fracture.cuts.iter().flatten().map(|&slot| slot as u32).collect();
-        fields.part("fracture", &mut Saved { fracture, cuts: &mut cuts })?;
+        let mut cuts: Vec<u32> = fracture.faces.iter().flat_map(|face| face.pair).map(|slot| slot as u32).collect();
+        let mut distances: Vec<f64> = fracture.faces.iter().map(|face| face.distance).collect();
+        let mut saved = Saved { fracture, cuts: &mut cuts, distances: &mut distances };
+        fields.part("fracture", &mut saved)?;
         if !fields.loading() {
             return Ok(());
         }
         let slots = self.id.len();
-        if !cuts.len().is_multiple_of(2) || cuts.iter().any(|&slot| slot as usize >= slots) {
+        if cuts.iter().any(|&slot| slot as usize >= slots) {
             return Err(StateError::contradiction("cuts between other particles than the scene's"));
         }
         let damaged: Vec<usize> = (0..slots).filter(|&slot| fracture.strain[slot] > 0.0).collect();
@@ -41,10 +47,10 @@ impl<const D: usize> TotalLagrangian<D> {
             fracture.damage[slot] = fracture.softening(slot).damage(fracture.strain[slot]);
         }
         fracture.damaged = damaged.clone();
-        for pair in cuts.chunks_exact(2) {
-            let pair = [pair[0] as usize, pair[1] as usize];
-            self.pairs.cut(pair[0], pair[1]);
-            self.note_cut(pair);
+        let pairs = cuts.chunks_exact(2).map(|pair| [pair[0] as usize, pair[1] as usize]);
+        fracture.faces = pairs.zip(distances).map(|(pair, distance)| Face { pair, distance }).collect();
+        for Face { pair: [i, j], .. } in &fracture.faces {
+            self.pairs.cut(*i, *j);
         }
         cuts.sort_unstable();
         cuts.dedup();

@@ -22,8 +22,8 @@ impl<const D: usize> TotalLagrangian<D> {
         SVector::from_fn(|d, _| x[d][i] - x[d][j])
     }
 
-    /// From a particle under the intact surface to the surface, m; zero inside.
-    pub(super) fn outward(&self, slot: usize) -> [f64; D] {
+    /// From a particle under the intact surface to the surface, m; zero inside, where det M is `inside`.
+    pub(super) fn outward(&self, slot: usize, inside: f64) -> [f64; D] {
         if !self.is_free(slot) {
             return [0.0; D];
         }
@@ -31,9 +31,10 @@ impl<const D: usize> TotalLagrangian<D> {
         for (j, slope) in self.pairs.neighbours(slot) {
             sum -= self.apart(slot, j) * (self.volume * slope);
         }
-        // A row that is missing leaves 1 / (2 dx).
+        // A row that is missing leaves M / (2 dx), M^D = det M.
         let size = sum.norm();
-        let outward = size * 2.0 * self.spacing > LEAST;
+        let missing = if D == 2 { inside.sqrt() } else { libm::cbrt(inside) } / (2.0 * self.spacing);
+        let outward = size > LEAST * missing;
         std::array::from_fn(|d| if outward { 0.5 * self.spacing * sum[d] / size } else { 0.0 })
     }
 

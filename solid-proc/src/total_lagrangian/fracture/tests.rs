@@ -1,84 +1,322 @@
-use crate::model::{Load, SolidModel};
+use crate::model::{Load, OutOfBounds, SolidModel};
 use crate::total_lagrangian::TotalLagrangian;
-use halfstep_scene::EnergyPart;
+use halfstep_scene::{Geometry, Scene};
 use halfstep_sph::lane::Isa;
-use halfstep_wire::half_step::HalfStep;
+use halfstep_wire::half_step::{HalfStep, Stage};
+use halfstep_wire::state::State;
 
-/// Runs a solid alone.
-pub(super) struct Run<const D: usize> {
-    pub(super) model: TotalLagrangian<D>,
-    pub(super) time: f64,
-    step: u64,
-    pub(super) given: Vec<(EnergyPart, f64)>,
+/// Runs a solid alone and keeps its ledger.
+struct Run<const D: usize> {
+    model: TotalLagrangian<D>,
+    time: f64,
+    steps: u64,
+    /// Sum of what was given, J.
+    given: f64,
+    /// Energy held at the start, J.
     start: f64,
+    none: Load<D>,
 }
 
 impl<const D: usize> Run<D> {
-    pub(super) fn of(text: &str) -> Self {
-        let scene = halfstep_scene::parse(text, "test.toml".as_ref(), &[]).unwrap_or_else(|e| panic!("{e:?}"));
-        let mut model = TotalLagrangian::<D>::new(&scene, 0, Isa::detect()).expect("a solid");
+    fn of(text: &str) -> Self {
+        Self::of_scene(&halfstep_scene::parse(text, "test.toml".as_ref(), &[]).unwrap_or_else(|e| panic!("{e:?}")))
+    }
+
+    fn of_scene(scene: &Scene) -> Self {
+        let mut model = TotalLagrangian::<D>::new(scene, 0, Isa::detect()).expect("a solid");
         model.keep_account();
         let start = model.strain_energy() + model.particles().kinetic_energy();
-        Self { model, time: 0.0, step: 0, given: EnergyPart::ALL.iter().map(|p| (*p, 0.0)).collect(), start }
+        let none = Load::none(model.particles().len());
+        Self { model, time: 0.0, steps: 0, given: 0.0, start, none }
     }
 
-    pub(super) fn step(&mut self) {
+    fn try_step(&mut self) -> Result<(), OutOfBounds> {
         let dt = self.model.sub_step_limit();
-        let none = Load::none(self.model.particles().len());
-        for stage in HalfStep::begin(self.step, self.time).lasting(dt).both() {
-            self.model.advance(&stage, 1, &none).unwrap_or_else(|e| panic!("at {}: {e:?}", self.time));
+        for stage in HalfStep::begin(self.steps, self.time).lasting(dt).both() {
+            self.model.advance(&stage, 1, &self.none)?;
         }
-        self.model.account(&mut |part, joules| self.given[part as usize].1 += joules);
+        self.model.account(&mut |_, joules| self.given += joules);
         self.time += dt;
-        self.step += 1;
+        self.steps += 1;
+        Ok(())
     }
 
-    pub(super) fn given(&self, part: EnergyPart) -> f64 {
-        self.given[part as usize].1
+    fn step(&mut self) {
+        self.try_step().unwrap_or_else(|e| panic!("at {} s: {e:?}", self.time));
     }
 
-    /// What nobody gave, J.
-    pub(super) fn rest(&self) -> f64 {
-        let held = self.model.strain_energy() + self.model.particles().kinetic_energy();
-        held - self.start - self.given.iter().map(|given| given.1).sum::<f64>()
+    fn until(&mut self, time: f64) {
+        while self.time < time {
+            self.step();
+        }
+    }
+
+    /// Energy that nobody gave, J.
+    fn rest(&self) -> f64 {
+        self.model.strain_energy() + self.model.particles().kinetic_energy() - self.start - self.given
+    }
+
+    fn momentum(&self) -> [f64; D] {
+        let p = self.model.particles();
+        std::array::from_fn(|d| p.velocity.iter().zip(p.mass).map(|(v, m)| m * v[d]).sum())
+    }
+
+    /// Bits of places, velocities and what fracture took.
+    fn bits(&self) -> Vec<u64> {
+        let p = self.model.particles();
+        let all = p.position.iter().chain(p.velocity).flatten().copied();
+        all.chain([self.model.summary().energy]).map(f64::to_bits).collect()
     }
 }
 
-/// A bar 100 mm x 20 mm pulled at its right end.
-fn bar(dx: f64, nu: f64, speed: f64) -> String {
+/// A solid of E = 1 GPa and 1000 kg/m³: waves run at 1000 m/s.
+fn solid(dx: f64, nu: f64, fracture: &str) -> String {
     format!(
-        "resolution = {dx}\nend_time = 1.0\n[solid]\ndensity = 1000.0\nyoungs_modulus = 1e9\npoissons_ratio = {nu}\n\
-         fracture = {{ strength = 1e6, energy = 100.0 }}\n\
-         [[shape]]\nname = \"left\"\nbody = \"bar\"\nphase = \"solid\"\nbox = {{ min = [-0.05, 0.0], max = [0.05, 0.02] }}\n\
-         clamp = {{ min = [-0.05, 0.0], max = [0.0, 0.02] }}\n\
-         [[shape]]\nname = \"right\"\nbody = \"bar\"\nphase = \"solid\"\nbox = {{ min = [0.05, 0.0], max = [0.15, 0.02] }}\n\
-         clamp = {{ min = [0.1, 0.0], max = [0.15, 0.02] }}\n\
-         motion = {{ velocity = [{speed}, 0.0], start = 0.0, end = 1.0 }}\n"
+        "resolution = {dx}\nend_time = 1.0\ngravity = [0.0, 0.0]\n[solid]\ndensity = 1000.0\nyoungs_modulus = 1e9\npoissons_ratio = {nu}\n\
+         {fracture}\n"
     )
 }
 
+fn strength_and_energy(strength: f64, energy: f64) -> String {
+    format!("fracture = {{ strength = {strength:e}, energy = {energy:e} }}")
+}
+
+/// A bar 100 mm x 20 mm between two clamps, the right of which pulls. Between the columns at 45 and 55 mm tractions add a
+/// twentieth of its strength: it breaks there, and nowhere else it comes near.
+fn bar(dx: f64, speed: f64) -> String {
+    let load = |from: f64, to: f64, traction: f64| {
+        format!("load = {{ within = {{ min = [{from}, 0.0], max = [{to}, 0.02] }}, traction = [{traction}, 0.0] }}\n")
+    };
+    solid(dx, 0.0, &strength_and_energy(1e6, 100.0))
+        + &format!(
+            "[[shape]]\nname = \"left\"\nbody = \"bar\"\nphase = \"solid\"\n\
+             box = {{ min = [-0.04, 0.0], max = [0.05, 0.02] }}\n\
+             clamp = {{ min = [-0.04, 0.0], max = [0.0, 0.02] }}\n{}\
+             [[shape]]\nname = \"right\"\nbody = \"bar\"\nphase = \"solid\"\n\
+             box = {{ min = [0.05, 0.0], max = [0.14, 0.02] }}\n\
+             clamp = {{ min = [0.1, 0.0], max = [0.14, 0.02] }}\n\
+             motion = {{ velocity = [{speed}, 0.0], start = 0.0, end = 1.0 }}\n{}",
+            load(0.045 - 0.5 * dx - 1e-6, 0.045 + 0.5 * dx - 2e-6, -5e4),
+            load(0.055 - 0.5 * dx + 2e-6, 0.055 + 0.5 * dx + 1e-6, 5e4),
+        )
+}
+
 #[test]
-fn bar_probe() {
-    for (dx, nu) in [(0.01, 0.0), (0.005, 0.0), (0.0025, 0.0), (0.005, 0.3)] {
-        let mut run = Run::<2>::of(&bar(dx, nu, 0.05));
-        let mut most = 0.0_f64;
-        let mut next = 0.0;
-        while run.time < 0.016 {
+fn a_bar_that_is_torn_takes_its_fracture_energy() {
+    for dx in [0.01, 0.005, 0.0025] {
+        let mut run = Run::<2>::of(&bar(dx, 0.05));
+        while run.model.summary().bodies == 1 {
             run.step();
-            let s = run.model.summary();
-            let mid = run.model.record((run.model.slot_of.len() / 2) as u32);
-            most = most.max(halfstep_wire::frame::von_mises(&mid.deviatoric_stress));
-            if run.time > next {
-                next += 0.004;
-                println!("  t {:.4} taken {:.4} area {:.4} bodies {} damaged {} clamps {:.4} rest {:.2e} strain {:.4} visc {:.4} kin {:.2e}", run.time, s.energy, s.area, s.bodies,
-                    run.model.fracture.as_ref().unwrap().damaged.len(), run.given(EnergyPart::Clamps), run.rest(), run.model.strain_energy(), run.given(EnergyPart::ArtificialViscosity), run.model.particles().kinetic_energy());
+        }
+        let taken = run.model.summary().energy / (100.0 * 0.02);
+        println!("dx {dx}: {taken:.4} of G_f A at {:.5} s, rest {:.1e}", run.time, run.rest());
+    }
+}
+
+/// A cantilever that a slowly growing traction at its tip bends: length, thickness m, particles across, and
+/// t f_t² / (E G_f).
+fn cantilever(across: f64, brittleness: f64, ramp: f64) -> String {
+    let (length, thickness) = (0.16, 0.04);
+    let dx = thickness / across;
+    let energy = thickness * 1e12 / (1e9 * brittleness);
+    // The traction with which beam theory has f_t at the root: V (L - dx/2) = f_t t² / 6, V = traction t.
+    let traction = 1.3 * 1e6 * thickness / (6.0 * (length - 0.5 * dx));
+    solid(dx, 0.0, &strength_and_energy(1e6, energy))
+        + &format!(
+            "[[shape]]\nname = \"beam\"\nphase = \"solid\"\nbox = {{ min = [-{behind}, 0.0], max = [{length}, {thickness}] }}\n\
+             clamp = {{ min = [-{behind}, 0.0], max = [0.0, {thickness}] }}\n\
+             load = {{ within = {{ min = [{tip}, 0.0], max = [{length}, {thickness}] }}, traction = [0.0, {traction}], \
+             ramp = {ramp} }}\n",
+            behind = 4.0 * dx,
+            tip = length - dx,
+        )
+}
+
+#[test]
+fn a_brittle_cantilever_breaks_where_beam_theory_says() {
+    for (across, brittleness) in [(5.0, 4.5), (10.0, 8.0)] {
+        let ramp = 0.06;
+        let mut run = Run::<2>::of(&cantilever(across, brittleness, ramp));
+        let (mut first, mut broken) = (0.0, 0.0);
+        while run.time < ramp && run.model.summary().bodies == 1 {
+            run.step();
+            if first == 0.0 && run.model.summary().energy > 0.0 {
+                first = 1.3 * run.time / ramp;
+            }
+            if broken == 0.0 && run.model.summary().area > 0.0 {
+                broken = 1.3 * run.time / ramp;
             }
         }
         let s = run.model.summary();
-        println!("dx {dx} nu {nu} steps {} taken/GfA {:.4} peak {:.4e} s {s:?} rest {:.3e}", run.step, s.energy / 2.0, most, run.rest());
+        println!("{across} across: first damage at {first:.4}, cut {broken:.4} apart at {:.4} {s:?} rest {:.1e}", 1.3 * run.time / ramp, run.rest());
         let f = run.model.fracture.as_ref().unwrap();
-        let mut rows: Vec<(i64, f64)> = f.damaged.iter().map(|&s| ((run.model.pairs.position()[0][s]*1e5) as i64, f.damage[s])).collect();
-        rows.sort_by(|a,b| a.0.cmp(&b.0));
-        println!("{:?}", rows.chunk_by(|a,b| a.0==b.0).map(|c| (c[0].0, c.len(), c[0].1)).collect::<Vec<_>>());
+        let x = run.model.pairs.position();
+        println!("{:?}", f.damaged.iter().map(|&s| ((x[0][s]*1e4) as i64, (x[1][s]*1e4) as i64, (f.damage[s]*1e3) as i64)).collect::<Vec<_>>());
     }
+}
+
+/// A free strip whose halves fly apart, turned by an angle about the origin.
+fn halves(angle: f64) -> String {
+    let (s, c) = (angle as f64).to_radians().sin_cos();
+    let half = |name: &str, from: f64, to: f64, v: f64| {
+        let (vx, vy) = (v * c, v * s);
+        format!(
+            "[[shape]]\nname = \"{name}\"\nbody = \"strip\"\nphase = \"solid\"\nvelocity = [{vx}, {vy}]\n\
+             box = {{ min = [{from}, 0.0], max = [{to}, 0.02] }}\nrotate = {{ angle = {angle}, about = [0.0, 0.0] }}\n"
+        )
+    };
+    solid(0.005, 0.3, &strength_and_energy(1e6, 20.0)) + &half("left", -0.05, 0.0, -1.0) + &half("right", 0.0, 0.05, 1.5)
+}
+
+#[test]
+fn fragments_fly_with_their_momentum_and_the_ledger_is_closed() {
+    let mut all = Vec::new();
+    for angle in [0.0, 30.0] {
+        let mut run = Run::<2>::of(&halves(angle));
+        let before = run.momentum();
+        let mut early = 0.0;
+        while run.time < 2e-3 {
+            if run.model.summary().energy == 0.0 {
+                early = run.rest();
+            }
+            run.step();
+        }
+        println!("early {early:.3e}");
+        let s = run.model.summary();
+        let after = run.momentum();
+        println!("{angle}: {s:?} {before:?} {after:?} rest {:.2e} of {:.3} steps {}", run.rest(), run.start, run.steps);
+        all.push(s);
+    }
+}
+
+#[test]
+fn a_block_in_space_breaks() {
+    let text = halves(0.0).replace("rotate = { angle = 0, about = [0.0, 0.0] }\n", "");
+    let mut scene = halfstep_scene::parse(&text, "test.toml".as_ref(), &[]).unwrap();
+    scene.dimension = 3;
+    for shape in &mut scene.shapes {
+        let Geometry::Box(block) = &mut shape.geometry else { panic!("a box") };
+        block.max[2] = 0.015;
+    }
+    let mut run = Run::<3>::of_scene(&scene);
+    let before = run.momentum();
+    run.until(1e-3);
+    println!("{:?} {before:?} {:?} rest {:.2e} of {:.3}", run.model.summary(), run.momentum(), run.rest(), run.start);
+}
+
+#[test]
+fn a_solid_that_holds_is_one_that_cannot_break() {
+    let text = halves(0.0).replace("velocity = [-1, -0]", "velocity = [-0.2, 0.0]").replace("velocity = [1.5, 0]", "velocity = [0.2, 0.0]");
+    let mut breakable = Run::<2>::of(&text);
+    let fracture = strength_and_energy(1e6, 20.0);
+    let mut whole = Run::<2>::of(&text.replace(&fracture, ""));
+    for _ in 0..300 {
+        breakable.step();
+        whole.step();
+    }
+    assert_eq!(breakable.model.summary().energy, 0.0);
+    assert!(breakable.bits() == whole.bits());
+}
+
+#[test]
+fn a_run_goes_on_from_a_checkpoint_in_the_middle_of_a_break() {
+    let mut run = Run::<2>::of(&halves(0.0));
+    while run.model.summary().area == 0.0 {
+        run.step();
+    }
+    let mut again = Run::<2>::of(&halves(0.0));
+    again.model.load(&run.model.save()).unwrap();
+    (again.time, again.steps) = (run.time, run.steps);
+    for _ in 0..400 {
+        run.step();
+        again.step();
+    }
+    assert!(run.model.summary().bodies > 1, "{:?}", run.model.summary());
+    assert!(run.bits() == again.bits());
+    assert_eq!(run.model.summary(), again.model.summary());
+}
+
+#[test]
+fn the_first_stage_breaks_nothing() {
+    let mut run = Run::<2>::of(&halves(0.0));
+    while run.model.summary().energy == 0.0 {
+        run.step();
+    }
+    let before = run.model.summary();
+    let dt = run.model.sub_step_limit();
+    let [first, second] = HalfStep::begin(run.steps, run.time).lasting(dt).both();
+    assert_eq!((first.stage, second.stage), (Stage::First, Stage::Second));
+    run.model.advance(&first, 1, &run.none).unwrap();
+    assert_eq!(run.model.summary(), before);
+    run.model.advance(&second, 1, &run.none).unwrap();
+    assert!(run.model.summary().energy > before.energy);
+}
+
+/// Runs so many steps; the largest of kinetic and strain energy together, J.
+fn run_on<const D: usize>(run: &mut Run<D>, steps: usize) -> f64 {
+    let mut most = 0.0_f64;
+    for _ in 0..steps {
+        run.step();
+        most = most.max(run.model.strain_energy() + run.model.particles().kinetic_energy());
+    }
+    most
+}
+
+#[test]
+fn a_block_that_is_crushed_on_a_wall_stays_stable() {
+    let text = solid(0.005, 0.3, &strength_and_energy(2e5, 2.0))
+        + "[[shape]]\nname = \"block\"\nphase = \"solid\"\nbox = { min = [0.0, 0.003], max = [0.06, 0.063] }\n\
+           velocity = [0.0, -10.0]\n\
+           [[shape]]\nname = \"floor\"\nphase = \"wall\"\nbox = { min = [-0.1, -0.03], max = [0.16, 0.0] }\ncontact = true\n";
+    let mut run = Run::<2>::of(&text);
+    let most = run_on(&mut run, 10_000);
+    let s = run.model.summary();
+    println!("crushed: {s:?} most {:.4} of {:.4}, rest {:.3e}", most, run.start, run.rest());
+}
+
+#[test]
+fn a_crack_along_a_clamp_takes_its_fracture_energy() {
+    let text = solid(0.005, 0.0, &strength_and_energy(1e6, 100.0))
+        + "[[shape]]\nname = \"bar\"\nphase = \"solid\"\nbox = { min = [-0.02, 0.0], max = [0.1, 0.04] }\n\
+           clamp = { min = [-0.02, 0.0], max = [0.0, 0.04] }\n\
+           load = { within = { min = [0.095, 0.0], max = [0.1, 0.04] }, traction = [1.1e6, 0.0], ramp = 5e-3 }\n";
+    let mut run = Run::<2>::of(&text);
+    while run.model.summary().bodies == 1 && run.time < 0.01 {
+        run.step();
+    }
+    let at = run.time;
+    let s = run.model.summary();
+    run_on(&mut run, 400);
+    println!("clamp: {s:?} at {at:.5}, taken {:.4}; later {:?} rest {:.2e}", s.energy / 4.0, run.model.summary(), run.rest());
+}
+
+#[test]
+fn a_solid_without_strength_crumbles_and_stays_stable() {
+    let text = halves(0.0).replace(&strength_and_energy(1e6, 20.0), &strength_and_energy(1.0, 1e-4));
+    let mut run = Run::<2>::of(&text);
+    let most = run_on(&mut run, 10_000);
+    println!("weak: {:?} most {:.4} of {:.4} rest {:.2e}", run.model.summary(), most, run.start, run.rest());
+}
+
+#[test]
+fn debris_flies_on_for_ten_thousand_steps() {
+    let mut run = Run::<2>::of(&halves(0.0));
+    run.until(1e-3);
+    let (s, rest, energy) = (run.model.summary(), run.rest(), run.model.strain_energy() + run.model.particles().kinetic_energy());
+    let most = run_on(&mut run, 10_000);
+    println!("after: {:?} {:?} most {most:.6} of {energy:.6} rest {:.2e} before {rest:.2e}", s, run.model.summary(), run.rest());
+}
+
+#[test]
+fn a_particle_that_is_cut_off_has_no_hourglass_resistance() {
+    let mut run = Run::<2>::of(&halves(0.0));
+    let slot = run.model.slot_of[0] as usize;
+    let neighbours: Vec<usize> = run.model.pairs.neighbours(slot).map(|(j, _)| j).collect();
+    assert_eq!(neighbours.len(), 3, "a corner");
+    assert!(run.model.hourglass[slot] > 0.0);
+    // One straight neighbour is left: a row has no second direction.
+    run.model.sever(neighbours[1..].iter().map(|&j| [slot.min(j), slot.max(j)]).collect());
+    assert!(!run.model.has_strain(slot) && run.model.hourglass[slot] == 0.0);
+    assert_eq!(run.model.summary().loose, 1);
+    run_on(&mut run, 100);
 }
