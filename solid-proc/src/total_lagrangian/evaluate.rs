@@ -39,11 +39,18 @@ impl<const D: usize> TotalLagrangian<D> {
         (self.pairs.list().entries() * LANES) as u64
     }
 
-    fn deformation(&mut self) {
+    /// The sums of the first pass.
+    pub(super) fn first_pass(&mut self) {
         let law =
             Deformation { fixed: &self.fixed, displacement: &self.now.displacement, volume: self.volume };
         pair::fixed_pass(self.isa, &law, &self.pairs, &mut self.deformations);
         self.pair_evaluations += self.evaluations();
+    }
+
+    /// F of a slot from the sums of the first pass.
+    pub(super) fn gradient_at(&self, slot: usize) -> Matrix<D> {
+        let h = at(&self.deformations[slot / LANES].gradient, slot % LANES) * self.correction[slot];
+        Matrix::identity() + h
     }
 
     fn momentum<V: Damping<D>>(&self, damping: V, sums: &mut [super::pass::Acceleration<D>]) {
@@ -117,7 +124,7 @@ impl<const D: usize> TotalLagrangian<D> {
 
     /// Acceleration of the present state, `elapsed` (s) after the one before, by everything but loads and gravity.
     pub(super) fn evaluate(&mut self, elapsed: f64) {
-        self.deformation();
+        self.first_pass();
         if self.arms.is_empty() {
             self.stresses(&mut ());
         } else {

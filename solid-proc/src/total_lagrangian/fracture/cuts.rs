@@ -54,15 +54,41 @@ impl<const D: usize> TotalLagrangian<D> {
     /// Cuts these pairs in the present state, which has been evaluated, and evaluates what is left.
     pub(super) fn sever(&mut self, pairs: Vec<[usize; 2]>) {
         let before = self.energy();
-        self.cut(pairs);
+        let mut pairs = pairs;
+        while !pairs.is_empty() {
+            let touched = self.cut(pairs);
+            pairs = self.overstrained(&touched);
+        }
         self.divide();
         self.evaluate(0.0);
         let taken = before - self.energy();
         self.book(taken);
     }
 
-    /// Cuts pairs, and those that carry nothing any more.
-    fn cut(&mut self, mut pairs: Vec<[usize; 2]>) {
+    /// All pairs of those particles, ascending, that what is left of their neighbours would strain beyond what they held
+    /// and could hold at their strength: in a heap of debris it tells nothing of a particle's strain.
+    fn overstrained(&mut self, touched: &[usize]) -> Vec<[usize; 2]> {
+        let Some(fracture) = &self.fracture else { return Vec::new() };
+        let most = self.volume * fracture.keys.strength.powi(2) / (2.0 * fracture.modulus);
+        let held: Vec<f64> = touched.iter().map(|&slot| self.energy_at(slot)).collect();
+        self.first_pass();
+        let mut pairs = Vec::new();
+        for (&slot, held) in touched.iter().zip(held) {
+            self.gradient[slot] = self.gradient_at(slot);
+            self.volume_ratio[slot] = self.law.volume_ratio(&self.gradient[slot]);
+            let now = self.energy_at(slot);
+            if now.is_nan() || now > held + most {
+                pairs.extend(self.pairs.neighbours(slot).map(|(j, _)| [slot.min(j), slot.max(j)]));
+            }
+        }
+        pairs.sort_unstable();
+        pairs.dedup();
+        pairs
+    }
+
+    /// Cuts pairs, and those that carry nothing any more; the slots that lost one, ascending.
+    fn cut(&mut self, mut pairs: Vec<[usize; 2]>) -> Vec<usize> {
+        let mut all = Vec::new();
         while !pairs.is_empty() {
             let mut touched = Vec::new();
             for [i, j] in pairs.drain(..) {
@@ -72,6 +98,7 @@ impl<const D: usize> TotalLagrangian<D> {
             }
             touched.sort_unstable();
             touched.dedup();
+            all.extend(&touched);
             let lost: Vec<usize> = touched.into_iter().filter(|&slot| !self.correct_again(slot)).collect();
             for i in lost {
                 // Neither of the two has a stress.
@@ -81,6 +108,9 @@ impl<const D: usize> TotalLagrangian<D> {
             pairs.sort_unstable();
             pairs.dedup();
         }
+        all.sort_unstable();
+        all.dedup();
+        all
     }
 
     /// Notes a cut, and that the two may touch from now on.

@@ -66,7 +66,6 @@ impl<const D: usize> TotalLagrangian<D> {
             if fracture.strain[slot] == 0.0 {
                 let place = fracture.damaged.partition_point(|&other| other < slot);
                 fracture.damaged.insert(place, slot);
-                fracture.last[slot] = self.gradient[slot];
             }
             let old = fracture.damage[slot];
             (fracture.onset[slot], fracture.strain[slot]) = (onset, strain);
@@ -74,9 +73,10 @@ impl<const D: usize> TotalLagrangian<D> {
             let (damage, last) = (fracture.damage[slot], fracture.last[slot]);
             self.soften(slot);
             let after = before - self.energy_at(slot);
-            // Over the sub-step, in which the strain went from the last one to the present one: the mean of both.
-            let [last, present] = [last, self.gradient[slot]].map(|f| self.lost_by(&f, [old, damage]));
-            let taken = after + 0.5 * (last - present);
+            // Over the sub-step, in which the strain went from the last one to the present one: for e² the velocity Verlet
+            // scheme takes the geometric mean, exactly.
+            let [last, present] = [last, self.gradient[slot]].map(|f| self.lost_by(&f, [old, damage]).max(0.0));
+            let taken = after - present + (last * present).sqrt();
             self.book(taken);
             let (f, j) = (self.gradient[slot], self.volume_ratio[slot]);
             let correction = self.correction[slot];
@@ -93,12 +93,10 @@ impl<const D: usize> TotalLagrangian<D> {
         self.volume * (before - after)
     }
 
-    /// Keeps F of what is damaged, at the end of an accepted sub-step or of a checkpoint's.
+    /// Keeps F, at the end of an accepted sub-step or of a checkpoint's.
     pub(in crate::total_lagrangian) fn keep_gradients(&mut self) {
         if let Some(fracture) = &mut self.fracture {
-            for &slot in &fracture.damaged {
-                fracture.last[slot] = self.gradient[slot];
-            }
+            fracture.last.clone_from(&self.gradient);
         }
     }
 

@@ -59,7 +59,7 @@ pub(super) struct Fracture<const D: usize> {
     onset: Vec<f64>,
     /// d.
     damage: Vec<f64>,
-    /// F at the end of the last accepted sub-step, of what is damaged.
+    /// F at the end of the last accepted sub-step.
     last: Vec<Matrix<D>>,
     /// Slots with damage, ascending.
     damaged: Vec<usize>,
