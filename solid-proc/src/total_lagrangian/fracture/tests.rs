@@ -101,22 +101,36 @@ fn bar(dx: f64, speed: f64) -> String {
         )
 }
 
+/// Energy taken over G_f A, and the clamp's work at three openings, J/m; the ledger is closed.
+fn torn_bar(dx: f64) -> (f64, [f64; 3]) {
+    let mut run = Run::<2>::of(&bar(dx, 0.05));
+    let mut work = [0.0; 3];
+    for (k, opening) in [0.1e-3, 0.2e-3, 0.4e-3].into_iter().enumerate() {
+        run.until(opening / 0.05);
+        work[k] = run.given + run.model.summary().energy;
+    }
+    while run.model.summary().bodies == 1 {
+        run.step();
+    }
+    assert!(run.rest().abs() < 1e-3 * 2.0, "{dx}: {}", run.rest());
+    (run.model.summary().energy / (100.0 * 0.02), work)
+}
+
 #[test]
-fn a_bar_that_is_torn_takes_its_fracture_energy() {
-    for dx in [0.01, 0.005, 0.0025] {
-        let mut run = Run::<2>::of(&bar(dx, 0.05));
-        while run.model.summary().bodies == 1 {
-            run.step();
+fn a_bar_that_is_torn_takes_its_fracture_energy_at_three_spacings() {
+    let [coarse, middle, fine] = [0.01, 0.005, 0.0025].map(torn_bar);
+    for (taken, work) in [coarse, middle, fine] {
+        assert!((taken - 1.0).abs() < 0.02, "{taken}");
+        for (work, finest) in work.iter().zip(fine.1) {
+            assert!((work / finest - 1.0).abs() < 0.02, "{work} {finest}");
         }
-        let taken = run.model.summary().energy / (100.0 * 0.02);
-        println!("dx {dx}: {taken:.4} of G_f A at {:.5} s, rest {:.1e}", run.time, run.rest());
     }
 }
 
 /// A cantilever that a slowly growing traction at its tip bends: length, thickness m, particles across, and
 /// t f_t² / (E G_f).
-fn cantilever(across: f64, brittleness: f64, ramp: f64) -> String {
-    let (length, thickness) = (0.16, 0.04);
+fn cantilever(length: f64, across: f64, brittleness: f64, ramp: f64) -> String {
+    let thickness = 0.04;
     let dx = thickness / across;
     let energy = thickness * 1e12 / (1e9 * brittleness);
     // The traction with which beam theory has f_t at the root: V (L - dx/2) = f_t t² / 6, V = traction t.
@@ -132,26 +146,34 @@ fn cantilever(across: f64, brittleness: f64, ramp: f64) -> String {
         )
 }
 
+/// The load at the first damage and at the cut through half of the thickness, over that of beam theory.
+fn broken_cantilever(length: f64, across: f64, brittleness: f64, ramp: f64) -> [f64; 2] {
+    let mut run = Run::<2>::of(&cantilever(length, across, brittleness, ramp));
+    let load = |run: &Run<2>| 1.3 * run.time / ramp;
+    while run.model.summary().energy == 0.0 {
+        run.step();
+    }
+    let first = load(&run);
+    while run.model.summary().area < 0.5 * 0.04 {
+        run.step();
+    }
+    let broken = [first, load(&run)];
+    broken
+}
+
 #[test]
 fn a_brittle_cantilever_breaks_where_beam_theory_says() {
-    for (across, brittleness) in [(5.0, 4.5), (10.0, 8.0)] {
-        let ramp = 0.06;
-        let mut run = Run::<2>::of(&cantilever(across, brittleness, ramp));
-        let (mut first, mut broken) = (0.0, 0.0);
-        while run.time < ramp && run.model.summary().bodies == 1 {
-            run.step();
-            if first == 0.0 && run.model.summary().energy > 0.0 {
-                first = 1.3 * run.time / ramp;
-            }
-            if broken == 0.0 && run.model.summary().area > 0.0 {
-                broken = 1.3 * run.time / ramp;
-            }
-        }
-        let s = run.model.summary();
-        println!("{across} across: first damage at {first:.4}, cut {broken:.4} apart at {:.4} {s:?} rest {:.1e}", 1.3 * run.time / ramp, run.rest());
-        let f = run.model.fracture.as_ref().unwrap();
-        let x = run.model.pairs.position();
-        println!("{:?}", f.damaged.iter().map(|&s| ((x[0][s]*1e4) as i64, (x[1][s]*1e4) as i64, (f.damage[s]*1e3) as i64)).collect::<Vec<_>>());
+    let [first, broken] = broken_cantilever(0.32, 5.0, 4.5, 0.16);
+    assert!((first - 1.0).abs() < 0.05, "{first}");
+    assert!((broken - 1.0).abs() < 0.1, "{broken}");
+}
+
+#[test]
+#[ignore = "minutes"]
+fn finer_cantilevers_break_where_beam_theory_says() {
+    for [first, broken] in [broken_cantilever(0.32, 10.0, 8.0, 0.16), broken_cantilever(0.32, 20.0, 8.0, 0.16)] {
+        assert!((first - 1.0).abs() < 0.05, "{first}");
+        assert!((broken - 1.0).abs() < 0.1, "{broken}");
     }
 }
 
@@ -169,24 +191,20 @@ fn halves(angle: f64) -> String {
 }
 
 #[test]
-fn fragments_fly_with_their_momentum_and_the_ledger_is_closed() {
-    let mut all = Vec::new();
-    for angle in [0.0, 30.0] {
+fn fragments_fly_with_their_momentum_at_any_angle() {
+    let [straight, turned] = [0.0, 30.0].map(|angle| {
         let mut run = Run::<2>::of(&halves(angle));
         let before = run.momentum();
-        let mut early = 0.0;
-        while run.time < 2e-3 {
-            if run.model.summary().energy == 0.0 {
-                early = run.rest();
-            }
-            run.step();
-        }
-        println!("early {early:.3e}");
-        let s = run.model.summary();
+        run.until(1e-3);
         let after = run.momentum();
-        println!("{angle}: {s:?} {before:?} {after:?} rest {:.2e} of {:.3} steps {}", run.rest(), run.start, run.steps);
-        all.push(s);
-    }
+        assert!((0..2).all(|d| (after[d] - before[d]).abs() < 1e-13), "{before:?} {after:?}");
+        // Torn in a dozen sub-steps: 0.8 % of the kinetic energy is not accounted for.
+        assert!(run.rest().abs() < 0.01 * run.start, "{} of {}", run.rest(), run.start);
+        run.model.summary()
+    });
+    assert_eq!((straight.bodies, straight.loose, straight.area), (2, 0, 0.02));
+    assert_eq!((turned.bodies, turned.loose, turned.area), (2, 0, 0.02));
+    assert!((turned.energy / straight.energy - 1.0).abs() < 1e-9, "{} {}", turned.energy, straight.energy);
 }
 
 #[test]
@@ -201,7 +219,11 @@ fn a_block_in_space_breaks() {
     let mut run = Run::<3>::of_scene(&scene);
     let before = run.momentum();
     run.until(1e-3);
-    println!("{:?} {before:?} {:?} rest {:.2e} of {:.3}", run.model.summary(), run.momentum(), run.rest(), run.start);
+    let (after, summary) = (run.momentum(), run.model.summary());
+    assert!((0..3).all(|d| (after[d] - before[d]).abs() < 1e-15), "{before:?} {after:?}");
+    assert!(run.rest().abs() < 0.01 * run.start, "{} of {}", run.rest(), run.start);
+    assert_eq!((summary.bodies, summary.loose), (2, 0));
+    assert!((summary.area / (0.02 * 0.015) - 1.0).abs() < 1e-12);
 }
 
 #[test]
@@ -270,8 +292,10 @@ fn a_block_that_is_crushed_on_a_wall_stays_stable() {
            [[shape]]\nname = \"floor\"\nphase = \"wall\"\nbox = { min = [-0.1, -0.03], max = [0.16, 0.0] }\ncontact = true\n";
     let mut run = Run::<2>::of(&text);
     let most = run_on(&mut run, 10_000);
-    let s = run.model.summary();
-    println!("crushed: {s:?} most {:.4} of {:.4}, rest {:.3e}", most, run.start, run.rest());
+    let summary = run.model.summary();
+    assert!(summary.bodies > 50, "{summary:?}");
+    assert!(most < run.start, "{most} of {}", run.start);
+    assert!(run.rest().abs() < 1e-4 * run.start, "{} of {}", run.rest(), run.start);
 }
 
 #[test]
@@ -281,30 +305,37 @@ fn a_crack_along_a_clamp_takes_its_fracture_energy() {
            clamp = { min = [-0.02, 0.0], max = [0.0, 0.04] }\n\
            load = { within = { min = [0.095, 0.0], max = [0.1, 0.04] }, traction = [1.1e6, 0.0], ramp = 5e-3 }\n";
     let mut run = Run::<2>::of(&text);
-    while run.model.summary().bodies == 1 && run.time < 0.01 {
+    while run.model.summary().bodies == 1 {
         run.step();
     }
-    let at = run.time;
-    let s = run.model.summary();
+    let taken = run.model.summary().energy / (100.0 * 0.04);
+    assert!((taken - 1.0).abs() < 0.02, "{taken}");
+    assert_eq!(run.model.summary().area, 0.04);
     run_on(&mut run, 400);
-    println!("clamp: {s:?} at {at:.5}, taken {:.4}; later {:?} rest {:.2e}", s.energy / 4.0, run.model.summary(), run.rest());
+    assert_eq!(run.model.summary().energy, taken * 100.0 * 0.04, "it only flies");
+    assert!(run.rest().abs() < 2e-3 * 4.0, "{}", run.rest());
 }
 
 #[test]
-fn a_solid_without_strength_crumbles_and_stays_stable() {
+fn a_solid_without_strength_breaks_and_stays_stable() {
     let text = halves(0.0).replace(&strength_and_energy(1e6, 20.0), &strength_and_energy(1.0, 1e-4));
     let mut run = Run::<2>::of(&text);
     let most = run_on(&mut run, 10_000);
-    println!("weak: {:?} most {:.4} of {:.4} rest {:.2e}", run.model.summary(), most, run.start, run.rest());
+    assert_eq!(run.model.summary().bodies, 2);
+    let bound = run.start * (1.0 + 1e-9);
+    assert!(most <= bound && run.rest().abs() < 0.01 * run.start, "{most}, {} of {}", run.rest(), run.start);
 }
 
 #[test]
 fn debris_flies_on_for_ten_thousand_steps() {
     let mut run = Run::<2>::of(&halves(0.0));
     run.until(1e-3);
-    let (s, rest, energy) = (run.model.summary(), run.rest(), run.model.strain_energy() + run.model.particles().kinetic_energy());
+    let (summary, rest) = (run.model.summary(), run.rest());
+    let energy = run.model.strain_energy() + run.model.particles().kinetic_energy();
     let most = run_on(&mut run, 10_000);
-    println!("after: {:?} {:?} most {most:.6} of {energy:.6} rest {:.2e} before {rest:.2e}", s, run.model.summary(), run.rest());
+    assert_eq!(run.model.summary(), summary);
+    assert!(most < energy * 1.0001, "{most} {energy}");
+    assert!((run.rest() - rest).abs() < 1e-3 * energy, "{} {rest}", run.rest());
 }
 
 #[test]
