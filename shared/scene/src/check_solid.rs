@@ -64,7 +64,8 @@ impl Check<'_> {
     /// Tractions and cracks are of a model that has them, and a traction finds a particle.
     fn loads(&self) {
         for (index, shape) in self.scene.shapes.iter().enumerate() {
-            let other = shape.solid.and_then(|k| self.model(k)).filter(|m| *m != SolidModelName::TotalLagrangian);
+            let other =
+                shape.solid.and_then(|k| self.model(k)).filter(|m| *m != SolidModelName::TotalLagrangian);
             let key = self.shape_key(index);
             for (name, present) in [("load", shape.load.is_some()), ("crack", shape.crack.is_some())] {
                 if present && other.is_some() && !self.report.has_any(&["shape", "solid"]) {
@@ -75,7 +76,9 @@ impl Check<'_> {
             let Some(load) = &shape.load else { continue };
             let bounds = geometry::bounding_box(shape, self.scene);
             let apart = |a: usize| bounds.max[a] < load.within.min[a] || load.within.max[a] < bounds.min[a];
-            if !self.report.has_any(&["resolution", "shape", "dimension"]) && (0..self.scene.dimension).any(apart) {
+            if !self.report.has_any(&["resolution", "shape", "dimension"])
+                && (0..self.scene.dimension).any(apart)
+            {
                 let reason = format!("holds no part of `{}`", shape.name);
                 self.report.among(self.root, &format!("{key}.load.within"), &[], reason);
             }

@@ -2,7 +2,7 @@
 
 use crate::effects::is_clamped;
 use crate::models::OwnEffects;
-use halfstep_scene::{Derived, Fracture, EffectName, ModelKeys, Scene, Shape};
+use halfstep_scene::{Derived, EffectName, Fracture, ModelKeys, Scene, Shape};
 
 pub(crate) const EFFECTS: OwnEffects = OwnEffects {
     list: &[
@@ -37,7 +37,8 @@ fn turns(scene: &Scene, solid: usize) -> bool {
 }
 
 fn fracture(scene: &Scene, solid: usize) -> Derived {
-    let Some((solid_, keys)) = scene.solids.get(solid).and_then(|solid| Some((solid, solid.fracture()?))) else {
+    let Some((solid_, keys)) = scene.solids.get(solid).and_then(|solid| Some((solid, solid.fracture()?)))
+    else {
         return Derived::Impossible("solid.fracture is not there".into());
     };
     let band = Fracture::BAND * scene.solid_spacing(solid);

@@ -57,7 +57,8 @@ impl<const D: usize> Loads<D> {
 
 /// Takes pairs apart whose line crosses a crack of the scene's solid of that index.
 pub(super) fn crack<const D: usize>(scene: &Scene, solid: usize, pairs: &mut FixedPairs<D>) {
-    let cracks = scene.shapes.iter().filter(|shape| shape.solid == Some(solid)).filter_map(|shape| shape.crack);
+    let cracks =
+        scene.shapes.iter().filter(|shape| shape.solid == Some(solid)).filter_map(|shape| shape.crack);
     for [from, to] in cracks {
         let x = pairs.position().clone();
         let place = |slot: usize| [x[0][slot], x[1][slot]];
@@ -67,7 +68,8 @@ pub(super) fn crack<const D: usize>(scene: &Scene, solid: usize, pairs: &mut Fix
 
 /// Two lines in the plane cross; one that ends on the other does.
 fn crosses([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> bool {
-    let side = |p: [f64; 2], q: [f64; 2], r: [f64; 2]| (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+    let side =
+        |p: [f64; 2], q: [f64; 2], r: [f64; 2]| (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
     side(a, b, c) * side(a, b, d) <= 0.0 && side(c, d, a) * side(c, d, b) <= 0.0
 }
 

@@ -58,7 +58,8 @@ pub fn draw_contact(scene: &Scene, dir: &Path) -> Result<Option<PathBuf>, Output
             let radius = radius(spacing * place.scale);
             for (frame, k) in instant.phase(phase).filter(|(frame, k)| view.shows(frame.points[*k])) {
                 let cracked = frame.damage.get(k).is_some_and(|&damage| damage > CRACKED);
-                let color = if cracked { DARK } else { scale.map_or(WALL, |scale| scales.color(scale, frame, k)) };
+                let color =
+                    if cracked { DARK } else { scale.map_or(WALL, |scale| scales.color(scale, frame, k)) };
                 sheet.disc(panel, view.pixel(frame.points[k], panel, place.scale), radius, color);
             }
         }
@@ -163,15 +164,12 @@ impl ColourScales {
 
     /// The bars that explain the colours, at the foot of the picture.
     fn bars(&self, width: i32, height: i32, cracks: bool) -> Vec<Bar> {
-        let solid =
-            if cracks { "solid: von Mises stress; black: cracks" } else { "solid: von Mises stress" };
-        let present: Vec<_> = [
-            (Scale::Fluid, "fluid: pressure", self.pressure),
-            (Scale::Solid, solid, self.stress),
-        ]
-        .into_iter()
-        .filter_map(|(scale, quantity, range)| Some((scale, quantity, range?)))
-        .collect();
+        let solid = if cracks { "solid: von Mises stress; black: cracks" } else { "solid: von Mises stress" };
+        let present: Vec<_> =
+            [(Scale::Fluid, "fluid: pressure", self.pressure), (Scale::Solid, solid, self.stress)]
+                .into_iter()
+                .filter_map(|(scale, quantity, range)| Some((scale, quantity, range?)))
+                .collect();
         let (edge, gap) = (24, 56);
         let count = present.len().max(1) as i32;
         let length = ((width - 2 * edge - (count - 1) * gap) / count).clamp(60, 420);

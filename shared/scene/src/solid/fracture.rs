@@ -30,8 +30,10 @@ impl Fracture {
         }
         let strength = Range::positive().up_to(1e15).why("it is the tensile strength f_t, Pa");
         let energy = Range::positive().up_to(1e15).why("it is the fracture energy G_f, J/m2");
-        let fracture =
-            Self { strength: table.number("strength", None, strength), energy: table.number("energy", None, energy) };
+        let fracture = Self {
+            strength: table.number("strength", None, strength),
+            energy: table.number("energy", None, energy),
+        };
         table.finish();
         Some(fracture)
     }
@@ -58,7 +60,8 @@ impl Solid {
 
     /// Modulus E' of a strip that is pulled, Pa: E / (1 - nu²) where it cannot contract across the plane, else E.
     pub fn strip_modulus(&self, dimension: usize) -> f64 {
-        let held = dimension == 2 && matches!(&self.model, ModelKeys::TotalLagrangian(k) if k.plane == Plane::Strain);
+        let held = dimension == 2
+            && matches!(&self.model, ModelKeys::TotalLagrangian(k) if k.plane == Plane::Strain);
         let nu = if held { self.poissons_ratio } else { 0.0 };
         self.youngs_modulus / (1.0 - nu * nu)
     }

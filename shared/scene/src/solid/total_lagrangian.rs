@@ -104,11 +104,19 @@ impl TotalLagrangianKeys {
 fn fracture(section: &Section<'_>, plane: Plane, material: Option<Material>) -> Option<Fracture> {
     let (fracture, node) = (Fracture::read(section)?, section.node("fracture")?);
     if section.node("prony").is_some() {
-        section.wrong("fracture", node, "cannot stand with `prony`: what damage does to Maxwell arms is not known");
+        section.wrong(
+            "fracture",
+            node,
+            "cannot stand with `prony`: what damage does to Maxwell arms is not known",
+        );
     }
     if (plane, material) == (Plane::Stress, Some(Material::NeoHookean)) {
         let why = "the strain across the plane would depend on the damage";
-        section.wrong("fracture", node, format!("with `plane` = \"stress\" needs `material` = \"st-venant-kirchhoff\": {why}"));
+        section.wrong(
+            "fracture",
+            node,
+            format!("with `plane` = \"stress\" needs `material` = \"st-venant-kirchhoff\": {why}"),
+        );
     }
     Some(fracture)
 }

@@ -1,7 +1,7 @@
 //! Cuts of pairs, and the bodies that are left.
 
-use super::faces::Face;
 use super::Fracture;
+use super::faces::Face;
 use crate::total_lagrangian::material::Matrix;
 use crate::total_lagrangian::model::TotalLagrangian;
 use halfstep_sph::neighbours::PADDING;
@@ -28,7 +28,8 @@ impl<const D: usize> TotalLagrangian<D> {
                 if !(broken(j) && i < j || rigid(j)) {
                     continue;
                 }
-                let strain = if rigid(j) { fracture.strain[i] } else { fracture.strain[i].min(fracture.strain[j]) };
+                let strain =
+                    if rigid(j) { fracture.strain[i] } else { fracture.strain[i].min(fracture.strain[j]) };
                 let (x, y) = (self.position_at(i), self.position_at(j));
                 let present: f64 = (0..D).map(|d| (x[d] - y[d]).powi(2)).sum();
                 let reference = self.apart(i, j).norm_squared();
@@ -65,8 +66,8 @@ impl<const D: usize> TotalLagrangian<D> {
         self.book(taken);
     }
 
-    /// All pairs of those particles, ascending, that what is left of their neighbours would strain beyond what they held
-    /// and could hold at their strength: in a heap of debris it tells nothing of a particle's strain.
+    /// All pairs of those particles, ascending, that what is left of their neighbours would strain beyond what they
+    /// held and could hold at their strength: in a heap of debris it tells nothing of a particle's strain.
     fn overstrained(&mut self, touched: &[usize]) -> Vec<[usize; 2]> {
         let Some(fracture) = &self.fracture else { return Vec::new() };
         let most = self.volume * fracture.keys.strength.powi(2) / (2.0 * fracture.modulus);
@@ -137,8 +138,8 @@ impl<const D: usize> TotalLagrangian<D> {
         self.pairs.neighbours(slot).map(weighted).fold(Matrix::zeros(), |sum, of_pair| sum + of_pair)
     }
 
-    /// The moment matrix of a particle that was cut off from neighbours: whether it is free and has lost its deformation
-    /// gradient is told by `false`.
+    /// The moment matrix of a particle that was cut off from neighbours: whether it is free and has lost its
+    /// deformation gradient is told by `false`.
     pub(super) fn correct_again(&mut self, slot: usize) -> bool {
         if self.rigid_clamps && self.fixed.clamped[slot] != 0.0 {
             return true;

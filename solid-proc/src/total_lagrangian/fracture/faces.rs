@@ -1,9 +1,9 @@
 //! The two sides of a cut.
 //!
-//! They repel as bodies do, k (d - r), but from the distance d on that they have when they are cut, at most dx: nothing
-//! pushes at that moment. While they are farther apart d grows with their distance, up to dx. A body does not see itself,
-//! so inside of one the whole force is here; between two bodies it is what is to be added to that of their contact,
-//! k (dx - r).
+//! They repel as bodies do, k (d - r), but from the distance d on that they have when they are cut, at most dx:
+//! nothing pushes at that moment. While they are farther apart d grows with their distance, up to dx. A body does not
+//! see itself, so inside of one the whole force is here; between two bodies it is what is to be added to that of
+//! their contact, k (dx - r).
 
 use super::Fracture;
 use crate::total_lagrangian::model::TotalLagrangian;
@@ -23,8 +23,8 @@ impl<const D: usize> TotalLagrangian<D> {
         (0..D).map(|d| (x[d] - y[d]).powi(2)).sum::<f64>().sqrt()
     }
 
-    /// Calls `visit` with the faces that touch: slots, x_ij / r, and the overlaps beside that of bodies in contact, and of
-    /// these, m.
+    /// Calls `visit` with the faces that touch: slots, x_ij / r, and the overlaps beside that of bodies in contact,
+    /// and of these, m.
     fn touching_faces(&self, mut visit: impl FnMut([usize; 2], [f64; D], [f64; 2])) {
         let Some(fracture) = &self.fracture else { return };
         for Face { pair, distance } in &fracture.faces {
@@ -71,8 +71,8 @@ impl<const D: usize> TotalLagrangian<D> {
         0.5 * self.face_stiffness() * sum
     }
 
-    /// What faces that touch inside of bodies add to the square of a particle's highest frequency, 1/s²: the largest of any
-    /// particle.
+    /// What faces that touch inside of bodies add to the square of a particle's highest frequency, 1/s²: the largest
+    /// of any particle.
     pub(in crate::total_lagrangian) fn face_springs(&self) -> f64 {
         let mut touched: Vec<usize> = Vec::new();
         self.touching_faces(|pair, _, [own, seen]| {

@@ -73,9 +73,10 @@ impl<const D: usize> TotalLagrangian<D> {
             let (damage, last) = (fracture.damage[slot], fracture.last[slot]);
             self.soften(slot);
             let after = before - self.energy_at(slot);
-            // Over the sub-step, in which the strain went from the last one to the present one: for e² the velocity Verlet
-            // scheme takes the geometric mean, exactly.
-            let [last, present] = [last, self.gradient[slot]].map(|f| self.lost_by(&f, [old, damage]).max(0.0));
+            // Over the sub-step, in which the strain went from the last one to the present one: for e² the velocity
+            // Verlet scheme takes the geometric mean, exactly.
+            let [last, present] =
+                [last, self.gradient[slot]].map(|f| self.lost_by(&f, [old, damage]).max(0.0));
             let taken = after - present + (last * present).sqrt();
             self.book(taken);
             let (f, j) = (self.gradient[slot], self.volume_ratio[slot]);

@@ -3,13 +3,14 @@
 //! **Damage.** The principal tension sigma of the undamaged law (Rankine), carried to the surface where a particle lies
 //! under one, starts damage where it reaches f_t. The largest strain e = sigma / E' that a particle has seen then gives
 //!   d(e) = 1 - (e0 / e) exp(-(e - e0) / e_f),   e0 = f_t / E',   e_f = G_f / (f_t b) - e0 / 2
-//! (Bazant and Oh 1983; Jirasek and Zimmermann 1998, eq. 12), so a band of width b takes G_f from a crack across it.
-//! Damage scales the tensile part of the stored energy (see `split`) and, to the sixteenth power of 1 - d, the hourglass
-//! resistance, which would stiffen the band.
+//! (Bazant and Oh 1983), so a band of width b takes G_f from a crack across it.
+//! Damage scales the tensile part of the stored energy (see `split`) and, to the sixteenth power of 1 - d, the
+//! hourglass resistance, which would stiffen the band.
 //!
-//! **Cuts.** A stretched pair of two particles that have 0.5 % of their strength left is cut: its weight is zero in the moment matrix, the
-//! deformation gradient, the force and the hourglass term, and both get a new moment matrix. So force stays the
-//! derivative of an energy. What damage and cuts take of the energy of the present state is booked when they happen.
+//! **Cuts.** A stretched pair of two particles that have 0.5 % of their strength left is cut: its weight is zero in
+//! the moment matrix, the deformation gradient, the force and the hourglass term, and both get a new moment matrix.
+//! So force stays the derivative of an energy. What damage and cuts take of the energy of the present state is booked
+//! when they happen.
 //!
 //! Both change only at the ends of sub-steps of a step's second stage, which is not taken back, one particle after the
 //! other: the first stage computes with what is damaged and cut at n.
@@ -77,7 +78,12 @@ pub(super) struct Fracture<const D: usize> {
 
 impl<const D: usize> Fracture<D> {
     /// Of the scene's solid of that index; `None` where it does not break.
-    pub(super) fn new(scene: &Scene, solid: usize, body: &[u32], dormant: Option<Contact<D>>) -> Option<Self> {
+    pub(super) fn new(
+        scene: &Scene,
+        solid: usize,
+        body: &[u32],
+        dormant: Option<Contact<D>>,
+    ) -> Option<Self> {
         let material = scene.solids.get(solid)?;
         let keys = material.fracture().filter(|_| takes_part(scene, solid, EffectName::Fracture))?;
         Some(Self {
@@ -119,7 +125,6 @@ impl<const D: usize> Fracture<D> {
     fn softening(&self, slot: usize) -> Softening {
         Softening::new(self.onset[slot], self.modulus, self.keys.energy / self.band[slot])
     }
-
 }
 
 impl<const D: usize> TotalLagrangian<D> {

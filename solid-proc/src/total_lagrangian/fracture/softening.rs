@@ -1,7 +1,7 @@
 //! Exponential softening of a crack band.
 
-/// The law of one particle: sigma = f exp(-(e - e0) / e_f) from the strain e0 on, with e0 = f / E' and the area under the
-/// whole curve the energy per volume that the band takes.
+/// The law of one particle: sigma = f exp(-(e - e0) / e_f) from the strain e0 on, with e0 = f / E' and the area under
+/// the whole curve the energy per volume that the band takes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Softening {
     /// e0.
@@ -11,8 +11,8 @@ pub(super) struct Softening {
 }
 
 impl Softening {
-    /// From the strain at which damage begins, E' in Pa, and the energy G_f / b, J/m³. A particle under the surface, whose
-    /// surface reaches f_t first, begins earlier and takes the same energy.
+    /// From the strain at which damage begins, E' in Pa, and the energy G_f / b, J/m³. A particle under the surface,
+    /// whose surface reaches f_t first, begins earlier and takes the same energy.
     pub(super) fn new(onset: f64, modulus: f64, energy: f64) -> Self {
         Self { onset, fade: energy / (onset * modulus) - 0.5 * onset }
     }

@@ -1,7 +1,7 @@
 //! The law of a damaged particle: psi = (1 - d) psi+ + psi-, the tensile and the compressive part of the law's energy.
 //!
 //! In principal stretches s_a, c_a = s_a², E_a = (c_a - 1) / 2, with <x>+ = max(x, 0) and <x>- = min(x, 0) (Miehe,
-//! Hofacker and Welschinger 2010, eq. 20, for small strains):
+//! Hofacker and Welschinger 2010, for small strains):
 //!   St. Venant-Kirchhoff:  psi± = lambda/2 <tr E>±² + mu sum <E_a>±²
 //!   neo-Hooke:             psi± = lambda/2 <ln J>±² + mu/2 sum (c_a - 1 - ln c_a) of the s_a above (below) 1
 //! Both parts add up to the law, and a crack that closes carries the whole pressure.
@@ -22,7 +22,12 @@ pub(in crate::total_lagrangian) struct Damaged<const D: usize> {
 
 impl Law {
     /// Of a damage d > 0; `j` is [`Law::volume_ratio`].
-    pub(in crate::total_lagrangian) fn damaged<const D: usize>(&self, f: &Matrix<D>, j: f64, d: f64) -> Damaged<D> {
+    pub(in crate::total_lagrangian) fn damaged<const D: usize>(
+        &self,
+        f: &Matrix<D>,
+        j: f64,
+        d: f64,
+    ) -> Damaged<D> {
         let (squares, directions) = principal(&(f.transpose() * f));
         let (_, mu) = self.constants();
         let lambda = self.lambda_in_plane();
@@ -58,7 +63,12 @@ impl Law {
     }
 
     /// Cauchy stress of a damage d > 0.
-    pub(in crate::total_lagrangian) fn damaged_cauchy<const D: usize>(&self, f: &Matrix<D>, j: f64, d: f64) -> Cauchy<D> {
+    pub(in crate::total_lagrangian) fn damaged_cauchy<const D: usize>(
+        &self,
+        f: &Matrix<D>,
+        j: f64,
+        d: f64,
+    ) -> Cauchy<D> {
         let damaged = self.damaged(f, j, d);
         let sigma = damaged.stress * f.transpose() / j;
         let pressure = -(sigma.trace() + damaged.across) / 3.0;

@@ -29,9 +29,13 @@ impl<const D: usize> State for Saved<'_, D> {
 
 impl<const D: usize> TotalLagrangian<D> {
     /// Visits what is damaged and cut; loading, it damages and cuts, before contacts are loaded.
-    pub(in crate::total_lagrangian) fn fracture_fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
+    pub(in crate::total_lagrangian) fn fracture_fields(
+        &mut self,
+        fields: &mut Fields<'_>,
+    ) -> Result<(), StateError> {
         let Some(fracture) = &mut self.fracture else { return Ok(()) };
-        let mut cuts: Vec<u32> = fracture.faces.iter().flat_map(|face| face.pair).map(|slot| slot as u32).collect();
+        let mut cuts: Vec<u32> =
+            fracture.faces.iter().flat_map(|face| face.pair).map(|slot| slot as u32).collect();
         let mut distances: Vec<f64> = fracture.faces.iter().map(|face| face.distance).collect();
         let mut saved = Saved { fracture, cuts: &mut cuts, distances: &mut distances };
         fields.part("fracture", &mut saved)?;
