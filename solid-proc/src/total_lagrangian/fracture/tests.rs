@@ -222,7 +222,7 @@ fn finer_cantilevers_break_where_beam_theory_says() {
 
 /// A free strip whose halves fly apart, turned by an angle about the origin.
 fn halves(angle: f64) -> String {
-    let (s, c) = angle.to_radians().sin_cos();
+    let (s, c) = (libm::sin(angle.to_radians()), libm::cos(angle.to_radians()));
     let half = |name: &str, from: f64, to: f64, v: f64| {
         let (vx, vy) = (v * c, v * s);
         format!(
