@@ -1,9 +1,9 @@
 //! The law of a damaged particle: psi = (1 - d) psi+ + psi-, the tensile and the compressive part of the law's energy.
 //!
-//! In principal stretches s_a, c_a = s_a², E_a = (c_a - 1) / 2, with <x>+ = max(x, 0) and <x>- = min(x, 0) (Miehe,
+//! In principal stretches s_a, c_a = s_a², E_a = (c_a - 1) / 2, with (x)+ = max(x, 0) and (x)- = min(x, 0) (Miehe,
 //! Hofacker and Welschinger 2010, for small strains):
-//!   St. Venant-Kirchhoff:  psi± = lambda/2 <tr E>±² + mu sum <E_a>±²
-//!   neo-Hooke:             psi± = lambda/2 <ln J>±² + mu/2 sum (c_a - 1 - ln c_a) of the s_a above (below) 1
+//!   St. Venant-Kirchhoff:  psi± = lambda/2 (tr E)±² + mu sum (E_a)±²
+//!   neo-Hooke:             psi± = lambda/2 (ln J)±² + mu/2 sum (c_a - 1 - ln c_a) of the s_a above (below) 1
 //! Both parts add up to the law, and a crack that closes carries the whole pressure.
 
 use super::principal::principal;
