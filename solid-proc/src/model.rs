@@ -109,6 +109,19 @@ impl<const D: usize> RigidState<D> {
     }
 }
 
+/// What fracture has done to a model.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FractureSummary {
+    /// Energy that it took, J (2D: J/m).
+    pub energy: f64,
+    /// Area of cracks, m² (2D: m): of the faces of cells between which pairs are cut.
+    pub area: f64,
+    /// Number of bodies.
+    pub bodies: u32,
+    /// Particles that are loose: left with too few neighbours for a deformation gradient.
+    pub loose: u32,
+}
+
 /// A particle of the model left its bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutOfBounds {
@@ -166,6 +179,18 @@ pub trait SolidModel<const D: usize>: Send {
             [] => self.particles().kinetic_energy(),
             bodies => bodies.iter().map(|body| body.kinetic_energy).sum(),
         }
+    }
+    /// What fracture has done; of a model that does not break nothing.
+    fn fracture(&self) -> FractureSummary {
+        FractureSummary::default()
+    }
+    /// The model can break: its frames show damage.
+    fn breaks(&self) -> bool {
+        false
+    }
+    /// Damage of a particle, 0 to 1.
+    fn damage(&self, _particle: u32) -> f64 {
+        0.0
     }
     /// Pair evaluations so far.
     fn pair_evaluations(&self) -> u64;

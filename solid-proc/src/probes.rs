@@ -17,6 +17,9 @@ pub(crate) enum Measurement<const D: usize> {
     Stress(Vec<u32>),
     KineticEnergy,
     StrainEnergy,
+    CrackEnergy,
+    CrackArea,
+    Bodies,
     Centroid,
     /// Force of the fluid on these particles.
     Force(Vec<u32>),
@@ -58,6 +61,9 @@ pub(crate) fn of_solid<const D: usize>(
         ProbeKind::Stress { at } => Some(Measurement::Stress(near(at))),
         ProbeKind::KineticEnergy { phase: Phase::Solid } => Some(Measurement::KineticEnergy),
         ProbeKind::StrainEnergy => Some(Measurement::StrainEnergy),
+        ProbeKind::CrackEnergy => Some(Measurement::CrackEnergy),
+        ProbeKind::CrackArea => Some(Measurement::CrackArea),
+        ProbeKind::Bodies => Some(Measurement::Bodies),
         ProbeKind::Centroid { phase: Phase::Solid } => Some(Measurement::Centroid),
         ProbeKind::Force { within, shape } => Some(Measurement::Force(loaded(*within, *shape))),
         ProbeKind::Moment { about, within, shape } => {
@@ -117,6 +123,13 @@ impl<const D: usize> Measurement<D> {
                 for d in 0..D {
                     put(bodies.iter().map(|body| body.mass * body.center[d]).sum::<f64>() / mass);
                 }
+            }
+            Self::CrackEnergy => put(model.fracture().energy),
+            Self::CrackArea => put(model.fracture().area),
+            Self::Bodies => {
+                let fracture = model.fracture();
+                put(f64::from(fracture.bodies));
+                put(f64::from(fracture.loose));
             }
             Self::Centroid => {
                 let mass: f64 = state.mass.iter().sum();

@@ -251,6 +251,9 @@ impl<const D: usize> Role for Solid<D> {
         let mut records = Vec::with_capacity(self.all.len());
         self.model.records(&self.all, &mut records);
         records.iter().for_each(|r| frame.push(FramePoint::solid(r)));
+        if self.model.breaks() {
+            frame.damage.extend(self.all.iter().map(|&p| self.model.damage(p) as f32));
+        }
     }
 
     fn state_hash(&self) -> u64 {

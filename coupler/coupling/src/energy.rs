@@ -105,7 +105,11 @@ pub struct EnergyBalance {
 fn driven(scene: &Scene) -> Vec<String> {
     let moves = |k: usize| {
         let of = |s: &&halfstep_scene::Shape| s.solid == Some(k);
-        scene.shapes.iter().filter(of).any(|s| s.motion.is_some() || !s.clamp_with.is_empty())
+        scene
+            .shapes
+            .iter()
+            .filter(of)
+            .any(|s| s.motion.is_some() || !s.clamp_with.is_empty() || s.load.is_some())
     };
     let solids = scene.solids.iter().enumerate().filter(|(k, _)| moves(*k));
     solids.map(|(_, solid)| solid.name.clone()).collect()

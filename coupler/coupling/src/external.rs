@@ -77,7 +77,10 @@ impl ExternalSolid {
                     self.values.push(sum / chosen.len() as f64);
                 }
                 // Its particles say nothing of what its inside stores.
-                ProbeKind::StrainEnergy => self.values.push(f64::NAN),
+                ProbeKind::StrainEnergy | ProbeKind::CrackEnergy | ProbeKind::CrackArea => {
+                    self.values.push(f64::NAN)
+                }
+                ProbeKind::Bodies => self.values.extend([f64::NAN; 2]),
                 ProbeKind::Moment { about, .. } => {
                     let of = |&i: &usize| {
                         let (x, f) = (records[i].position, forces[i].force(records[i].mass));

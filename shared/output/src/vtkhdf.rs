@@ -7,7 +7,8 @@
 //! /VTKHDF                  @Version = [1, 0], @Type = "UnstructuredGrid"
 //!   NumberOfPoints, NumberOfCells, NumberOfConnectivityIds    i64[1] = n
 //!   Points f32[n,3]   Connectivity i64[n] = 0..n-1   Offsets i64[n+1] = 0..n   Types u8[n] = 1 (vertex)
-//!   PointData/velocity f32[n,3], density f32[n], pressure f32[n], stress f32[n,6], phase u8[n], id i32[n]
+//!   PointData/velocity f32[n,3], density f32[n], pressure f32[n], stress f32[n,6], phase u8[n], id i32[n];
+//!   damage f32[n] of a solid that can break
 //!   FieldData/TimeValue f64[1]
 //! ```
 
@@ -62,6 +63,9 @@ fn fill(path: &Path, frame: &Frame) -> hdf5::Result<()> {
     put(&data, "density", &frame.density)?;
     put(&data, "pressure", &frame.pressure)?;
     put_rows(&data, "stress", &frame.stress)?;
+    if !frame.damage.is_empty() {
+        put(&data, "damage", &frame.damage)?;
+    }
     put(&data, "phase", &frame.phase)?;
     put(&data, "id", &frame.id)?;
     put(&root.create_group("FieldData")?, "TimeValue", &[frame.time])?;
@@ -94,6 +98,7 @@ pub fn read(path: &Path) -> Result<Frame, OutputError> {
         density: column(&data, "density", path)?,
         pressure: column(&data, "pressure", path)?,
         stress: rows(&data, "stress", path)?,
+        damage: if data.link_exists("damage") { column(&data, "damage", path)? } else { Vec::new() },
         phase: column(&data, "phase", path)?,
         id: column(&data, "id", path)?,
     };

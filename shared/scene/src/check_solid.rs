@@ -20,6 +20,8 @@ impl Check<'_> {
         }
         self.solid_time_step();
         self.spacings();
+        self.fractures();
+        self.loads();
         self.bodies();
         self.clamps();
     }
@@ -54,6 +56,70 @@ impl Check<'_> {
             } else if too_wide {
                 let (dx, why) = (scene.resolution, "the fluid would slip between the solid's particles");
                 let reason = format!("makes {spacing} m, and must be at most the resolution, {dx} m: {why}");
+                self.report.among(self.root, &key, &["resolution"], reason);
+            }
+        }
+    }
+
+    /// Tractions and cracks are of a model that has them, and a traction finds a particle.
+    fn loads(&self) {
+        for (index, shape) in self.scene.shapes.iter().enumerate() {
+            let other =
+                shape.solid.and_then(|k| self.model(k)).filter(|m| *m != SolidModelName::TotalLagrangian);
+            let key = self.shape_key(index);
+            for (name, present) in [("load", shape.load.is_some()), ("crack", shape.crack.is_some())] {
+                if present && other.is_some() && !self.report.has_any(&["shape", "solid"]) {
+                    let reason = format!("only the total-lagrangian model knows `{name}`");
+                    self.report.among(self.root, &format!("{key}.{name}"), &[], reason);
+                }
+            }
+            let Some(load) = &shape.load else { continue };
+            let bounds = geometry::bounding_box(shape, self.scene);
+            let apart = |a: usize| bounds.max[a] < load.within.min[a] || load.within.max[a] < bounds.min[a];
+            if !self.report.has_any(&["resolution", "shape", "dimension"])
+                && (0..self.scene.dimension).any(apart)
+            {
+                let reason = format!("holds no part of `{}`", shape.name);
+                self.report.among(self.root, &format!("{key}.load.within"), &[], reason);
+            }
+        }
+    }
+
+    /// The band of a crack softens, and is not torn far apart before it breaks.
+    fn fractures(&self) {
+        if self.report.has_any(&["resolution", "shape", "solid", "dimension"]) {
+            return;
+        }
+        for (k, solid) in self.scene.solids.iter().enumerate() {
+            let Some(fracture) = solid.fracture() else { continue };
+            let band = Fracture::BAND * self.scene.solid_spacing(k);
+            let widest = fracture.widest_band(solid.strip_modulus(self.scene.dimension));
+            let narrowest = fracture.narrowest_band();
+            let key = format!("{}.fracture", self.solid_key(k));
+            // In single precision: without the last digits that a division leaves.
+            if solid.smoothing_ratio > Fracture::SMOOTHING {
+                let why = "farther neighbours see across a crack, and the width of its band is that of the nearest ones";
+                let reason = format!("needs a smoothing_ratio of at most {}: {why}", Fracture::SMOOTHING);
+                self.report.among(self.root, &key, &[], reason);
+                continue;
+            }
+            let [band_, widest_, narrowest_] = [band, widest, narrowest].map(|length| length as f32);
+            if band >= widest {
+                let why = "a wider band holds more energy than its fracture takes and snaps back";
+                let reason = format!(
+                    "smears a crack over a band of {band_} m, {} spacings, which must be below 2 E' G_f / f_t² = \
+                     {widest_} m: {why}",
+                    Fracture::BAND
+                );
+                self.report.among(self.root, &key, &["resolution"], reason);
+            } else if band < narrowest {
+                let why = "the opening at which a crack breaks would tear its band far apart";
+                let reason = format!(
+                    "smears a crack over a band of {band_} m, {} spacings, which must be at least G_f / ({} f_t) = \
+                     {narrowest_} m: {why}",
+                    Fracture::BAND,
+                    Fracture::WIDEST
+                );
                 self.report.among(self.root, &key, &["resolution"], reason);
             }
         }

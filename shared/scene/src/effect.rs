@@ -48,6 +48,8 @@ macro_rules! effect_names {
             Relaxation "relaxation",
             /// Friction on the faces of a solid that two dimensions do not see.
             SideFriction "side-friction",
+            /// Cracks in the total-Lagrangian solid.
+            Fracture "fracture",
         }
     };
 }

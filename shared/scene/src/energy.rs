@@ -55,6 +55,10 @@ parts! {
     Relaxation "relaxation",
     /// Given by side friction.
     SideFriction "side-friction",
+    /// Given by fracture: what damage and cuts of pairs take.
+    Fracture "fracture",
+    /// Given by tractions that the scene prescribes.
+    Loads "loads",
     /// Given by contact with walls, beside the work of their motion.
     WallContact "wall-contact",
     /// Given by the artificial stress.
@@ -102,7 +106,7 @@ const FLUID: [EnergyPart; 15] = {
     ]
 };
 
-const SOLID: [EnergyPart; 14] = {
+const SOLID: [EnergyPart; 16] = {
     use EnergyPart::*;
     [
         Kinetic,
@@ -112,6 +116,8 @@ const SOLID: [EnergyPart; 14] = {
         ArtificialStress,
         Relaxation,
         SideFriction,
+        Fracture,
+        Loads,
         WallContact,
         MovingWalls,
         Clamps,

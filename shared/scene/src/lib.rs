@@ -66,8 +66,8 @@ pub use participant::Participant;
 pub use probe::{BodyQuantity, Probe, ProbeKind, Reference};
 pub use resources::{expected_speed, memory_available, memory_needed};
 pub use solid::{
-    ArtificialStress, ContactKeys, FiniteElementKeys, HypoelasticKeys, Joint, JointKind, Material, ModelKeys,
-    Plane, RigidBody, RigidKeys, Solid, SolidModelName, SubSteps, TotalLagrangianKeys,
+    ArtificialStress, ContactKeys, FiniteElementKeys, Fracture, HypoelasticKeys, Joint, JointKind, Material,
+    ModelKeys, Plane, RigidBody, RigidKeys, Solid, SolidModelName, SubSteps, TotalLagrangianKeys,
 };
 pub use velocity_field::VelocityField;
 
@@ -260,6 +260,12 @@ pub struct Shape {
     /// Solid only: the wall that each clamp moves with, by its name; empty where none moves.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub clamp_with: Vec<Option<String>>,
+    /// Solid only: a traction that the scene prescribes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub load: Option<Traction>,
+    /// Solid only: ends of a line across which it is cut at the start, in space along z, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub crack: Option<[[f64; 3]; 2]>,
     /// Solid only: the body that it is part of; its own where it is empty.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub body: String,
@@ -272,6 +278,24 @@ pub struct Shape {
     pub free_slip: bool,
     /// Fluid only: start with hydrostatic pressure below the shape's highest point.
     pub hydrostatic: bool,
+}
+
+/// A traction on a solid's particles: each takes it on one face of its cell, dx (in space dx²).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Traction {
+    /// On the particles whose place in the initial configuration is in this box, m.
+    pub within: Block,
+    /// Force per area, Pa.
+    pub traction: [f64; 3],
+    /// How long it takes to grow evenly from nothing, s; 0: it is there at once.
+    pub ramp: f64,
+}
+
+impl Traction {
+    /// Part of it that acts at a time, s.
+    pub fn share(&self, time: f64) -> f64 {
+        if time < self.ramp { (time / self.ramp).max(0.0) } else { 1.0 }
+    }
 }
 
 /// A place that stays empty of all shapes that stand after it in the file.

@@ -35,6 +35,12 @@ pub enum ProbeKind {
     },
     /// Elastic energy stored in a solid, J (2D: J/m).
     StrainEnergy,
+    /// Energy that the fracture of a solid has taken, J (2D: J/m).
+    CrackEnergy,
+    /// Area of the cracks in a solid, m² (2D: length, m): of the faces of cells between which it is cut.
+    CrackArea,
+    /// Number of bodies of a solid, and of its particles that are loose.
+    Bodies,
     /// Fluid pressure at a point, or its mean along a line (kernel average of the fluid around), Pa.
     Pressure {
         /// The point, or where the line begins, m.
@@ -202,7 +208,9 @@ impl ProbeKind {
             Self::WaterLevel { x } if x.len() == 1 => (one("level"), "m"),
             Self::WaterLevel { x } => ((1..=x.len()).map(|k| format!("level-{k}")).collect(), "m"),
             Self::Front => (one("x"), "m"),
-            Self::KineticEnergy { .. } | Self::StrainEnergy => (one("energy"), "J"),
+            Self::KineticEnergy { .. } | Self::StrainEnergy | Self::CrackEnergy => (one("energy"), "J"),
+            Self::CrackArea => (one("area"), if dimension == 2 { "m" } else { "m2" }),
+            Self::Bodies => (["bodies", "loose"].map(str::to_owned).to_vec(), "1"),
             Self::Energy { phase, part } => (EnergyPart::names(*phase, *part), "J"),
             Self::Force { .. } => (axes(), "N"),
             Self::Moment { .. } => (one("moment"), "N m"),
@@ -227,6 +235,9 @@ impl Probe {
             | ProbeKind::Position { .. }
             | ProbeKind::Stress { .. }
             | ProbeKind::StrainEnergy
+            | ProbeKind::CrackEnergy
+            | ProbeKind::CrackArea
+            | ProbeKind::Bodies
             | ProbeKind::Force { .. }
             | ProbeKind::Moment { .. }
             | ProbeKind::Body { .. } => Phase::Solid,

@@ -12,6 +12,9 @@ enum Kind {
     Position,
     Stress,
     StrainEnergy,
+    CrackEnergy,
+    CrackArea,
+    Bodies,
     Pressure,
     Velocity,
     Flux,
@@ -25,11 +28,14 @@ enum Kind {
     Body(BodyQuantity),
 }
 
-const OTHERS: [(&str, Kind); 14] = [
+const OTHERS: [(&str, Kind); 17] = [
     ("displacement", Kind::Displacement),
     ("position", Kind::Position),
     ("stress", Kind::Stress),
     ("strain-energy", Kind::StrainEnergy),
+    ("crack-energy", Kind::CrackEnergy),
+    ("crack-area", Kind::CrackArea),
+    ("bodies", Kind::Bodies),
     ("pressure", Kind::Pressure),
     ("velocity", Kind::Velocity),
     ("flux", Kind::Flux),
@@ -66,6 +72,9 @@ pub(super) fn probe(
         Kind::Position => ProbeKind::Position { at: at() },
         Kind::Stress => ProbeKind::Stress { at: at() },
         Kind::StrainEnergy => ProbeKind::StrainEnergy,
+        Kind::CrackEnergy => ProbeKind::CrackEnergy,
+        Kind::CrackArea => ProbeKind::CrackArea,
+        Kind::Bodies => ProbeKind::Bodies,
         Kind::Pressure => pressure(&section, dimension, shapes)?,
         Kind::Velocity => ProbeKind::Velocity { at: at() },
         Kind::Flux => ProbeKind::Flux { from: vector("from"), to: vector("to") },

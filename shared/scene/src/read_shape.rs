@@ -68,6 +68,8 @@ pub(super) fn shape(
         velocity_field: velocity_field(&section, dimension),
         clamp,
         clamp_with,
+        load: load(&section, dimension),
+        crack: crack(&section, dimension),
         body: body(&section),
         motion: read_motion::motion(&section, dimension, folder),
         contact: section.boolean("contact", false),
@@ -79,6 +81,8 @@ pub(super) fn shape(
     for (key, owner, article) in [
         ("cantilever_mode", Phase::Solid, "a solid"),
         ("clamp", Phase::Solid, "a solid"),
+        ("load", Phase::Solid, "a solid"),
+        ("crack", Phase::Solid, "a solid"),
         ("body", Phase::Solid, "a solid"),
         ("density", Phase::Solid, "a solid"),
         ("solid", Phase::Solid, "a solid"),
@@ -293,6 +297,43 @@ fn velocity_field(section: &Section<'_>, dimension: usize) -> Option<VelocityFie
     };
     table.finish();
     Some(field)
+}
+
+/// A traction that the scene prescribes.
+fn load(section: &Section<'_>, dimension: usize) -> Option<Traction> {
+    let table = section.section("load");
+    if !table.is_present() {
+        return None;
+    }
+    let within = table.section("within");
+    if !within.is_present() {
+        table.missing("within");
+    }
+    let read = Traction {
+        within: within.whole_block(dimension),
+        traction: table.vector("traction", dimension, None),
+        ramp: table.number("ramp", Some(0.0), Range::at_least(0.0).up_to(1e9).why("it is a time, s")),
+    };
+    table.finish();
+    Some(read)
+}
+
+/// The ends of a crack.
+fn crack(section: &Section<'_>, dimension: usize) -> Option<[[f64; 3]; 2]> {
+    let node = section.node("crack")?;
+    let ends = match &node.value {
+        Value::Array(ends) if ends.len() == 2 => ends,
+        _ => {
+            section.wrong("crack", node, "must be the two ends of a line, [[x, y], [x, y]]");
+            return None;
+        }
+    };
+    let [from, to] = [&ends[0], &ends[1]].map(|end| section.as_vector("crack", end, dimension));
+    let crack = [from?, to?];
+    if crack[0][..2] == crack[1][..2] {
+        section.wrong("crack", node, "has no length in the plane of x and y");
+    }
+    Some(crack)
 }
 
 /// The clamps' boxes, and with which wall each moves.

@@ -1,12 +1,14 @@
 //! The solid's section of a scene: what all models have. What only one has is in its file in `solid`.
 
 mod finite_element;
+mod fracture;
 mod hypoelastic;
 mod models;
 mod rigid;
 mod total_lagrangian;
 
 pub use finite_element::FiniteElementKeys;
+pub use fracture::Fracture;
 pub use hypoelastic::{ArtificialStress, HypoelasticKeys};
 pub use models::{ModelKeys, SolidModelName};
 pub use rigid::{ContactKeys, Joint, JointKind, RigidBody, RigidKeys};

@@ -171,6 +171,34 @@ impl<const D: usize> FixedPairs<D> {
         }
     }
 
+    /// Where the slope of a pair is kept, by its slots.
+    fn place(&self, i: usize, j: usize) -> Option<(usize, usize)> {
+        let cluster = i / LANES;
+        let c = cluster / CHUNK_CLUSTERS;
+        let (neighbours, first) = self.list.chunks()[c].range(cluster % CHUNK_CLUSTERS);
+        Some((c, first + neighbours.iter().position(|&k| k as usize == j)?))
+    }
+
+    /// Cuts a pair, by its slots: it has no slope from now on, whichever of the two asks.
+    pub fn cut(&mut self, i: usize, j: usize) {
+        for (i, j) in [(i, j), (j, i)] {
+            if let Some((c, entry)) = self.place(i, j) {
+                self.slopes[c][entry].0[i % LANES] = 0.0;
+            }
+        }
+    }
+
+    /// Slots of the neighbours that a slot is not cut off from, in the list's order, with the slopes F.
+    pub fn neighbours(&self, slot: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let cluster = slot / LANES;
+        let c = cluster / CHUNK_CLUSTERS;
+        let (neighbours, first) = self.list.chunks()[c].range(cluster % CHUNK_CLUSTERS);
+        let slopes = &self.slopes[c][first..];
+        let slopes = slopes.iter().map(move |slope| slope.0[slot % LANES]);
+        let pairs = neighbours.iter().map(|&j| j as usize).zip(slopes);
+        pairs.filter(move |&(j, slope)| j != slot && slope != 0.0)
+    }
+
     /// The positions.
     pub fn position(&self) -> &Vectors<D> {
         &self.position

@@ -10,7 +10,8 @@ pub const SOLID: u8 = 1;
 /// Number of the walls in [`Frame::phase`].
 pub const WALL: u8 = 2;
 
-/// All particles of a process at one instant, in single precision. The columns are equally long.
+/// All particles of a process at one instant, in single precision. The columns are equally long; that of the
+/// damage may be empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Frame {
     /// Simulated time, s.
@@ -25,6 +26,8 @@ pub struct Frame {
     pub pressure: Vec<f32>,
     /// Cauchy stresses xx, yy, zz, xy, yz, xz, Pa; zero for fluid and walls.
     pub stress: Vec<[f32; 6]>,
+    /// Damage of a solid that can break, 0 to 1; of all others this column is empty.
+    pub damage: Vec<f32>,
     /// [`FLUID`], [`SOLID`] or [`WALL`].
     pub phase: Vec<u8>,
     /// Particle numbers: unique in a phase, the same in every frame.
@@ -114,6 +117,7 @@ impl Frame {
         self.density.clear();
         self.pressure.clear();
         self.stress.clear();
+        self.damage.clear();
         self.phase.clear();
         self.id.clear();
     }
@@ -133,9 +137,10 @@ impl Frame {
         self.id.push(particle.id as i32);
     }
 
-    /// Whether all columns are equally long: what a file can hold.
+    /// Whether all columns are equally long, that of the damage apart where it is empty: what a file can hold.
     pub fn is_consistent(&self) -> bool {
         let n = self.len();
+        let damage = self.damage.is_empty() || self.damage.len() == n;
         [
             self.velocity.len(),
             self.density.len(),
@@ -146,5 +151,6 @@ impl Frame {
         ]
         .iter()
         .all(|&length| length == n)
+            && damage
     }
 }

@@ -74,12 +74,14 @@ impl<const D: usize> Contact<D> {
         let walls = takes_part(scene, solid, EffectName::WallContact)
             .then(|| Walls::new(scene, &layout.wall, (2.0 + SKIN) * h))
             .flatten();
+        let breaks = takes_part(scene, solid, EffectName::Fracture);
         let several = body.iter().any(|&b| b != body[0]);
         let id = match (&walls, several) {
-            (None, false) => return None,
-            // The pressure at a wall comes from what is behind the surface, too.
+            (None, false) if !breaks => return None,
+            // The pressure at a wall comes from what is behind the surface, too; cracks open surfaces everywhere.
             (Some(_), _) => (0..layout.solid.len() as u32).collect(),
-            (None, true) => surface_set(&layout.solid, body, 0.1 * dx, dx),
+            (None, _) if breaks => (0..layout.solid.len() as u32).collect(),
+            (None, _) => surface_set(&layout.solid, body, 0.1 * dx, dx),
         };
         let column = |of: &dyn Fn(&SolidPoint<D>) -> f64| -> Vec<f64> {
             id.iter().map(|&p| of(&layout.solid[p as usize])).collect()
@@ -200,6 +202,20 @@ impl<const D: usize> Contact<D> {
         }
         self.list();
         Ok(())
+    }
+
+    /// There is something to touch.
+    pub(super) fn acts(&self) -> bool {
+        self.several || self.walls.is_some()
+    }
+
+    /// The bodies are these from now on, by particle number, and they are several.
+    pub(super) fn divide(&mut self, bodies: &[u32]) {
+        for (body, &id) in self.body.iter_mut().zip(&self.id).filter(|(_, id)| **id != PADDING) {
+            *body = f64::from(bodies[id as usize]);
+        }
+        self.several = true;
+        self.list();
     }
 
     /// There are contacts between bodies.

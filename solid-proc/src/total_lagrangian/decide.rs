@@ -2,7 +2,7 @@
 
 use crate::effects::is_clamped;
 use crate::models::OwnEffects;
-use halfstep_scene::{Derived, EffectName, ModelKeys, Scene, Shape};
+use halfstep_scene::{Derived, EffectName, Fracture, ModelKeys, Scene, Shape};
 
 pub(crate) const EFFECTS: OwnEffects = OwnEffects {
     list: &[
@@ -11,6 +11,7 @@ pub(crate) const EFFECTS: OwnEffects = OwnEffects {
             EffectName::Relaxation,
             "only the total-Lagrangian solid has a strain that Maxwell arms could follow",
         ),
+        (EffectName::Fracture, "only the total-Lagrangian solid breaks"),
     ],
     derive,
 };
@@ -18,6 +19,7 @@ pub(crate) const EFFECTS: OwnEffects = OwnEffects {
 fn derive(scene: &Scene, solid: usize, effect: EffectName) -> Derived {
     match effect {
         EffectName::Relaxation => relaxation(scene, solid),
+        EffectName::Fracture => fracture(scene, solid),
         _ if turns(scene, solid) => {
             Derived::Impossible("a clamp turns, and clamps at faces know no rotation".into())
         }
@@ -32,6 +34,21 @@ fn turns(scene: &Scene, solid: usize) -> bool {
     let with = |shape: &Shape, wall: &Shape| shape.clamp_with.iter().flatten().any(|name| *name == wall.name);
     let mut shapes = scene.shapes.iter().filter(|shape| shape.solid == Some(solid));
     shapes.any(|s| turning(s) || scene.shapes.iter().any(|wall| turning(wall) && with(s, wall)))
+}
+
+fn fracture(scene: &Scene, solid: usize) -> Derived {
+    let Some((solid_, keys)) = scene.solids.get(solid).and_then(|solid| Some((solid, solid.fracture()?)))
+    else {
+        return Derived::Impossible("solid.fracture is not there".into());
+    };
+    let band = Fracture::BAND * scene.solid_spacing(solid);
+    Derived::On(format!(
+        "solid.fracture: {} Pa and {} J/m², cracks in bands of {} m, of at most {} m",
+        keys.strength,
+        keys.energy,
+        band as f32,
+        keys.widest_band(solid_.strip_modulus(scene.dimension)) as f32
+    ))
 }
 
 fn relaxation(scene: &Scene, solid: usize) -> Derived {

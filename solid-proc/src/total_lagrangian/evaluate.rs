@@ -1,6 +1,7 @@
 //! Inner acceleration of a state: deformation gradient, stress, momentum, contacts.
 
 use super::contact::{Contact, Present};
+use super::fracture::Fracture;
 use super::material::{Cauchy, Matrix};
 use super::model::TotalLagrangian;
 use super::pass::{Damping, Deformation, DeformationSum, Moment, MomentSum, Momentum, Viscous};
@@ -12,7 +13,7 @@ use halfstep_sph::lane::LANES;
 use halfstep_sph::neighbours::PADDING;
 use halfstep_sph::{pair, tensor, with_kernel};
 
-fn at<const D: usize>(entries: &[[halfstep_sph::lane::Lane; D]; D], k: usize) -> Matrix<D> {
+pub(super) fn at<const D: usize>(entries: &[[halfstep_sph::lane::Lane; D]; D], k: usize) -> Matrix<D> {
     Matrix::from_fn(|a, b| entries[a][b].0[k])
 }
 
@@ -38,11 +39,18 @@ impl<const D: usize> TotalLagrangian<D> {
         (self.pairs.list().entries() * LANES) as u64
     }
 
-    fn deformation(&mut self) {
+    /// The sums of the first pass.
+    pub(super) fn first_pass(&mut self) {
         let law =
             Deformation { fixed: &self.fixed, displacement: &self.now.displacement, volume: self.volume };
         pair::fixed_pass(self.isa, &law, &self.pairs, &mut self.deformations);
         self.pair_evaluations += self.evaluations();
+    }
+
+    /// F of a slot from the sums of the first pass.
+    pub(super) fn gradient_at(&self, slot: usize) -> Matrix<D> {
+        let h = at(&self.deformations[slot / LANES].gradient, slot % LANES) * self.correction[slot];
+        Matrix::identity() + h
     }
 
     fn momentum<V: Damping<D>>(&self, damping: V, sums: &mut [super::pass::Acceleration<D>]) {
@@ -61,6 +69,8 @@ impl<const D: usize> TotalLagrangian<D> {
     /// in which volumes leave their bounds, the one farthest out is kept in `failure`.
     fn stresses<R: Relaxation<D>>(&mut self, relaxation: &mut R) {
         let mut worst: Option<(u32, Excess)> = None;
+        let screen = self.fracture.as_ref().map_or(f64::INFINITY, Fracture::screen);
+        let mut candidates = Vec::new();
         for slot in 0..self.id.len() {
             if self.id[slot] == PADDING {
                 continue;
@@ -74,31 +84,47 @@ impl<const D: usize> TotalLagrangian<D> {
             {
                 worst = Some((self.id[slot], excess));
             }
-            let mut p = self.law.first_piola_kirchhoff(&f, j);
+            let mut p = self.stress_at(slot, &f, j);
+            let tense = screen < f64::INFINITY && (p.norm_squared() > screen || self.damage_at(slot) > 0.0);
+            if tense && self.fixed.clamped[slot] == 0.0 {
+                candidates.push(slot);
+            }
             if R::ACTS {
                 p += f * relaxation.advance(slot, &f);
             }
             let bracket = p * correction - h * self.hourglass[slot];
             self.gradient[slot] = f;
             self.volume_ratio[slot] = j;
-            for a in 0..D {
-                for b in 0..D {
-                    self.bracket[a][b][slot] = bracket[(a, b)];
-                }
-            }
+            self.set_bracket(slot, &bracket);
         }
         self.failure = self.failure.or(worst);
+        if !candidates.is_empty() {
+            self.grow(&candidates);
+        }
+    }
+
+    /// B of a slot, Pa.
+    pub(super) fn set_bracket(&mut self, slot: usize, bracket: &Matrix<D>) {
+        for a in 0..D {
+            for b in 0..D {
+                self.bracket[a][b][slot] = bracket[(a, b)];
+            }
+        }
     }
 
     /// Cauchy stress at a slot.
     pub(super) fn cauchy(&self, slot: usize) -> Cauchy<D> {
         let (f, j) = (&self.gradient[slot], self.volume_ratio[slot]);
-        self.now.memory.added_to(self.law.cauchy(f, j), slot, f, j)
+        let cauchy = match self.damage_at(slot) {
+            d if d > 0.0 => self.law.damaged_cauchy(f, j, d),
+            _ => self.law.cauchy(f, j),
+        };
+        self.now.memory.added_to(cauchy, slot, f, j)
     }
 
     /// Acceleration of the present state, `elapsed` (s) after the one before, by everything but loads and gravity.
     pub(super) fn evaluate(&mut self, elapsed: f64) {
-        self.deformation();
+        self.first_pass();
         if self.arms.is_empty() {
             self.stresses(&mut ());
         } else {
@@ -130,6 +156,9 @@ impl<const D: usize> TotalLagrangian<D> {
             }
         }
         self.sums = sums;
+        if self.fracture.is_some() {
+            self.push_faces();
+        }
         if let Some(contact) = self.contact.take() {
             self.contact = Some(self.touch(contact));
         }
@@ -178,6 +207,8 @@ impl<const D: usize> TotalLagrangian<D> {
         let (before, state) = (self.pair_evaluations, self.now.clone());
         let evaluation = |model: &mut Self| fastest(|| model.evaluate(0.0));
         let mut costs = Costs::default();
+        // Damage does not grow where it has grown: it is looked for only.
+        self.fracture.iter_mut().for_each(|fracture| fracture.accept(true));
         let whole = evaluation(self);
         let mut note = |effect: EffectName, without: f64| {
             costs.effects[effect as usize] = (1.0 - without / whole).max(0.0);
@@ -205,6 +236,11 @@ impl<const D: usize> TotalLagrangian<D> {
             note(EffectName::Relaxation, evaluation(self));
             self.arms = arms;
         }
+        if let Some(mut fracture) = self.fracture.take() {
+            note(EffectName::Fracture, evaluation(self));
+            fracture.accept(false);
+            self.fracture = Some(fracture);
+        }
         self.now.copy_from(&state);
         self.pair_evaluations = before;
         costs
@@ -218,18 +254,22 @@ impl<const D: usize> TotalLagrangian<D> {
             .map(|&slot| {
                 let slot = slot as usize;
                 let f = &self.gradient[slot];
-                let strained = self.volume * self.law.energy(f, self.volume_ratio[slot]);
+                let strained = match self.damage_at(slot) {
+                    d if d > 0.0 => self.volume * self.law.damaged(f, self.volume_ratio[slot], d).energy,
+                    _ => self.volume * self.law.energy(f, self.volume_ratio[slot]),
+                };
                 let relaxing = self.now.memory.energy(slot, &self.arms, self.material.shear_modulus());
                 strained
                     + self.volume * relaxing
                     + 0.5 * self.hourglass[slot] * self.volume * self.error_square(slot)
             })
             .sum();
-        inner + self.contact.as_ref().map_or(0.0, Contact::energy)
+        let faces = if self.fracture.is_some() { self.face_energy() } else { 0.0 };
+        inner + faces + self.contact.as_ref().map_or(0.0, Contact::energy)
     }
 
     /// sum_j w |e_ij|² = sum_j w |beta u_ij|² - H : H M, by the definition of H.
-    fn error_square(&self, slot: usize) -> f64 {
+    pub(super) fn error_square(&self, slot: usize) -> f64 {
         let sum: &DeformationSum<D> = &self.deformations[slot / LANES];
         let h = self.gradient[slot] - Matrix::identity();
         sum.square.0[slot % LANES] - h.component_mul(&at(&sum.gradient, slot % LANES)).sum()

@@ -52,6 +52,11 @@ impl Law {
         self.material
     }
 
+    /// What happens across the plane.
+    pub(super) fn plane(&self) -> Plane {
+        self.plane
+    }
+
     /// Of plane strain with lambda and mu, Pa.
     #[cfg(test)]
     pub(super) fn of_constants(material: Material, lambda: f64, mu: f64) -> Self {
@@ -91,7 +96,7 @@ impl Law {
     }
 
     /// lambda in the plane.
-    fn lambda_in_plane(&self) -> f64 {
+    pub(super) fn lambda_in_plane(&self) -> f64 {
         match self.plane {
             Plane::Strain => self.lambda,
             Plane::Stress => 2.0 * self.lambda * self.mu / (self.lambda + 2.0 * self.mu),

@@ -7,13 +7,15 @@ use super::account::Account;
 use super::bounds::VolumeBounds;
 use super::clamp;
 use super::contact::Contact;
+use super::fracture::Fracture;
 use super::hourglass;
+use super::loads::{self, Loads};
 use super::material::{Law, Matrix};
 use super::pass::{Acceleration, DeformationSum, Fixed, Matrices};
 use super::relaxation::{self, Arm, Memory};
 use crate::columns::{ParticleColumns, Vectors, vector, vectors};
 use crate::effects::takes_part;
-use crate::model::{Load, OutOfBounds, Particles, SolidModel};
+use crate::model::{FractureSummary, Load, OutOfBounds, Particles, SolidModel};
 use crate::shown_velocity::ShownVelocity;
 use crate::side_friction;
 use crate::surface::surface_set;
@@ -111,6 +113,10 @@ pub struct TotalLagrangian<const D: usize> {
     pub(super) deformations: Vec<DeformationSum<D>>,
     pub(super) sums: Vec<Acceleration<D>>,
     pub(super) contact: Option<Contact<D>>,
+    /// Where it breaks.
+    pub(super) fracture: Option<Fracture<D>>,
+    /// Tractions that the scene prescribes.
+    loads: Loads<D>,
     pub(super) bounds: VolumeBounds,
     /// The particle whose volume left its bounds first, or of several the one farthest out.
     pub(super) failure: Option<(u32, Excess)>,
@@ -159,7 +165,9 @@ impl<const D: usize> TotalLagrangian<D> {
         } else {
             vec![0.0; slots]
         };
-        let contact = Contact::new(scene, solid, &material, &layout, &body);
+        let mut contact = Contact::new(scene, solid, &material, &layout, &body);
+        let breaks = takes_part(scene, solid, EffectName::Fracture);
+        let dormant = if breaks { contact.take_if(|contact| !contact.acts()) } else { None };
         let alpha = keys.hourglass.unwrap_or_else(|| {
             with_kernel!(scene.numerics.kernel, h, D, |k| hourglass::from_bending(
                 k,
@@ -180,6 +188,7 @@ impl<const D: usize> TotalLagrangian<D> {
             with_kernel!(scene.numerics.kernel, h, D, |k| FixedPairs::new(isa, k, position, list));
         let body_at = |slot: usize| body.get(id[slot] as usize);
         pairs.part(|i, j| body_at(i).zip(body_at(j)).is_some_and(|(a, b)| a != b));
+        loads::crack(scene, solid, &mut pairs);
         let mut model = Self {
             law: Law::new(&material, keys.material, keys.plane),
             arms,
@@ -198,7 +207,13 @@ impl<const D: usize> TotalLagrangian<D> {
             mass,
             hourglass_modulus: alpha * material.shear_modulus(),
             rigid_clamps,
-            interface_set: surface_set(points, &body, 2.0 * scene.smoothing_ratio * scene.resolution, dx),
+            interface_set: match breaks {
+                // Cracks open surfaces everywhere.
+                true => (0..points.len() as u32).collect(),
+                false => surface_set(points, &body, 2.0 * scene.smoothing_ratio * scene.resolution, dx),
+            },
+            fracture: Fracture::new(scene, solid, &body, dormant),
+            loads: Loads::new(scene, &layout.solid, &slot_of, dx, mass),
             at_n: now.clone(),
             shown_velocity: ShownVelocity::new(layout.solid.iter().map(|p| p.velocity)),
             load: vectors(slots),
@@ -224,6 +239,7 @@ impl<const D: usize> TotalLagrangian<D> {
             account: None,
         };
         model.correct();
+        model.prepare_fracture();
         model.slope_sum = model.largest_slope_sum();
         model.drive(0.0);
         model.evaluate(0.0);
@@ -236,7 +252,8 @@ impl<const D: usize> TotalLagrangian<D> {
         std::array::from_fn(|d| self.pairs.position()[d][slot] + self.now.displacement[d][slot])
     }
 
-    fn take_load(&mut self, load: &Load<D>) {
+    /// `time` is the middle of the stage, s.
+    fn take_load(&mut self, load: &Load<D>, time: f64) {
         for slot in 0..self.id.len() {
             let free = self.id[slot] != PADDING && self.fixed.clamped[slot] == 0.0;
             for d in 0..D {
@@ -244,6 +261,7 @@ impl<const D: usize> TotalLagrangian<D> {
                 self.load[d][slot] = if free { self.gravity[d] + force() } else { 0.0 };
             }
         }
+        self.loads.add(time, &mut self.load);
         if self.account.is_some() {
             let of = |(slot, _): &(usize, _)| load.force[self.id[*slot] as usize].map(|f| f / self.mass);
             self.driven_load = self.driven.iter().map(of).collect();
@@ -276,6 +294,16 @@ impl<const D: usize> TotalLagrangian<D> {
         }
     }
 
+    /// Notes the work of tractions over the step; `time` is its middle, s.
+    fn account_for_loads(&mut self, time: f64) {
+        if self.keeps_account() {
+            let work = self.mass * self.loads.work(time, &self.at_n.displacement, &self.now.displacement);
+            if let Some(account) = &mut self.account {
+                account.given.give(EnergyPart::Loads, work);
+            }
+        }
+    }
+
     /// Brings what clamps move to where they are at a time, s.
     fn drive(&mut self, time: f64) {
         for (slot, motion) in &self.driven {
@@ -301,6 +329,11 @@ impl<const D: usize> TotalLagrangian<D> {
             self.drift(each);
             self.drive(time + f64::from(k) * each);
             self.evaluate(each);
+            self.tear();
+            if self.fracture.as_ref().is_some_and(Fracture::is_accepted) {
+                self.keep_gradients();
+                self.open_faces();
+            }
             self.note_sub_step(each, &driven);
             self.kick(0.5 * each);
         }
@@ -376,8 +409,8 @@ impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {
     }
 
     fn advance(&mut self, half_step: &HalfStep, sub_steps: u32, load: &Load<D>) -> Result<(), OutOfBounds> {
-        self.take_load(load);
         let span = half_step.span();
+        self.take_load(load, half_step.time + 0.5 * span);
         match half_step.stage {
             Stage::First => {
                 self.at_n.copy_from(&self.now);
@@ -388,7 +421,10 @@ impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {
             Stage::Second => {
                 self.now.copy_from(&self.at_n);
                 self.set_account_open(true);
+                self.fracture.iter_mut().for_each(|fracture| fracture.accept(true));
                 self.sub_step(sub_steps, span, half_step.time);
+                self.fracture.iter_mut().for_each(|fracture| fracture.accept(false));
+                self.account_for_loads(half_step.time + 0.5 * span);
                 self.set_account_open(false);
             }
         }
@@ -397,6 +433,18 @@ impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {
         self.shown_velocity.arrive(half_step, sub_steps, place, |p| vector(&now.velocity, slot_of[p]));
         self.show_particles();
         self.check()
+    }
+
+    fn fracture(&self) -> FractureSummary {
+        self.summary()
+    }
+
+    fn damage(&self, particle: u32) -> f64 {
+        self.damage_at(self.slot_of[particle as usize] as usize)
+    }
+
+    fn breaks(&self) -> bool {
+        self.fracture.is_some()
     }
 
     fn keep_account(&mut self) {

@@ -19,6 +19,7 @@ impl<const D: usize> State for TotalLagrangian<D> {
         if !self.arms.is_empty() {
             fields.part("relaxation", &mut self.now.memory)?;
         }
+        self.fracture_fields(fields)?;
         fields.part("shown_velocity", &mut self.shown_velocity)?;
         fields.count("pair_evaluations", &mut self.pair_evaluations)?;
         let now = [&self.now.displacement, &self.now.velocity, &self.now.acceleration];
@@ -41,6 +42,7 @@ impl<const D: usize> State for TotalLagrangian<D> {
         // Damping took the velocities in the middle of the last sub-step.
         self.now.acceleration = acceleration;
         self.pair_evaluations = evaluations;
+        self.keep_gradients();
         self.show_particles();
         Ok(())
     }

@@ -82,6 +82,8 @@ impl<const D: usize> TotalLagrangian<D> {
             .contact
             .as_ref()
             .map_or((0.0, 0.0), |contact| contact.stiffness(self.kernel, &self.material));
+        let faces = if self.fracture.is_some() { self.face_springs() } else { 0.0 };
+        let springs = springs + faces;
         let waves = (stiffest + self.hourglass_modulus) / density;
         let omega = ((2.0 / (STABLE * self.spacing)).powi(2) * waves + springs).sqrt();
         let viscosity = self.material.artificial_viscosity.linear * self.material.sound_speed();

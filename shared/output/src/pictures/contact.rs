@@ -1,9 +1,9 @@
 //! `contact.png`: the particles at several instants, side by side: the fluid by pressure, the solid by von Mises
-//! stress, walls grey; the same view and the same scales in all.
+//! stress and black where it is cracked, walls grey; the same view and the same scales in all.
 
 use super::canvas::{Area, Canvas, Drawn, FONT};
 use super::plot::title;
-use super::stamp::{Rect, Scale, Sheet, WALL};
+use super::stamp::{DARK, Rect, Scale, Sheet, WALL};
 use super::view::{View, layout};
 use crate::pictures::units;
 use crate::series::Series;
@@ -16,6 +16,8 @@ use std::path::{Path, PathBuf};
 
 /// Instants shown at most.
 const MOST: usize = 6;
+/// Damage from which on a particle is shown as part of a crack.
+const CRACKED: f32 = 0.9;
 /// Particles beyond this quantile of a colour scale get its last colour: a single one does not fade all others.
 const QUANTILE: f64 = 0.99;
 /// Height of the heading and of the colour bars, pixels.
@@ -55,12 +57,15 @@ pub fn draw_contact(scene: &Scene, dir: &Path) -> Result<Option<PathBuf>, Output
             let spacing = if phase == frame::SOLID { of_solids } else { scene.resolution };
             let radius = radius(spacing * place.scale);
             for (frame, k) in instant.phase(phase).filter(|(frame, k)| view.shows(frame.points[*k])) {
-                let color = scale.map_or(WALL, |scale| scales.color(scale, frame, k));
+                let cracked = frame.damage.get(k).is_some_and(|&damage| damage > CRACKED);
+                let color =
+                    if cracked { DARK } else { scale.map_or(WALL, |scale| scales.color(scale, frame, k)) };
                 sheet.disc(panel, view.pixel(frame.points[k], panel, place.scale), radius, color);
             }
         }
     }
-    let bars = scales.bars(place.width, place.height);
+    let cracks = instants.iter().any(|instant| instant.frames.iter().any(|frame| !frame.damage.is_empty()));
+    let bars = scales.bars(place.width, place.height, cracks);
     for bar in &bars {
         sheet.bar(bar.at, bar.scale);
     }
@@ -158,14 +163,13 @@ impl ColourScales {
     }
 
     /// The bars that explain the colours, at the foot of the picture.
-    fn bars(&self, width: i32, height: i32) -> Vec<Bar> {
-        let present: Vec<_> = [
-            (Scale::Fluid, "fluid: pressure", self.pressure),
-            (Scale::Solid, "solid: von Mises stress", self.stress),
-        ]
-        .into_iter()
-        .filter_map(|(scale, quantity, range)| Some((scale, quantity, range?)))
-        .collect();
+    fn bars(&self, width: i32, height: i32, cracks: bool) -> Vec<Bar> {
+        let solid = if cracks { "solid: von Mises stress; black: cracks" } else { "solid: von Mises stress" };
+        let present: Vec<_> =
+            [(Scale::Fluid, "fluid: pressure", self.pressure), (Scale::Solid, solid, self.stress)]
+                .into_iter()
+                .filter_map(|(scale, quantity, range)| Some((scale, quantity, range?)))
+                .collect();
         let (edge, gap) = (24, 56);
         let count = present.len().max(1) as i32;
         let length = ((width - 2 * edge - (count - 1) * gap) / count).clamp(60, 420);

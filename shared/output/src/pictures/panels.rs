@@ -141,6 +141,9 @@ fn axis(name: &str, kind: &ProbeKind) -> String {
         | ProbeKind::WaterLevel { .. }
         | ProbeKind::KineticEnergy { .. }
         | ProbeKind::StrainEnergy
+        | ProbeKind::CrackEnergy
+        | ProbeKind::CrackArea
+        | ProbeKind::Bodies
         | ProbeKind::Energy { .. }
         | ProbeKind::Stress { .. }
         | ProbeKind::Flux { .. }

@@ -6,6 +6,8 @@ use std::path::Path;
 
 /// Levels of grey from white (0) to black, for text and lines.
 const GREYS: u8 = 16;
+/// The last of them.
+pub(crate) const DARK: u8 = GREYS - 1;
 /// Colour of a wall particle.
 pub(crate) const WALL: u8 = GREYS;
 /// Steps of each colour scale.

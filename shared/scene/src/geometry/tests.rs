@@ -79,6 +79,8 @@ fn shape(phase: Phase, geometry: Geometry) -> Shape {
         cantilever_mode: None,
         velocity_field: None,
         clamp_with: Vec::new(),
+        load: None,
+        crack: None,
         body: String::new(),
         clamp: Vec::new(),
         motion: None,

@@ -1,5 +1,6 @@
 //! What a scene says to the total-Lagrangian model alone.
 
+use super::Fracture;
 use super::models::Rules;
 use crate::ArtificialViscosity;
 use crate::document::{Node, Value};
@@ -21,6 +22,9 @@ pub struct TotalLagrangianKeys {
     /// What happens across the plane of two dimensions.
     #[serde(default)]
     pub plane: Plane,
+    /// Strength and fracture energy; `None`: it does not break.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fracture: Option<Fracture>,
 }
 
 /// What two dimensions mean to a solid.
@@ -62,6 +66,7 @@ pub(super) const RULES: Rules = Rules {
         ("material", "only the total-lagrangian and the finite-element model have a choice of materials"),
         ("hourglass", "only the total-lagrangian model resists hourglass modes"),
         ("prony", "only the total-lagrangian model has a strain that Maxwell arms could follow; others know its rate"),
+        ("fracture", "only the total-lagrangian model breaks"),
         ("plane", "only the total-lagrangian and the finite-element model know the strain across the plane"),
     ],
     // One row of particles has no deformation gradient across.
@@ -74,9 +79,9 @@ pub(super) const RULES: Rules = Rules {
 impl TotalLagrangianKeys {
     pub(super) fn read(section: &Section<'_>, _: &Defaults) -> Self {
         let stiffest = "beyond, it is stiffer than the material and limits the time step";
-        let (prony, plane) = (prony(section), plane(section));
+        let (prony, plane, material) = (prony(section), plane(section), material(section));
         Self {
-            material: material(section),
+            material,
             hourglass: section.number_or_auto(
                 "hourglass",
                 None,
@@ -84,6 +89,7 @@ impl TotalLagrangianKeys {
             ),
             prony,
             plane,
+            fracture: fracture(section, plane, material),
         }
     }
 
@@ -98,6 +104,26 @@ pub(super) fn material(section: &Section<'_>) -> Material {
     const MATERIALS: [(&str, Material); 2] =
         [("st-venant-kirchhoff", Material::StVenantKirchhoff), ("neo-hookean", Material::NeoHookean)];
     section.choice("material", Some(Material::NeoHookean), &MATERIALS).unwrap_or(Material::NeoHookean)
+}
+
+fn fracture(section: &Section<'_>, plane: Plane, material: Material) -> Option<Fracture> {
+    let (fracture, node) = (Fracture::read(section)?, section.node("fracture")?);
+    if section.node("prony").is_some() {
+        section.wrong(
+            "fracture",
+            node,
+            "cannot stand with `prony`: what damage does to Maxwell arms is not known",
+        );
+    }
+    if (plane, material) == (Plane::Stress, Material::NeoHookean) {
+        let why = "the strain across the plane would depend on the damage";
+        section.wrong(
+            "fracture",
+            node,
+            format!("with `plane` = \"stress\" needs `material` = \"st-venant-kirchhoff\": {why}"),
+        );
+    }
+    Some(fracture)
 }
 
 /// What two dimensions mean.

@@ -1,0 +1,68 @@
+//! `solid.fracture`: when a total-Lagrangian solid breaks, and what that takes.
+
+use super::{ModelKeys, Plane, Solid};
+use crate::section::{Range, Section};
+use serde::{Deserialize, Serialize};
+
+/// Tensile strength and fracture energy.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Fracture {
+    /// Tensile strength f_t, Pa.
+    pub strength: f64,
+    /// Fracture energy G_f, J/m².
+    pub energy: f64,
+}
+
+impl Fracture {
+    /// Width of the band that a crack smears over, in particle spacings: a crack along a row opens between two rows,
+    /// and with the eight (in space eighteen) nearest neighbours each of the two takes half of the opening for its
+    /// own strain.
+    pub const BAND: f64 = 2.0;
+    /// Largest h / dx of a solid that breaks.
+    pub const SMOOTHING: f64 = 0.95;
+    /// Largest opening G_f / f_t of a crack over its band.
+    pub const WIDEST: f64 = 0.1;
+
+    pub(super) fn read(section: &Section<'_>) -> Option<Self> {
+        let table = section.section("fracture");
+        if !table.is_present() {
+            return None;
+        }
+        let strength = Range::positive().up_to(1e15).why("it is the tensile strength f_t, Pa");
+        let energy = Range::positive().up_to(1e15).why("it is the fracture energy G_f, J/m2");
+        let fracture = Self {
+            strength: table.number("strength", None, strength),
+            energy: table.number("energy", None, energy),
+        };
+        table.finish();
+        Some(fracture)
+    }
+
+    /// Widest band that softens without snapping back, m: 2 E' G_f / f_t², E' the modulus of plane strain, Pa.
+    pub fn widest_band(&self, modulus: f64) -> f64 {
+        2.0 * modulus * self.energy / (self.strength * self.strength)
+    }
+
+    /// Narrowest band that is not torn far apart before it breaks, m.
+    pub fn narrowest_band(&self) -> f64 {
+        self.energy / (self.strength * Self::WIDEST)
+    }
+}
+
+impl Solid {
+    /// What its fracture takes, where it can break.
+    pub fn fracture(&self) -> Option<Fracture> {
+        match &self.model {
+            ModelKeys::TotalLagrangian(keys) => keys.fracture,
+            _ => None,
+        }
+    }
+
+    /// Modulus E' of a strip that is pulled, Pa: E / (1 - nu²) where it cannot contract across the plane, else E.
+    pub fn strip_modulus(&self, dimension: usize) -> f64 {
+        let held = dimension == 2
+            && matches!(&self.model, ModelKeys::TotalLagrangian(k) if k.plane == Plane::Strain);
+        let nu = if held { self.poissons_ratio } else { 0.0 };
+        self.youngs_modulus / (1.0 - nu * nu)
+    }
+}

@@ -1,0 +1,194 @@
+//! Cuts of pairs, and the bodies that are left.
+
+use super::Fracture;
+use super::faces::Face;
+use crate::total_lagrangian::material::Matrix;
+use crate::total_lagrangian::model::TotalLagrangian;
+use halfstep_sph::neighbours::PADDING;
+use halfstep_sph::tensor;
+
+/// Part of the smaller of both particles' strains by which a pair has to be stretched to be cut. Across a crack along a
+/// row it is stretched by 2 (straight) or 1 (diagonal) of them, along it by nothing.
+const STRETCHED: f64 = 0.5;
+/// Smallest determinant of the moment matrix with which a particle that was cut off from neighbours keeps a
+/// deformation gradient, over that of a corner of the lattice: there it is 1/4 of that inside, in space 1/8.
+const SMALLEST: f64 = 0.5;
+/// Longest pair over dx whose cells share a face.
+const STRAIGHT: f64 = 1.05;
+
+impl<const D: usize> TotalLagrangian<D> {
+    /// Pairs that are to be cut in the present state, by their slots, ascending.
+    fn torn(&self, fracture: &Fracture<D>) -> Vec<[usize; 2]> {
+        let mut torn = Vec::new();
+        let broken = |slot: usize| fracture.is_broken(slot);
+        // A rigid clamp has no damage: the particle beside it decides.
+        let rigid = |slot: usize| self.rigid_clamps && self.fixed.clamped[slot] != 0.0;
+        for &i in fracture.damaged.iter().filter(|&&slot| broken(slot)) {
+            for (j, _) in self.pairs.neighbours(i) {
+                if !(broken(j) && i < j || rigid(j)) {
+                    continue;
+                }
+                let strain =
+                    if rigid(j) { fracture.strain[i] } else { fracture.strain[i].min(fracture.strain[j]) };
+                let (x, y) = (self.position_at(i), self.position_at(j));
+                let present: f64 = (0..D).map(|d| (x[d] - y[d]).powi(2)).sum();
+                let reference = self.apart(i, j).norm_squared();
+                if present > reference * (1.0 + STRETCHED * strain).powi(2) {
+                    torn.push([i.min(j), i.max(j)]);
+                }
+            }
+        }
+        torn.sort_unstable();
+        torn
+    }
+
+    /// Cuts what is torn in the present state, which has been evaluated, and evaluates what is left.
+    pub(in crate::total_lagrangian) fn tear(&mut self) {
+        let Some(fracture) = self.fracture.as_ref().filter(|fracture| fracture.accepted) else { return };
+        let torn = self.torn(fracture);
+        if torn.is_empty() {
+            return;
+        }
+        self.sever(torn);
+    }
+
+    /// Cuts these pairs in the present state, which has been evaluated, and evaluates what is left.
+    pub(super) fn sever(&mut self, pairs: Vec<[usize; 2]>) {
+        let before = self.energy();
+        let mut pairs = pairs;
+        while !pairs.is_empty() {
+            let touched = self.cut(pairs);
+            pairs = self.overstrained(&touched);
+        }
+        self.divide();
+        self.evaluate(0.0);
+        let taken = before - self.energy();
+        self.book(taken);
+    }
+
+    /// All pairs of those particles, ascending, that what is left of their neighbours would strain beyond what they
+    /// held and could hold at their strength: in a heap of debris it tells nothing of a particle's strain.
+    fn overstrained(&mut self, touched: &[usize]) -> Vec<[usize; 2]> {
+        let Some(fracture) = &self.fracture else { return Vec::new() };
+        let most = self.volume * fracture.keys.strength.powi(2) / (2.0 * fracture.modulus);
+        let held: Vec<f64> = touched.iter().map(|&slot| self.energy_at(slot)).collect();
+        self.first_pass();
+        let mut pairs = Vec::new();
+        for (&slot, held) in touched.iter().zip(held) {
+            self.gradient[slot] = self.gradient_at(slot);
+            self.volume_ratio[slot] = self.law.volume_ratio(&self.gradient[slot]);
+            let now = self.energy_at(slot);
+            if now.is_nan() || now > held + most {
+                pairs.extend(self.pairs.neighbours(slot).map(|(j, _)| [slot.min(j), slot.max(j)]));
+            }
+        }
+        pairs.sort_unstable();
+        pairs.dedup();
+        pairs
+    }
+
+    /// Cuts pairs, and those that carry nothing any more; the slots that lost one, ascending.
+    fn cut(&mut self, mut pairs: Vec<[usize; 2]>) -> Vec<usize> {
+        let mut all = Vec::new();
+        while !pairs.is_empty() {
+            let mut touched = Vec::new();
+            for [i, j] in pairs.drain(..) {
+                self.pairs.cut(i, j);
+                touched.extend([i, j]);
+                self.note_cut([i, j]);
+            }
+            touched.sort_unstable();
+            touched.dedup();
+            all.extend(&touched);
+            let lost: Vec<usize> = touched.into_iter().filter(|&slot| !self.correct_again(slot)).collect();
+            for i in lost {
+                // Neither of the two has a stress.
+                let without = self.pairs.neighbours(i).map(|(j, _)| j).filter(|&j| !self.has_strain(j));
+                pairs.extend(without.map(|j| [i.min(j), i.max(j)]));
+            }
+            pairs.sort_unstable();
+            pairs.dedup();
+        }
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
+    /// Notes a cut, and that the two may touch from now on.
+    fn note_cut(&mut self, pair: [usize; 2]) {
+        let distance = self.distance(pair).min(self.spacing);
+        if let Some(fracture) = &mut self.fracture {
+            fracture.faces.push(Face { pair, distance });
+        }
+    }
+
+    /// Area of the faces of cells between which pairs are cut, m² (2D: m).
+    pub(super) fn cut_area(&self) -> f64 {
+        let Some(fracture) = &self.fracture else { return 0.0 };
+        let straight = |face: &&Face| self.apart(face.pair[0], face.pair[1]).norm() < STRAIGHT * self.spacing;
+        self.spacing.powi(D as i32 - 1) * fracture.faces.iter().filter(straight).count() as f64
+    }
+
+    /// M of a slot.
+    pub(super) fn moment(&self, slot: usize) -> Matrix<D> {
+        let weighted = |(j, slope): (usize, f64)| {
+            let x = self.apart(slot, j);
+            x * x.transpose() * (-self.volume * slope)
+        };
+        self.pairs.neighbours(slot).map(weighted).fold(Matrix::zeros(), |sum, of_pair| sum + of_pair)
+    }
+
+    /// The moment matrix of a particle that was cut off from neighbours: whether it is free and has lost its
+    /// deformation gradient is told by `false`.
+    pub(super) fn correct_again(&mut self, slot: usize) -> bool {
+        if self.rigid_clamps && self.fixed.clamped[slot] != 0.0 {
+            return true;
+        }
+        let moment = self.moment(slot);
+        let corner = 0.5_f64.powi(D as i32) * self.fracture.as_ref().map_or(1.0, |fracture| fracture.inside);
+        let enough = tensor::determinant(&moment) >= SMALLEST * corner;
+        let correction = tensor::moment_inverse(&moment).filter(|_| enough);
+        self.correction[slot] = correction.unwrap_or_else(Matrix::zeros);
+        self.soften(slot);
+        correction.is_some()
+    }
+
+    /// Finds the bodies that pairs still connect, and lets them touch.
+    pub(super) fn divide(&mut self) {
+        let Some(mut fracture) = self.fracture.take() else { return };
+        let mut parent: Vec<u32> = (0..self.slot_of.len() as u32).collect();
+        for i in (0..self.id.len()).filter(|&slot| self.id[slot] != PADDING) {
+            for (j, _) in self.pairs.neighbours(i) {
+                let (a, b) = (root(&mut parent, self.id[i]), root(&mut parent, self.id[j]));
+                parent[a.max(b) as usize] = a.min(b);
+            }
+        }
+        // Numbers in the order of the bodies' first particles.
+        let mut count = 0;
+        for p in 0..parent.len() {
+            let first = root(&mut parent, p as u32) as usize;
+            fracture.body[p] = if first == p { count } else { fracture.body[first] };
+            count += u32::from(first == p);
+        }
+        fracture.bodies = count;
+        let loose = |&slot: &usize| self.is_free(slot) && !self.has_strain(slot);
+        fracture.loose = (0..self.id.len()).filter(loose).count() as u32;
+        if count > 1 {
+            if self.contact.is_none() {
+                self.contact = fracture.dormant.take();
+            }
+            if let Some(contact) = &mut self.contact {
+                contact.divide(&fracture.body);
+            }
+        }
+        self.fracture = Some(fracture);
+    }
+}
+
+fn root(parent: &mut [u32], mut p: u32) -> u32 {
+    while parent[p as usize] != p {
+        parent[p as usize] = parent[parent[p as usize] as usize];
+        p = parent[p as usize];
+    }
+    p
+}

@@ -1,0 +1,119 @@
+//! Damage grows at the end of an accepted sub-step, from the deformation gradients of its state.
+
+use super::Fracture;
+use crate::total_lagrangian::evaluate::at;
+use crate::total_lagrangian::material::Matrix;
+use crate::total_lagrangian::model::TotalLagrangian;
+use halfstep_scene::EnergyPart;
+use halfstep_sph::lane::LANES;
+
+/// What damage leaves of the hourglass resistance: the sixteenth power of 1 - d. It would stiffen the band of a crack,
+/// where neighbours move against each other; so it goes long before the stress does.
+fn resistance(damage: f64) -> f64 {
+    let left = 1.0 - damage;
+    let (fourth, square) = (left * left * left * left, |x: f64| x * x);
+    square(square(fourth))
+}
+
+impl<const D: usize> Fracture<D> {
+    /// Norm of P, Pa, squared, below which nothing happens to an intact particle: at a surface twice the tension.
+    pub(in crate::total_lagrangian) fn screen(&self) -> f64 {
+        if self.accepted { 0.2 * self.keys.strength * self.keys.strength } else { f64::INFINITY }
+    }
+}
+
+impl<const D: usize> TotalLagrangian<D> {
+    /// P of a slot, with its damage.
+    pub(in crate::total_lagrangian) fn stress_at(&self, slot: usize, f: &Matrix<D>, j: f64) -> Matrix<D> {
+        match self.damage_at(slot) {
+            d if d > 0.0 => self.law.damaged(f, j, d).stress,
+            _ => self.law.first_piola_kirchhoff(f, j),
+        }
+    }
+
+    /// Energy in a slot's strain and error vectors, J.
+    pub(in crate::total_lagrangian) fn energy_at(&self, slot: usize) -> f64 {
+        let (f, j) = (&self.gradient[slot], self.volume_ratio[slot]);
+        let strained = match self.damage_at(slot) {
+            d if d > 0.0 => self.volume * self.law.damaged(f, j, d).energy,
+            _ => self.volume * self.law.energy(f, j),
+        };
+        strained + 0.5 * self.hourglass[slot] * self.volume * self.error_square(slot)
+    }
+
+    /// Damage grows in these particles, ascending, whose stresses are those of the state.
+    pub(in crate::total_lagrangian) fn grow(&mut self, candidates: &[usize]) {
+        let Some(fracture) = &self.fracture else { return };
+        let mut grown = Vec::new();
+        for &slot in candidates.iter().filter(|&&slot| self.has_strain(slot)) {
+            let tension = self.tension(slot);
+            let strain = tension / fracture.modulus;
+            if fracture.strain[slot] > 0.0 {
+                if strain > fracture.strain[slot] {
+                    grown.push((slot, fracture.onset[slot], strain));
+                }
+                continue;
+            }
+            let outward = &fracture.outward[slot];
+            let ratio = if *outward == [0.0; D] { 1.0 } else { self.at_surface(slot, outward) };
+            if ratio * tension > fracture.keys.strength {
+                grown.push((slot, fracture.keys.strength / (ratio * fracture.modulus), strain));
+            }
+        }
+        for (slot, onset, strain) in grown {
+            let before = self.energy_at(slot);
+            let Some(fracture) = &mut self.fracture else { return };
+            if fracture.strain[slot] == 0.0 {
+                let place = fracture.damaged.partition_point(|&other| other < slot);
+                fracture.damaged.insert(place, slot);
+            }
+            let old = fracture.damage[slot];
+            (fracture.onset[slot], fracture.strain[slot]) = (onset, strain);
+            fracture.damage[slot] = fracture.softening(slot).damage(strain);
+            let (damage, last) = (fracture.damage[slot], fracture.last[slot]);
+            self.soften(slot);
+            let after = before - self.energy_at(slot);
+            // Over the sub-step, in which the strain went from the last one to the present one: for e² the velocity
+            // Verlet scheme takes the geometric mean, exactly.
+            let [last, present] =
+                [last, self.gradient[slot]].map(|f| self.lost_by(&f, [old, damage]).max(0.0));
+            let taken = after - present + (last * present).sqrt();
+            self.book(taken);
+            let (f, j) = (self.gradient[slot], self.volume_ratio[slot]);
+            let correction = self.correction[slot];
+            let h = at(&self.deformations[slot / LANES].gradient, slot % LANES) * correction;
+            let bracket = self.stress_at(slot, &f, j) * correction - h * self.hourglass[slot];
+            self.set_bracket(slot, &bracket);
+        }
+    }
+
+    /// Strain energy that damage takes from a particle at F, J, by growing.
+    fn lost_by(&self, f: &Matrix<D>, damage: [f64; 2]) -> f64 {
+        let j = self.law.volume_ratio(f);
+        let [before, after] = damage.map(|d| self.law.damaged(f, j, d).energy);
+        self.volume * (before - after)
+    }
+
+    /// Keeps F, at the end of an accepted sub-step or of a checkpoint's.
+    pub(in crate::total_lagrangian) fn keep_gradients(&mut self) {
+        if let Some(fracture) = &mut self.fracture {
+            fracture.last.clone_from(&self.gradient);
+        }
+    }
+
+    /// The hourglass resistance that damage leaves.
+    pub(super) fn soften(&mut self, slot: usize) {
+        let left = if self.has_strain(slot) { resistance(self.damage_at(slot)) } else { 0.0 };
+        self.hourglass[slot] = left * self.hourglass_modulus;
+    }
+
+    /// Notes energy that fracture took, J (2D: J/m).
+    pub(super) fn book(&mut self, taken: f64) {
+        if let Some(fracture) = &mut self.fracture {
+            fracture.taken += taken;
+        }
+        if let Some(account) = self.account.as_mut().filter(|account| account.given.open) {
+            account.given.give(EnergyPart::Fracture, -taken);
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! Fracture (`solid.fracture`): crack-band damage in particles, cuts of pairs, and the bodies that are left.
+//!
+//! **Damage.** The principal tension sigma of the undamaged law (Rankine), carried to the surface where a particle lies
+//! under one, starts damage where it reaches f_t. The largest strain e = sigma / E' that a particle has seen then gives
+//!   d(e) = 1 - (e0 / e) exp(-(e - e0) / e_f),   e0 = f_t / E',   e_f = G_f / (f_t b) - e0 / 2
+//! (Bazant and Oh 1983), so a band of width b takes G_f from a crack across it.
+//! Damage scales the tensile part of the stored energy (see `split`) and, to the sixteenth power of 1 - d, the
+//! hourglass resistance, which would stiffen the band.
+//!
+//! **Cuts.** A stretched pair of two particles that have 0.5 % of their strength left is cut: its weight is zero in
+//! the moment matrix, the deformation gradient, the force and the hourglass term, and both get a new moment matrix.
+//! So force stays the derivative of an energy. What damage and cuts take of the energy of the present state is booked
+//! when they happen.
+//!
+//! Both change only at the ends of sub-steps of a step's second stage, which is not taken back, one particle after the
+//! other: the first stage computes with what is damaged and cut at n.
+
+mod cuts;
+mod faces;
+mod growth;
+mod principal;
+mod softening;
+mod split;
+mod state;
+mod surface;
+#[cfg(test)]
+mod tests;
+
+use super::contact::Contact;
+use super::material::Matrix;
+use super::model::TotalLagrangian;
+use crate::effects::takes_part;
+use crate::model::FractureSummary;
+use faces::Face;
+use halfstep_scene::{EffectName, Fracture as Keys, Scene};
+use halfstep_sph::neighbours::PADDING;
+use halfstep_sph::tensor;
+use softening::Softening;
+
+/// Part of its strength with which a particle is broken: its stretched pairs with other broken ones are cut. Above, a
+/// cut would take noticeably less than G_f: with d = 0.99 and a long softening a quarter of the strength is left.
+const BROKEN: f64 = 0.005;
+
+/// What is damaged and cut, by slot.
+pub(super) struct Fracture<const D: usize> {
+    keys: Keys,
+    /// E', Pa.
+    modulus: f64,
+    /// What happens now is not taken back.
+    accepted: bool,
+    /// det M inside of the lattice.
+    inside: f64,
+    /// From a particle under the intact surface to the surface, m; zero inside.
+    outward: Vec<[f64; D]>,
+    /// Width of the band of a crack through a particle, m.
+    band: Vec<f64>,
+    /// Largest strain since damage began; 0: intact.
+    strain: Vec<f64>,
+    /// Strain at which damage began.
+    onset: Vec<f64>,
+    /// d.
+    damage: Vec<f64>,
+    /// F at the end of the last accepted sub-step.
+    last: Vec<Matrix<D>>,
+    /// Slots with damage, ascending.
+    damaged: Vec<usize>,
+    /// Pairs that are cut, in the order of the cuts.
+    faces: Vec<Face>,
+    /// Energy taken, J (2D: J/m).
+    taken: f64,
+    /// Body of each particle.
+    body: Vec<u32>,
+    bodies: u32,
+    loose: u32,
+    /// What sees contacts once there are several bodies.
+    dormant: Option<Contact<D>>,
+}
+
+impl<const D: usize> Fracture<D> {
+    /// Of the scene's solid of that index; `None` where it does not break.
+    pub(super) fn new(
+        scene: &Scene,
+        solid: usize,
+        body: &[u32],
+        dormant: Option<Contact<D>>,
+    ) -> Option<Self> {
+        let material = scene.solids.get(solid)?;
+        let keys = material.fracture().filter(|_| takes_part(scene, solid, EffectName::Fracture))?;
+        Some(Self {
+            keys,
+            modulus: material.strip_modulus(D),
+            accepted: false,
+            inside: 1.0,
+            outward: Vec::new(),
+            band: Vec::new(),
+            strain: Vec::new(),
+            onset: Vec::new(),
+            damage: Vec::new(),
+            last: Vec::new(),
+            damaged: Vec::new(),
+            faces: Vec::new(),
+            taken: 0.0,
+            bodies: body.iter().max().map_or(0, |last| last + 1),
+            body: body.to_vec(),
+            loose: 0,
+            dormant,
+        })
+    }
+
+    /// What happens now is not taken back, or may be.
+    pub(super) fn accept(&mut self, accepted: bool) {
+        self.accepted = accepted;
+    }
+
+    /// What happens now is not taken back.
+    pub(super) fn is_accepted(&self) -> bool {
+        self.accepted
+    }
+
+    /// The particle is broken.
+    fn is_broken(&self, slot: usize) -> bool {
+        self.strain[slot] > 0.0 && self.strain[slot] >= self.softening(slot).strain_of(BROKEN)
+    }
+
+    fn softening(&self, slot: usize) -> Softening {
+        Softening::new(self.onset[slot], self.modulus, self.keys.energy / self.band[slot])
+    }
+}
+
+impl<const D: usize> TotalLagrangian<D> {
+    /// Lays out the columns of fracture; the moment matrices are made.
+    pub(super) fn prepare_fracture(&mut self) {
+        let Some(mut fracture) = self.fracture.take() else { return };
+        let slots = self.id.len();
+        let determinant = |slot: usize| tensor::determinant(&self.moment(slot));
+        fracture.inside = (0..slots).filter(|&slot| self.is_free(slot)).map(determinant).fold(0.0, f64::max);
+        let none = vec![0.0; slots];
+        (fracture.strain, fracture.onset, fracture.damage) = (none.clone(), none.clone(), none);
+        fracture.last = vec![Matrix::identity(); slots];
+        fracture.outward = (0..slots).map(|slot| self.outward(slot, fracture.inside)).collect();
+        // Toward a rigid clamp a particle sees the opening gain times, and alone.
+        let band = |slot: usize| Keys::BAND * self.spacing / (1.0 + self.fixed.excess_gain[slot]);
+        fracture.band = (0..slots).map(band).collect();
+        self.fracture = Some(fracture);
+    }
+
+    /// What fracture has done.
+    pub(super) fn summary(&self) -> FractureSummary {
+        let Some(fracture) = &self.fracture else { return FractureSummary::default() };
+        let Fracture { taken, bodies, loose, .. } = *fracture;
+        FractureSummary { energy: taken, area: self.cut_area(), bodies, loose }
+    }
+
+    /// d of a slot.
+    pub(super) fn damage_at(&self, slot: usize) -> f64 {
+        self.fracture.as_ref().map_or(0.0, |fracture| fracture.damage[slot])
+    }
+
+    /// The slot has a particle that its model moves.
+    fn is_free(&self, slot: usize) -> bool {
+        self.id[slot] != PADDING && self.fixed.clamped[slot] == 0.0
+    }
+}

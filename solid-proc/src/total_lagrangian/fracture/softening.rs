@@ -1,0 +1,50 @@
+//! Exponential softening of a crack band.
+
+/// The law of one particle: sigma = f exp(-(e - e0) / e_f) from the strain e0 on, with e0 = f / E' and the area under
+/// the whole curve the energy per volume that the band takes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Softening {
+    /// e0.
+    onset: f64,
+    /// e_f.
+    fade: f64,
+}
+
+impl Softening {
+    /// From the strain at which damage begins, E' in Pa, and the energy G_f / b, J/m³. A particle under the surface,
+    /// whose surface reaches f_t first, begins earlier and takes the same energy.
+    pub(super) fn new(onset: f64, modulus: f64, energy: f64) -> Self {
+        Self { onset, fade: energy / (onset * modulus) - 0.5 * onset }
+    }
+
+    /// The strain at which `left` of the strength is left.
+    pub(super) fn strain_of(&self, left: f64) -> f64 {
+        self.onset - self.fade * libm::log(left)
+    }
+
+    /// d of the largest strain so far.
+    pub(super) fn damage(&self, strain: f64) -> f64 {
+        if strain <= self.onset {
+            return 0.0;
+        }
+        1.0 - self.onset / strain * libm::exp(-(strain - self.onset) / self.fade)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_area_under_the_curve_is_the_energy() {
+        let (onset, modulus, energy) = (1e-3, 2e9, 5e3);
+        let law = Softening::new(onset, modulus, energy);
+        let (n, end) = (2_000_000, 0.08);
+        let stress = |e: f64| (1.0 - law.damage(e)) * modulus * e;
+        let step = end / f64::from(n);
+        let area: f64 = (0..n).map(|k| stress((f64::from(k) + 0.5) * step) * step).sum();
+        assert!((area / energy - 1.0).abs() < 1e-4, "{area}");
+        assert_eq!(law.damage(onset), 0.0);
+        assert!((law.damage(2.0 * onset) - (1.0 - 0.5 * (-onset / law.fade).exp())).abs() < 1e-15);
+    }
+}

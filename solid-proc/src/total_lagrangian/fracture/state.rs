@@ -1,0 +1,70 @@
+//! What fracture keeps over an interruption: strains, onsets and cuts, by particle number; all else follows.
+
+use super::Fracture;
+use super::faces::Face;
+use crate::total_lagrangian::model::TotalLagrangian;
+use halfstep_wire::state::{Fields, State, StateError};
+
+/// The fields as a file has them.
+struct Saved<'a, const D: usize> {
+    fracture: &'a mut Fracture<D>,
+    /// Slots of the cuts, two after two, and the distances from which on they touch, m.
+    cuts: &'a mut Vec<u32>,
+    distances: &'a mut Vec<f64>,
+}
+
+impl<const D: usize> State for Saved<'_, D> {
+    fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
+        let slots = self.fracture.strain.len();
+        fields.reals("strain", &mut self.fracture.strain)?;
+        fields.reals("onset", &mut self.fracture.onset)?;
+        fields.length("strain", slots, self.fracture.strain.len())?;
+        fields.length("onset", slots, self.fracture.onset.len())?;
+        fields.real("taken", &mut self.fracture.taken)?;
+        fields.numbers("cuts", self.cuts)?;
+        fields.reals("distances", self.distances)?;
+        fields.length("cuts", 2 * self.distances.len(), self.cuts.len())
+    }
+}
+
+impl<const D: usize> TotalLagrangian<D> {
+    /// Visits what is damaged and cut; loading, it damages and cuts, before contacts are loaded.
+    pub(in crate::total_lagrangian) fn fracture_fields(
+        &mut self,
+        fields: &mut Fields<'_>,
+    ) -> Result<(), StateError> {
+        let Some(fracture) = &mut self.fracture else { return Ok(()) };
+        let mut cuts: Vec<u32> =
+            fracture.faces.iter().flat_map(|face| face.pair).map(|slot| slot as u32).collect();
+        let mut distances: Vec<f64> = fracture.faces.iter().map(|face| face.distance).collect();
+        let mut saved = Saved { fracture, cuts: &mut cuts, distances: &mut distances };
+        fields.part("fracture", &mut saved)?;
+        if !fields.loading() {
+            return Ok(());
+        }
+        let slots = self.id.len();
+        if cuts.iter().any(|&slot| slot as usize >= slots) {
+            return Err(StateError::contradiction("cuts between other particles than the scene's"));
+        }
+        let damaged: Vec<usize> = (0..slots).filter(|&slot| fracture.strain[slot] > 0.0).collect();
+        for &slot in &damaged {
+            fracture.damage[slot] = fracture.softening(slot).damage(fracture.strain[slot]);
+        }
+        fracture.damaged = damaged.clone();
+        let pairs = cuts.chunks_exact(2).map(|pair| [pair[0] as usize, pair[1] as usize]);
+        fracture.faces = pairs.zip(distances).map(|(pair, distance)| Face { pair, distance }).collect();
+        for Face { pair: [i, j], .. } in &fracture.faces {
+            self.pairs.cut(*i, *j);
+        }
+        cuts.sort_unstable();
+        cuts.dedup();
+        for &slot in &cuts {
+            self.correct_again(slot as usize);
+        }
+        damaged.into_iter().for_each(|slot| self.soften(slot));
+        if !cuts.is_empty() {
+            self.divide();
+        }
+        Ok(())
+    }
+}

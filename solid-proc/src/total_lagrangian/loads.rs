@@ -1,0 +1,88 @@
+//! Tractions and cracks that a scene prescribes.
+
+use crate::columns::Vectors;
+use halfstep_scene::geometry::{SolidPoint, holds};
+use halfstep_scene::{Scene, Traction};
+use halfstep_sph::pair::FixedPairs;
+
+/// Particles that a scene loads.
+pub(super) struct Loads<const D: usize> {
+    /// Slot, acceleration by the whole traction, m/s², and which of the tractions.
+    loaded: Vec<(usize, [f64; D], usize)>,
+    tractions: Vec<Traction>,
+}
+
+impl<const D: usize> Loads<D> {
+    /// On the free particles of a solid of this spacing, m, and mass of a particle, kg (2D: kg/m).
+    pub(super) fn new(scene: &Scene, points: &[SolidPoint<D>], slot_of: &[u32], dx: f64, mass: f64) -> Self {
+        let (mut loaded, mut tractions) = (Vec::new(), Vec::new());
+        for (index, shape) in scene.shapes.iter().enumerate() {
+            let Some(load) = &shape.load else { continue };
+            let tolerance = 1e-6 * dx;
+            let taken = |p: &SolidPoint<D>| {
+                p.body as usize == index && !p.clamped && holds(&load.within, &p.position, tolerance)
+            };
+            let area = dx.powi(D as i32 - 1);
+            let acceleration = std::array::from_fn(|d| load.traction[d] * area / mass);
+            let slots = points.iter().zip(slot_of).filter(|(p, _)| taken(p));
+            loaded.extend(slots.map(|(_, &slot)| (slot as usize, acceleration, tractions.len())));
+            tractions.push(*load);
+        }
+        Self { loaded, tractions }
+    }
+
+    /// Acceleration of each loaded slot at a time, s.
+    fn at(&self, time: f64) -> impl Iterator<Item = (usize, [f64; D])> + '_ {
+        let of = move |(slot, whole, traction): &(usize, [f64; D], usize)| {
+            let share = self.tractions[*traction].share(time);
+            (*slot, whole.map(|a| a * share))
+        };
+        self.loaded.iter().map(of)
+    }
+
+    /// Adds them at a time, s.
+    pub(super) fn add(&self, time: f64, load: &mut Vectors<D>) {
+        for (slot, a) in self.at(time) {
+            for d in 0..D {
+                load[d][slot] += a[d];
+            }
+        }
+    }
+
+    /// Work over a particle's mass from one state to another, J/kg.
+    pub(super) fn work(&self, time: f64, from: &Vectors<D>, to: &Vectors<D>) -> f64 {
+        self.at(time).map(|(slot, a)| (0..D).map(|d| a[d] * (to[d][slot] - from[d][slot])).sum::<f64>()).sum()
+    }
+}
+
+/// Takes pairs apart whose line crosses a crack of the scene's solid of that index.
+pub(super) fn crack<const D: usize>(scene: &Scene, solid: usize, pairs: &mut FixedPairs<D>) {
+    let cracks =
+        scene.shapes.iter().filter(|shape| shape.solid == Some(solid)).filter_map(|shape| shape.crack);
+    for [from, to] in cracks {
+        let x = pairs.position().clone();
+        let place = |slot: usize| [x[0][slot], x[1][slot]];
+        pairs.part(|i, j| crosses([place(i), place(j)], [[from[0], from[1]], [to[0], to[1]]]));
+    }
+}
+
+/// Two lines in the plane cross; one that ends on the other does.
+fn crosses([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> bool {
+    let side =
+        |p: [f64; 2], q: [f64; 2], r: [f64; 2]| (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+    side(a, b, c) * side(a, b, d) <= 0.0 && side(c, d, a) * side(c, d, b) <= 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_cross_by_hand() {
+        let crack = [[0.0, 0.0], [2.0, 0.0]];
+        assert!(crosses([[1.0, -0.5], [1.0, 0.5]], crack));
+        assert!(crosses([[1.5, -0.5], [2.4, 0.5]], crack));
+        assert!(!crosses([[1.8, -0.5], [2.6, 0.5]], crack), "beyond the end");
+        assert!(!crosses([[1.0, 0.5], [1.0, 1.5]], crack), "above it");
+    }
+}

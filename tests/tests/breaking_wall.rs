@@ -1,0 +1,110 @@
+//! `scenes/breaking-wall.toml`: water breaks a brittle wall.
+
+use halfstep_output::run_json::RunStatus;
+use halfstep_tests::run::scene_at;
+use halfstep_tests::scene;
+
+fn coarse() -> halfstep_tests::RunBuilder {
+    scene("breaking-wall").set("resolution", 0.004).set("output.probe_interval", 0.001)
+}
+
+/// Until after the impact, ten times as strong.
+#[test]
+fn a_wall_that_holds_is_one_that_cannot_break() {
+    let strong = || {
+        let wall = coarse().set("solid.fracture.strength", 4e6).set("solid.fracture.energy", 300.0);
+        wall.until(0.16).in_process()
+    };
+    let breakable = strong().run();
+    let whole = strong().set("effects.fracture", "off").run();
+    assert_eq!(breakable.state_hash(), whole.state_hash());
+    assert!(breakable.curve("tip.x").peak().1 > 1e-4, "the water has arrived");
+    assert_eq!(breakable.curve("crack.energy").peak().1, 0.0);
+}
+
+#[test]
+#[ignore = "a minute"]
+fn the_wall_breaks_alike_in_processes_and_threads_and_its_ledger_is_closed() {
+    let broken = coarse().until(0.24).run();
+    assert_eq!(broken.report.status, Some(RunStatus::Finished));
+    assert!(broken.curve("pieces.bodies").peak().1 >= 2.0);
+    let threads = coarse().until(0.24).in_process().threads(1).run();
+    assert_eq!(broken.state_hash(), threads.state_hash());
+    // What nobody gave the wall, over what the water gave it.
+    let rest = broken.curve("ledger.integration").peak().1;
+    let given = broken.curve("ledger.interface-pressure").peak().1;
+    assert!(rest.abs() < 0.01 * given, "{rest} of {given}");
+}
+
+/// A wall clamped at its foot; a piston makes the water behind it rise from 0.12 m at 10 mm/s and more.
+const RISING: &str = r#"
+resolution = 0.005
+end_time = 2.2
+gravity = [0.0, -9.81]
+[fluid]
+density = 1000.0
+[solid]
+density = 1000.0
+youngs_modulus = 1e8
+poissons_ratio = 0.0
+fracture = { strength = 1e5, energy = 0.6 }
+[output]
+probe_interval = 0.002
+frame_interval = 0.1
+[[shape]]
+name = "water"
+phase = "fluid"
+box = { min = [-0.2, 0.0], max = [0.0, 0.12] }
+pressure = "hydrostatic"
+[[shape]]
+name = "wall"
+phase = "solid"
+box = { min = [0.0, -0.02], max = [0.02, 0.22] }
+clamp = { min = [-0.01, -0.03], max = [0.03, 0.0] }
+[[shape]]
+name = "piston"
+phase = "wall"
+box = { min = [-0.23, 0.0], max = [-0.2, 0.3] }
+motion = { velocity = [0.025, 0.0], start = 0.2, end = 4.0 }
+[[shape]]
+name = "tank"
+phase = "wall"
+tank = { min = [-0.5, 0.0], max = [0.3, 0.4], open = ["top"] }
+[[probe]]
+name = "depth"
+kind = "water-level"
+x = [-0.015, -0.05, -0.08]
+[[probe]]
+name = "crack"
+kind = "crack-energy"
+[[probe]]
+name = "opened"
+kind = "crack-area"
+[[probe]]
+name = "root"
+kind = "moment"
+about = [0.01, 0.0]
+[[probe]]
+name = "tip"
+kind = "displacement"
+at = [0.01, 0.22]
+"#;
+
+/// Under water of depth d a thin wall has 6 M / t² = rho g d³ / t² at its foot, and its own weight per area holds it
+/// together.
+#[test]
+#[ignore = "minutes"]
+fn slowly_rising_water_breaks_a_wall_at_the_depth_of_beam_theory() {
+    let (strength, thickness, weight) = (1e5, 0.02_f64, 1000.0 * 9.81 * 0.22);
+    let depth = ((strength + weight) * thickness.powi(2) / (1000.0 * 9.81)).cbrt();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("rising.toml");
+    std::fs::write(&path, RISING).unwrap();
+    let run = scene_at(&path).run();
+    let level = run.curve("depth.level-1");
+    let at = |time: f64| level.at(time) / depth;
+    let first = at(run.curve("crack.energy").first_above(f64::MIN_POSITIVE).unwrap());
+    let broken = at(run.curve("opened.area").first_above(0.5 * thickness).unwrap());
+    assert!((first - 1.0).abs() < 0.05, "first damage at {first} of the depth");
+    assert!((broken - 1.0).abs() < 0.1, "broken at {broken} of the depth");
+}
