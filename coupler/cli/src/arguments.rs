@@ -143,7 +143,7 @@ pub(crate) struct HowArguments {
 }
 
 /// A time to wait.
-fn seconds(text: &str) -> Result<f64, String> {
+pub(crate) fn seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value <= 1e6 => Ok(value),
         Ok(_) => Err("must be greater than 0 and at most 1e6 s".into()),

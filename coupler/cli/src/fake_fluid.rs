@@ -24,10 +24,10 @@ pub(crate) struct FakeFluidArguments {
     #[arg(long, value_name = "M,M,M,M", value_parser = block, allow_hyphen_values = true)]
     within: Option<Block>,
     /// Time in which the force grows from zero, s
-    #[arg(long, value_name = "SECONDS", value_parser = crate::seconds)]
+    #[arg(long, value_name = "SECONDS", value_parser = crate::arguments::seconds)]
     ramp: Option<f64>,
     /// Time step, s (default: what sound in the scene's water takes for a fifth of a particle); the solid may take less
-    #[arg(long, value_name = "SECONDS", value_parser = crate::seconds)]
+    #[arg(long, value_name = "SECONDS", value_parser = crate::arguments::seconds)]
     time_step: Option<f64>,
     /// Folder of the trial (default: out/fake-fluid-SCENE)
     #[arg(long, value_name = "DIR")]
