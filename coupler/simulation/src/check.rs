@@ -86,8 +86,8 @@ struct SubSteps {
     stable_to: f64,
 }
 
-/// Checks a valid scene, with the instruction set that the estimate of time is made with; `None`: of a dimension that is
-/// not available.
+/// Checks a valid scene, with the instruction set that the estimate of time is made with; `None`: of a dimension that
+/// is not available.
 pub fn check(scene: &Scene, isa: Isa) -> Option<Check> {
     dispatch!(scene.dimension, D => check_in::<D>(scene, isa))
 }

@@ -46,8 +46,8 @@ ops_factory!(
 
 literal_matcher_from_pattern!(Numbers, r"^(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?");
 
-/// Takes `[parameters]` out of a document and puts numbers in the place of all formulas. Returns the names of those that
-/// no formula of a key needs.
+/// Takes `[parameters]` out of a document and puts numbers in the place of all formulas. Returns the names of those
+/// that no formula of a key needs.
 pub(super) fn resolve(root: &mut Node, report: &Report) -> Vec<String> {
     let Value::Table(top) = &mut root.value else { return Vec::new() };
     let table = match top.remove("parameters") {

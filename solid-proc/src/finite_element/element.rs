@@ -1,7 +1,7 @@
 //! One element: a square (a cube) with one point of integration in its middle and a resistance to what that does not
 //! see.
 //!
-//! At the middle the gradient of a nodal field u is H = sum_a u_a b_a, b_a = s_a / (2^(D-1) dx), s_a the corner's sides.
+//! At the middle the gradient of a nodal field u is H = sum_a u_a b_a, b_a = s_a / (2^(D-1) dx), s_a a corner's sides.
 //! The patterns that have no gradient there, gamma . u with gamma the product of two or more sides over 2^D, would cost
 //! nothing; each costs K |gamma . u|² / 2 with
 //!   K = 4/3 E' dx^(D-2),

@@ -274,8 +274,8 @@ impl<const D: usize> FiniteElement<D> {
         }
     }
 
-    /// Viscous stress of an element, Pa, and forces on its patterns, N (2D: N/m): as if its material were a fluid of that
-    /// viscosity, 2 eta dE/dt for the stress that belongs to Green's strain.
+    /// Viscous stress of an element, Pa, and forces on its patterns, N (2D: N/m): 2 eta dE/dt for the stress that
+    /// belongs to Green's strain E.
     pub(super) fn viscous(&self, p: usize, f: &Matrix<D>) -> (Matrix<D>, [[f64; D]; MOST_PATTERNS]) {
         let nodes = self.mesh.of(p);
         let rate = self.element.gradient(nodes, &self.now.velocity);
@@ -394,7 +394,7 @@ impl<const D: usize> SolidModel<D> for FiniteElement<D> {
     }
 
     /// omega² = 4 D M / (rho0 dx²) bounds that of every element, M the largest eigenvalue of the present acoustic
-    /// tensor: D M is no less than the stiffness against any gradient, and an element's nodes have a 2^D-th of its mass.
+    /// tensor: D M is no less than the stiffness against any gradient, and a node has a 2^D-th of an element's mass.
     fn sub_step_limit(&self) -> f64 {
         let stiffness = |(f, &j): (&Matrix<D>, &f64)| self.law.stiffness(f, j, squared_stretches(f));
         let stiffest = self.gradient.iter().zip(&self.volume_ratio).map(stiffness).fold(0.0, f64::max);

@@ -53,8 +53,8 @@ fn period(across: f64) -> f64 {
     unreachable!("it swings")
 }
 
-/// One, two and four elements across: no shear locking. A beam of Euler and Bernoulli has T = 2 pi / (1.8751² sqrt(E' I /
-/// (rho A L⁴))); shear makes it longer.
+/// One, two and four elements across: no shear locking. A beam of Euler and Bernoulli has the period
+/// T = 2 pi / (1.8751² sqrt(E' I / (rho A L⁴))); shear makes it longer.
 #[test]
 fn a_plate_swings_as_a_beam_with_one_element_across() {
     let beam = {
