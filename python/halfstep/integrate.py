@@ -49,15 +49,20 @@ class Means:
         return newest + slope * (0.5 * newest_dt + 0.25 * dt)
 
 
-def advance_once(solid, mapping, body, **fields):
+def advance_once(solid, mapping, body, means=None, **fields):
     """Runs `solid` to its end with a body that is advanced once a step.
 
     `body.u`, `body.v`: its unknowns and their rates now. `body.advance(load, dt)` goes on by dt (s) under constant
     forces on the unknowns. `body.acceleration(load)`, if it has that: rates of `v` now, its own forces included.
+    `means`: a `Means` that `save` keeps (`last`, `velocity`), so that a run that goes on from a checkpoint is the one that
+    was interrupted; only for a body without `acceleration`.
     `fields`: functions of the body for more fields of `Step.publish`, `stress` for instance.
     """
-    means = None if hasattr(body, "acceleration") else Means()
-    if means:
+    if hasattr(body, "acceleration"):
+        means = None
+    elif means is None:
+        means = Means()
+    if means and means.velocity is None:
         means.begin(body.v)
     for step in solid:
         load = mapping.back(step.forces)

@@ -9,9 +9,9 @@
 
 use crate::columns::Vectors;
 
-/// Slows every particle down by a change of velocity dt F / rho0, m/s.
-pub(crate) fn slow<const D: usize>(velocity: &mut Vectors<D>, change: f64) {
-    for slot in 0..velocity[0].len() {
+/// Slows every particle that is free down by a change of velocity dt F / rho0, m/s.
+pub(crate) fn slow<const D: usize>(velocity: &mut Vectors<D>, change: f64, free: impl Fn(usize) -> bool) {
+    for slot in (0..velocity[0].len()).filter(|&slot| free(slot)) {
         let speed = (0..D).map(|d| velocity[d][slot].powi(2)).sum::<f64>().sqrt();
         let left = if speed > change { 1.0 - change / speed } else { 0.0 };
         for column in velocity.iter_mut() {
@@ -28,8 +28,12 @@ mod tests {
     fn it_slows_and_stops_but_does_not_turn_round() {
         // |v| = 5, then at rest, then slower than the change.
         let mut velocity = [vec![3.0, 0.0, 0.5], vec![-4.0, 0.0, 0.0]];
-        slow(&mut velocity, 1.0);
+        slow(&mut velocity, 1.0, |_| true);
         assert!((velocity[0][0] - 2.4).abs() < 1e-15 && (velocity[1][0] + 3.2).abs() < 1e-15);
         assert_eq!([velocity[0][1], velocity[0][2], velocity[1][2]], [0.0; 3]);
+        // What a clamp moves goes on as it is moved.
+        let mut driven = [vec![3.0]];
+        slow(&mut driven, 1.0, |_| false);
+        assert_eq!(driven, [vec![3.0]]);
     }
 }

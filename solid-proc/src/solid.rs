@@ -97,6 +97,8 @@ impl<const D: usize> State for Solid<D> {
         fields.points("force", &mut self.load.force)?;
         fields.length("force", self.all.len(), self.load.force.len())?;
         fields.small_count("sub_steps", &mut self.taken)?;
+        // That of the last step's end: contacts that were listed anew may have another.
+        fields.real("sub_step_limit", &mut self.limit)?;
         fields.count("cross_pairs", &mut self.cross_pairs)?;
         if let Some(sleep) = &mut self.sleep {
             fields.part("sleep", sleep)?;
@@ -117,9 +119,7 @@ impl<const D: usize> State for Solid<D> {
         if let Some(interface) = &mut self.interface {
             interface.restored()?;
         }
-        self.model.state().map_or(Ok(()), State::restored)?;
-        self.limit = self.model.sub_step_limit();
-        Ok(())
+        self.model.state().map_or(Ok(()), State::restored)
     }
 }
 

@@ -185,7 +185,8 @@ impl<const D: usize> FiniteElement<D> {
         }
         if let Some(friction) = self.side_friction {
             let before = self.accounted_kinetic_energy();
-            side_friction::slow(&mut self.now.velocity, dt * friction);
+            let clamped = &self.clamped;
+            side_friction::slow(&mut self.now.velocity, dt * friction, |node| !clamped[node]);
             if let (Some(before), Some(after)) = (before, self.accounted_kinetic_energy())
                 && let Some(account) = &mut self.account
             {

@@ -218,7 +218,7 @@ impl<const D: usize> Hypoelastic<D> {
         axpy(&mut self.now.density, &self.at_n.density, &self.rates.density, dt);
         if let Some(friction) = self.side_friction {
             let before = (kept && self.account.is_some()).then(|| self.now.velocity.clone());
-            side_friction::slow(&mut self.now.velocity, dt * friction);
+            side_friction::slow(&mut self.now.velocity, dt * friction, |_| true);
             if let Some(before) = before {
                 self.note_friction(&before);
             }

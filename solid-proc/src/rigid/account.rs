@@ -36,11 +36,14 @@ impl System {
         driven.map(|end| -impulse * row.of_end(end, &self.bodies, poses)).sum()
     }
 
-    pub(super) fn book_joint(&mut self, row: &Row, impulse: f64, poses: &[Pose]) {
-        if self.books_open() {
-            let work = self.driven_work(row, impulse, poses);
-            self.books.give(EnergyPart::Clamps, work);
+    /// Books the work of what is driven by an impulse of a joint, and returns it, J; zero where nothing is noted.
+    pub(super) fn book_joint(&mut self, row: &Row, impulse: f64, poses: &[Pose]) -> f64 {
+        if !self.books_open() {
+            return 0.0;
         }
+        let work = self.driven_work(row, impulse, poses);
+        self.books.give(EnergyPart::Clamps, work);
+        work
     }
 
     /// What joints and contacts did by themselves moving.

@@ -22,8 +22,9 @@ pub(super) struct Body {
     pub(super) driven: Option<Option<Motion>>,
     /// Its surfaces in the reference configuration, where something may touch it.
     pub(super) surfaces: Vec<Surface>,
-    /// What touches others' surfaces: balls, their centres from the centre of mass, m, and radii, m.
-    pub(super) balls: Vec<(Vec3, f64)>,
+    /// What touches others' surfaces: balls, their centres from the centre of mass, m, their radii, m, and how
+    /// deep another surface may lie in them and be pushed out, m.
+    pub(super) balls: Vec<(Vec3, f64, f64)>,
     /// Distance of its farthest point from the centre of mass, m.
     pub(super) radius: f64,
     /// Index of the group of bodies and walls that are tied together, and so do not touch.

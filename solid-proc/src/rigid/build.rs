@@ -154,7 +154,7 @@ fn body<const D: usize>(
         surface.balls::<D>(dx, &mut |place, radius| {
             let arm = wide(&place) - center;
             body.radius = body.radius.max(arm.norm_squared().sqrt() + radius);
-            body.balls.push((arm, radius));
+            body.balls.push((arm, radius, 0.5 * surface.depth()));
         });
         body.surfaces.push(surface);
     }
@@ -170,7 +170,11 @@ fn body<const D: usize>(
             let arm = wide(&point.position) - shapes_center;
             arm.cross(&wide(&point.velocity)) * mass_of(point)
         });
-        pose.spin = spin.sum();
+        // The motion is that of the shapes' particles, whatever mass, centre and inertia are given.
+        let shapes = Body::new(D == 2, shapes_mass, shapes_center, shapes_inertia);
+        let rate = shapes.turn_rate(&Matrix3::identity(), &spin.sum());
+        pose.velocity += rate.cross(&(center - shapes_center));
+        pose.spin = body.spin(&Matrix3::identity(), &rate);
     }
     if let Some(said) = said {
         pose.spin += body.spin(&Matrix3::identity(), &said.angular_velocity.into());

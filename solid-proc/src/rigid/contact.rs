@@ -125,13 +125,13 @@ impl System {
         let back = on_a.turn.inverse();
         // Faces: normal, and the points on it that are farthest out either way.
         let mut faces: Vec<(Vec3, [(f64, Touch); 2])> = Vec::new();
-        for (center, radius) in &b.balls {
+        for (center, radius, depth) in &b.balls {
             let at = on_b.center + on_b.turn * center;
             let reference = a.center + back * (at - on_a.center);
             for of in &a.surfaces {
                 of.nearest::<D>(std::array::from_fn(|d| reference[d]), &mut |distance, normal| {
                     let gap = distance - radius;
-                    if gap > self.tolerance {
+                    if gap > self.tolerance || gap < -depth {
                         return;
                     }
                     let normal = on_a.turn * Vec3::from_fn(|d, _| if d < D { normal[d] } else { 0.0 });

@@ -97,6 +97,10 @@ pub(super) fn solve(
         joints.iter_mut().zip(&change).for_each(|(joint, &impulse)| joint.push(&mut motions, impulse));
         let (mut largest, mut most) = (0.0_f64, 0.0_f64);
         for ((touch, normal), across) in touches.iter_mut().zip(&mut normals).zip(&mut across) {
+            if normal.give() <= 0.0 {
+                // A stop between two that are driven.
+                continue;
+            }
             let step = (touch.target - normal.rate(&motions)) / normal.give();
             let impulse = (touch.impulse + step).max(0.0);
             normal.push(&mut motions, impulse - touch.impulse);
@@ -105,7 +109,6 @@ pub(super) fn solve(
             most = most.max(impulse);
             largest = largest.max(rub(&mut motions, touch, across, friction * impulse));
         }
-        // NaN ends it, too.
         if largest.is_nan() || largest <= CHANGE * most {
             break;
         }

@@ -117,15 +117,39 @@ impl System {
         for (row, force, ..) in &springs {
             row.push(&self.bodies, &mut self.poses, force * dt);
         }
-        let late = springs.iter_mut().filter(|(.., damping)| half == Half::Second && *damping > 0.0);
-        for (row, force, damper, damping) in late {
-            let give = row.response(row, &self.bodies, &self.poses);
+        let late = |(.., damping): &&mut (Row, f64, f64, f64)| half == Half::Second && *damping > 0.0;
+        let mut late: Vec<_> = springs.iter_mut().filter(late).collect();
+        // What joints hold gives way to a damper as they let it, with the velocity that they leave it.
+        let held = if late.is_empty() { Vec::new() } else { self.joint_rows() };
+        let factors = Factors::of(&held, &self.bodies, &self.poses);
+        for (row, force, damper, damping) in &mut late {
+            self.hold(&held, &factors);
+            let mut joints: Vec<f64> =
+                held.iter().map(|joint| joint.response(row, &self.bodies, &self.poses)).collect();
+            let pushed = joints.clone();
+            factors.solve(&mut joints);
+            let by_joints: f64 = pushed.iter().zip(&joints).map(|(a, b)| a * b).sum();
+            let give = row.response(row, &self.bodies, &self.poses) - by_joints;
             *damper = -*damping * row.rate(&self.bodies, &self.poses) / (1.0 + dt * *damping * give);
             row.push(&self.bodies, &mut self.poses, *damper * dt);
             *force += *damper;
         }
+        if !late.is_empty() {
+            self.hold(&held, &factors);
+        }
         let springs = springs.into_iter().map(|(row, force, damper, _)| (row, force, damper)).collect();
         Kick { dt, pushes, springs }
+    }
+
+    /// Impulses of joints that leave no velocity along their rows.
+    fn hold(&mut self, rows: &[Row], factors: &Factors) {
+        let mut impulses: Vec<f64> = rows.iter().map(|row| -row.rate(&self.bodies, &self.poses)).collect();
+        factors.solve(&mut impulses);
+        let from = self.poses.clone();
+        for (row, &impulse) in rows.iter().zip(&impulses) {
+            row.push(&self.bodies, &mut self.poses, impulse);
+            self.book_joint(row, impulse, &from);
+        }
     }
 
     /// Velocities after joints and contacts of the present state. Returns what these gave by themselves moving.
@@ -155,12 +179,13 @@ impl System {
     }
 
     /// Goes on for `dt` to `time`, s, so that joints stay together: their impulses act along the rows of the start.
-    fn drift(&mut self, dt: f64, time: f64) {
+    /// Returns the work of what is driven through them, J.
+    fn drift(&mut self, dt: f64, time: f64) -> f64 {
         let rows = self.joint_rows();
         let start = self.poses.clone();
         let factors = Factors::of(&rows, &self.bodies, &start);
         let mut velocities = start.clone();
-        let mut last = f64::INFINITY;
+        let (mut last, mut driven) = (f64::INFINITY, 0.0);
         for _ in 0..JOINT_STEPS {
             self.poses.clone_from(&velocities);
             for (body, pose) in self.bodies.iter().zip(&mut self.poses).filter(|(body, _)| body.gives_way()) {
@@ -177,9 +202,10 @@ impl System {
             factors.solve(&mut gaps);
             for (row, &impulse) in rows.iter().zip(&gaps) {
                 row.push(&self.bodies, &mut velocities, impulse);
-                self.book_joint(row, impulse, &start);
+                driven += self.book_joint(row, impulse, &start);
             }
         }
+        driven
     }
 
     /// Pushes what overlaps apart, without velocities.
@@ -228,10 +254,10 @@ impl System {
         let kick = self.kick(half, Half::First);
         let resting = self.touches::<D>();
         let met = self.meet(resting);
-        self.drift(dt, time + dt);
+        let driven = self.drift(dt, time + dt);
         let drifting = self.kinetic_energy();
         self.book_kick(&kick);
-        self.book_contacts(&met, drifting - energy - self.work(&kick, &self.poses));
+        self.book_contacts(&met, drifting - energy - driven - self.work(&kick, &self.poses));
         let mut touches = self.touches::<D>();
         for touch in touches.iter_mut().filter(|touch| touch.is_contact()) {
             let approach = touch.normal.rate(&self.bodies, &self.poses).min(0.0);
@@ -249,10 +275,11 @@ impl System {
         self.book_driven(&before);
     }
 
-    /// J (2D: J/m).
+    /// Kinetic energy of what is not driven, J (2D: J/m).
     pub(super) fn kinetic_energy(&self) -> f64 {
         let of = |(body, pose): (&Body, &Pose)| body.kinetic_energy(pose);
-        self.bodies.iter().zip(&self.poses).take(self.real).map(of).sum()
+        let all = self.bodies.iter().zip(&self.poses).take(self.real);
+        all.filter(|(body, _)| body.gives_way()).map(of).sum()
     }
 
     /// Energy of all springs, J (2D: J/m).

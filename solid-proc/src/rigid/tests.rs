@@ -546,3 +546,35 @@ fn a_force_off_the_centre_turns_the_body() {
     assert!((model.states[0].angular_velocity[2] / right - 1.0).abs() < 1e-5);
     assert!((model.states[0].velocity[1] - 1e-3).abs() < 1e-15);
 }
+
+/// A pin lets a damper turn the body about it, not about its centre of mass.
+#[test]
+fn a_damped_pendulum_is_of_second_order() {
+    let end = |steps: f64| {
+        let keys =
+            "joints = [{ name = \"pin\", kind = \"hinge\", body = \"box\", at = [0.0, 0.1], damping = 1.0 }]";
+        let mut model = build::<2>(&scene(keys, BOX));
+        let load = free(&model);
+        run(&mut model, 0.5, 0.5 / steps, &load, |_, _| {});
+        model.states[0].angle[2]
+    };
+    let [coarse, middle, fine] = [100.0, 200.0, 400.0].map(end);
+    let order = ((coarse - middle) / (middle - fine)).abs().log2();
+    println!("order {order:.3}");
+    assert!((order - 2.0).abs() < 0.1, "{order}");
+}
+
+/// A disc in the hollow of a ring stays there.
+#[test]
+fn a_ring_is_hollow() {
+    let ring = "[[shape]]\nname = \"ring\"\nphase = \"solid\"\nring = { center = [0.0, 0.3], inner = 0.2, outer = 0.3 }\n\
+                [[shape]]\nname = \"disc\"\nphase = \"solid\"\ndisc = { center = [0.05, 0.25], radius = 0.08 }\n";
+    let mut model = build::<2>(&scene("contact = { friction = 0.2 }", &format!("{ring}{FLOOR}")));
+    let load = free(&model);
+    run(&mut model, 1.0, 5e-4, &load, |_, model| {
+        let [ring, disc] = [0, 1].map(|k| model.states[k].center);
+        let apart = (ring[0] - disc[0]).hypot(ring[1] - disc[1]);
+        assert!(apart < 0.2 - 0.08 + 1e-3, "the disc is {apart} m from the middle of the ring");
+    });
+    assert!((model.states[0].center[1] - 0.3).abs() < 2e-3, "the ring stands on the floor");
+}

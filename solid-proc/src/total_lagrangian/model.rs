@@ -277,7 +277,8 @@ impl<const D: usize> TotalLagrangian<D> {
         }
         if let Some(friction) = self.side_friction {
             let before = self.accounted_kinetic_energy();
-            side_friction::slow(&mut self.now.velocity, dt * friction);
+            let clamped = &self.fixed.clamped;
+            side_friction::slow(&mut self.now.velocity, dt * friction, |slot| clamped[slot] == 0.0);
             if let (Some(before), Some(after)) = (before, self.accounted_kinetic_energy())
                 && let Some(account) = &mut self.account
             {

@@ -66,6 +66,14 @@ impl Surface {
         }
     }
 
+    /// How far a ball of [`Self::balls`] is of the shape below its surface, m: a ring is hollow.
+    pub fn depth(&self) -> f64 {
+        match self.part {
+            Part::Ring { inner, outer, .. } if inner > 0.0 => outer - inner,
+            _ => f64::INFINITY,
+        }
+    }
+
     /// Calls `visit` with balls (centre, radius, m) that touch the surface from within, at most `spacing` (m) apart: of
     /// discs and rings the whole disc, of others points on the surface.
     pub fn balls<const D: usize>(&self, spacing: f64, visit: &mut impl FnMut([f64; D], f64)) {

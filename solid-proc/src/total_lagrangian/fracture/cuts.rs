@@ -61,8 +61,10 @@ impl<const D: usize> TotalLagrangian<D> {
             pairs = self.overstrained(&touched);
         }
         self.divide();
+        let booked = self.taken();
         self.evaluate(0.0);
-        let taken = before - self.energy();
+        // Damage that grew meanwhile is booked.
+        let taken = before - self.energy() - (self.taken() - booked);
         self.book(taken);
     }
 

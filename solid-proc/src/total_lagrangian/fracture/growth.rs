@@ -107,6 +107,11 @@ impl<const D: usize> TotalLagrangian<D> {
         self.hourglass[slot] = left * self.hourglass_modulus;
     }
 
+    /// What fracture has taken so far, J (2D: J/m).
+    pub(super) fn taken(&self) -> f64 {
+        self.fracture.as_ref().map_or(0.0, |fracture| fracture.taken)
+    }
+
     /// Notes energy that fracture took, J (2D: J/m).
     pub(super) fn book(&mut self, taken: f64) {
         if let Some(fracture) = &mut self.fracture {
