@@ -30,6 +30,18 @@ fn finite_elements_converge_to_the_reference() {
     assert!(four < ELASTICITY && ELASTICITY < four + (four - two), "{two} {four}");
 }
 
+/// One, two and four elements across: +0.8, -0.5 and -0.3 % of the period of elasticity. No locking.
+#[test]
+fn the_finite_element_solid_swings_right_with_one_element_across() {
+    for (across, most) in [(1, 0.010), (2, 0.007), (4, 0.004)] {
+        let run = plate(0.02 / f64::from(across), "finite-element");
+        let period = (1.0 + error(&format!("finite elements, {across} across"), &run)) * PERIOD;
+        let to_elasticity = period / ELASTICITY - 1.0;
+        println!("{:+.2} % to elasticity", 100.0 * to_elasticity);
+        assert!(to_elasticity.abs() < most, "{to_elasticity}");
+    }
+}
+
 /// Relative error of the total-Lagrangian period to elasticity.
 fn error_to_elasticity(across: u32) -> f64 {
     let run = plate(0.02 / f64::from(across), "total-lagrangian");
