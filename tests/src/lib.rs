@@ -18,4 +18,4 @@ pub mod stability;
 pub mod torture;
 
 pub use curve::Curve;
-pub use run::{Finished, Outcome, RunBuilder, Running, scene};
+pub use run::{Finished, Outcome, RunBuilder, Running, scene, scene_at};

@@ -32,6 +32,9 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     bodies::clamps(scene, &mut all);
     let bodies = scene.bodies_of(layout);
     bodies::free(scene, &bodies, &mut all);
+    bodies::parted(scene, &bodies, &mut all);
+    bodies::voids(scene, &mut all);
+    bodies::cracks(scene, &mut all);
     bodies::touching(scene, layout, &bodies, &mut all);
     bodies::standing(scene, layout, &bodies, &mut all);
     clamp_faces::clamp_faces(scene, &mut all);

@@ -25,7 +25,7 @@ pub(super) fn check_lattice(scene: &Scene, root: &Node, report: &Report) {
     report.place(&key, root.origin_of(&key), format!("{needs}: {whose}"));
 }
 
-/// The shapes of two particles that are neighbours, but not along an axis.
+/// The shapes of two particles that are neighbours, but not by whole steps.
 fn odd_neighbours<const D: usize>(scene: &Scene, elements: &impl Fn(usize) -> bool) -> Option<[usize; 2]> {
     let layout = geometry::layout::<D>(scene);
     let pieces = geometry::pieces(scene, &layout);
@@ -35,15 +35,15 @@ fn odd_neighbours<const D: usize>(scene: &Scene, elements: &impl Fn(usize) -> bo
         .zip(pieces)
         .filter(|(point, _)| scene.shapes[point.body as usize].solid.is_some_and(elements));
     let widest = (0..scene.solids.len()).map(|k| scene.solid_spacing(k)).fold(0.0, f64::max);
-    let mut cells: Cells<([f64; D], u32, u32), D> = Cells::new(1.2 * widest);
+    // What is within the support of 2 x 0.75 spacings is one piece.
+    let mut cells: Cells<([f64; D], u32, u32), D> = Cells::new(1.5 * widest);
     for (point, piece) in of_elements {
         let spacing = scene.spacing(&scene.shapes[point.body as usize]);
         for (other, of, shape) in cells.around(&point.position) {
             let apart: [f64; D] = std::array::from_fn(|d| (point.position[d] - other[d]).abs() / spacing);
-            let steps = apart.iter().filter(|step| (*step - 1.0).abs() < ROUNDING).count();
-            let near = apart.iter().map(|step| step * step).sum::<f64>() < 1.44;
-            let straight = steps == 1 && apart.iter().sum::<f64>() < 1.0 + ROUNDING * D as f64;
-            if *of == piece && near && !straight {
+            let near = apart.iter().map(|step| step * step).sum::<f64>() < 2.25;
+            let whole = apart.iter().all(|step| *step < ROUNDING || (*step - 1.0).abs() < ROUNDING);
+            if *of == piece && near && !whole {
                 return Some([point.body as usize, *shape as usize]);
             }
         }

@@ -29,8 +29,28 @@ impl Check<'_> {
                 self.place(&key, format!("measures a {name}, and the scene has none"));
                 continue;
             }
+            self.probe_model(probe, &key);
             self.probe_place(probe, &key);
         }
+    }
+
+    /// What a solid's model does not have cannot be measured: it would be zero for ever.
+    fn probe_model(&self, probe: &Probe, key: &str) {
+        let Some(solid) = probe.solid.and_then(|k| self.scene.solids.get(k)) else { return };
+        let reason = match probe.kind {
+            ProbeKind::CrackEnergy | ProbeKind::CrackArea | ProbeKind::Bodies
+                if solid.fracture().is_none() =>
+            {
+                "without `fracture` of the solid nothing breaks"
+            }
+            ProbeKind::Stress { .. } | ProbeKind::StrainEnergy
+                if solid.model.name() == SolidModelName::Rigid =>
+            {
+                "a rigid body does not strain"
+            }
+            _ => return,
+        };
+        self.wrong(&format!("{key}.kind"), reason);
     }
 
     fn probe_place(&self, probe: &Probe, key: &str) {

@@ -22,6 +22,8 @@ pub(super) struct Body {
     pub(super) driven: Option<Option<Motion>>,
     /// Its surfaces in the reference configuration, where something may touch it.
     pub(super) surfaces: Vec<Surface>,
+    /// A bound of the speed of what moves by prescription, m/s.
+    pub(super) fastest: f64,
     /// What touches others' surfaces: balls, their centres from the centre of mass, m, their radii, m, and how
     /// deep another surface may lie in them and be pushed out, m.
     pub(super) balls: Vec<(Vec3, f64, f64)>,
@@ -96,6 +98,7 @@ impl Body {
             driven: None,
             surfaces: Vec::new(),
             balls: Vec::new(),
+            fastest: 0.0,
             radius: 0.0,
             tied: Vec::new(),
         }

@@ -7,7 +7,7 @@ use super::step::{System, Wrench};
 use crate::effects::takes_part;
 use crate::ledger::Given;
 use halfstep_scene::geometry::{self, Layout, SolidPoint, Surface};
-use halfstep_scene::{EffectName, Joint, JointKind, Phase, RigidKeys, Scene};
+use halfstep_scene::{EffectName, Joint, JointKind, Phase, RigidKeys, Scene, Shape};
 use nalgebra::Matrix3;
 
 /// Part of the spacing within which surfaces touch.
@@ -48,6 +48,7 @@ pub(super) fn system<const D: usize>(
         let touched = wall.contact && touching;
         if touched || keys.joints.iter().any(|joint| joint.with == wall.name) {
             let mut frame = Body::frame(wall.motion.clone());
+            frame.fastest = fastest(scene, wall);
             if touched {
                 frame.surfaces.push(Surface::new(&wall.geometry, None));
             }
@@ -92,6 +93,12 @@ pub(super) fn system<const D: usize>(
     };
     system.drive(0.0);
     (system, names)
+}
+
+/// A bound of the speed of a shape that moves by prescription, m/s.
+fn fastest(scene: &Scene, shape: &Shape) -> f64 {
+    let around = geometry::bounding_box(shape, scene);
+    shape.motion.as_ref().map_or(0.0, |motion| motion.fastest(&around))
 }
 
 fn link(joint: &Joint, ends: [usize; 2], bodies: &[Body]) -> Link {
@@ -146,6 +153,8 @@ fn body<const D: usize>(
     let mut body = Body::new(D == 2, mass, center, inertia);
     let motion = own().find_map(|point| scene.shapes[point.body as usize].motion.clone());
     body.driven = motion.map(Some);
+    let of_shape = |point: &SolidPoint<D>| fastest(scene, &scene.shapes[point.body as usize]);
+    body.fastest = own().map(of_shape).fold(0.0, f64::max);
     let mut shapes: Vec<(u32, u32)> = own().map(|point| (point.body, point.copy)).collect();
     shapes.sort_unstable();
     shapes.dedup();

@@ -18,15 +18,9 @@ impl System {
             let speed = pose.velocity.norm_squared().sqrt() + rate * body.radius;
             limit = limit.min(way / speed);
         }
-        // Walls that move must not go farther, either, where they may meet a body.
-        for (frame, of_frame) in self.bodies.iter().zip(&self.poses).skip(self.real) {
-            let turning = frame.angular_velocity(of_frame);
-            for (body, pose) in self.bodies.iter().zip(&self.poses).take(self.real) {
-                let there = of_frame.velocity + turning.cross(&(pose.center - of_frame.center));
-                let fastest = there.norm_squared().sqrt() + turning.norm_squared().sqrt() * body.radius;
-                limit = limit.min(way / fastest);
-            }
-        }
+        // What moves by prescription must not go farther either, nor a small part of its period.
+        let fastest = self.bodies.iter().map(|body| body.fastest).fold(0.0, f64::max);
+        limit = limit.min(way / fastest);
         let mut ways = Vec::new();
         let mut squares = 0.0;
         let mut damping = 0.0;

@@ -1,7 +1,7 @@
 //! Remarks on bodies: what holds them, what they stand on, what they touch.
 
 use halfstep_scene::geometry::Layout;
-use halfstep_scene::{Block, Body, EffectName, Phase, Scene, Shape, SolidModelName, Switch, geometry};
+use halfstep_scene::{Block, Body, EffectName, Phase, Scene, Shape, SolidModelName, Switch, Void, geometry};
 
 /// Most bodies that are listed.
 const MOST_LISTED: usize = 8;
@@ -61,6 +61,60 @@ pub(super) fn free(scene: &Scene, bodies: &[Body], all: &mut Vec<String>) {
                 "{name} is held by no clamp, and {} {are} not stop it (contact is false): it goes through {them}",
                 through.join(" and ")
             ));
+        }
+    }
+}
+
+/// Shapes that name one body and are several: too far from each other.
+pub(super) fn parted(scene: &Scene, bodies: &[Body], all: &mut Vec<String>) {
+    let mut told: Vec<&str> = Vec::new();
+    let named = |shape: usize| Some(scene.shapes[shape].body.as_str()).filter(|name| !name.is_empty());
+    for body in bodies {
+        let Some(name) = body.shapes.iter().find_map(|&shape| named(shape)) else { continue };
+        let of_name = |other: &&Body| other.shapes.iter().any(|&shape| named(shape) == Some(name));
+        let count = bodies.iter().filter(of_name).count();
+        if count > 1 && !told.contains(&name) {
+            told.push(name);
+            all.push(format!(
+                "the shapes of body `{name}` lie apart: it is {count} bodies, and nothing holds them together"
+            ));
+        }
+    }
+}
+
+/// Contacts of rigid bodies are with whole shapes.
+pub(super) fn voids(scene: &Scene, all: &mut Vec<String>) {
+    let rigid = |k: usize| scene.solids[k].model.name() == SolidModelName::Rigid;
+    if scene.voids.is_empty() || !(0..scene.solids.len()).any(rigid) {
+        return;
+    }
+    let touched = |shape: &Shape| match shape.solid {
+        Some(solid) => rigid(solid),
+        None => shape.phase == Phase::Wall && shape.contact,
+    };
+    for (index, shape) in scene.shapes.iter().enumerate().filter(|(_, shape)| touched(shape)) {
+        let around = |shape: &Shape| geometry::bounding_box(shape, scene);
+        let cuts = |void: &&Void| {
+            let as_shape = Shape { geometry: void.geometry.clone(), ..shape.clone() };
+            index >= void.before && meet(&around(shape), &around(&as_shape), scene)
+        };
+        if let Some(void) = scene.voids.iter().find(cuts) {
+            all.push(format!(
+                "`{}` may take a part of `{}`, and rigid bodies touch the whole of that shape: they know no voids",
+                void.name, shape.name
+            ));
+        }
+    }
+}
+
+/// Cracks beside their shape.
+pub(super) fn cracks(scene: &Scene, all: &mut Vec<String>) {
+    for shape in &scene.shapes {
+        let Some([from, to]) = shape.crack else { continue };
+        let around = geometry::bounding_box(shape, scene);
+        let apart = |d: usize| from[d].max(to[d]) < around.min[d] || from[d].min(to[d]) > around.max[d];
+        if (0..2).any(apart) {
+            all.push(format!("the crack of `{}` lies beside it, and parts nothing", shape.name));
         }
     }
 }

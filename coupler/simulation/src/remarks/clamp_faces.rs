@@ -15,21 +15,22 @@ pub(super) fn clamp_faces(scene: &Scene, all: &mut Vec<String>) {
     for shape in &scene.shapes {
         let model = shape.solid.and_then(|k| scene.solids.get(k)).map(|solid| solid.model.name());
         let Geometry::Box(body) = &shape.geometry else { continue };
-        if model != Some(SolidModelName::TotalLagrangian) {
+        let elements = model == Some(SolidModelName::FiniteElement);
+        if !elements && model != Some(SolidModelName::TotalLagrangian) {
             continue;
         }
         for clamp in &shape.clamp {
             for axis in 0..scene.dimension {
                 let inside = |face: &f64| *face > body.min[axis] && *face < body.max[axis];
                 for face in [clamp.min[axis], clamp.max[axis]].into_iter().filter(inside) {
-                    all.extend(cut(scene, shape, axis, body.min[axis], face));
+                    all.extend(cut(scene, shape, axis, body.min[axis], face, elements));
                 }
             }
         }
     }
 }
 
-fn cut(scene: &Scene, shape: &Shape, axis: usize, first: f64, face: f64) -> Option<String> {
+fn cut(scene: &Scene, shape: &Shape, axis: usize, first: f64, face: f64, elements: bool) -> Option<String> {
     let dx = scene.spacing(shape);
     // Boundaries between rows lie at whole numbers of spacings, `nodal` half a spacing beside.
     let shift = if scene.numerics.lattice == Lattice::Nodal { 0.5 } else { 0.0 };
@@ -38,9 +39,12 @@ fn cut(scene: &Scene, shape: &Shape, axis: usize, first: f64, face: f64) -> Opti
         return None;
     }
     let at = |rows: f64| length(first + (rows + shift) * dx);
+    let held = match elements {
+        true => "its elements are held as a whole where their middle is in the clamp",
+        false => "it is held more softly than there",
+    };
     Some(format!(
-        "a face of the clamp of `{}`, at {} = {} m, cuts a row of its particles: it is held more softly than there. \
-         Between rows are {} and {} m",
+        "a face of the clamp of `{}`, at {} = {} m, cuts a row of its particles: {held}. Between rows are {} and {} m",
         shape.name,
         ["x", "y", "z"][axis],
         length(face),

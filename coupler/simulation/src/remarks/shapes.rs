@@ -54,7 +54,10 @@ fn of_shape<const D: usize>(scene: &Scene, index: usize, [particles, clamped]: [
     let shape = &scene.shapes[index];
     let dx = scene.spacing(shape);
     let density = match shape.phase {
-        Phase::Solid => shape.solid.and_then(|k| scene.solids.get(k)).map_or(0.0, |solid| solid.density),
+        Phase::Solid => {
+            let solid = shape.solid.and_then(|k| scene.solids.get(k));
+            shape.density.or(solid.map(|solid| solid.density)).unwrap_or(0.0)
+        }
         Phase::Fluid => scene.fluid.as_ref().map_or(0.0, |fluid| fluid.density),
         Phase::Wall => 0.0,
     };

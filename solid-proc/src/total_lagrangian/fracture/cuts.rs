@@ -60,7 +60,9 @@ impl<const D: usize> TotalLagrangian<D> {
             let touched = self.cut(pairs);
             pairs = self.overstrained(&touched);
         }
+        let one = self.fracture.as_ref().map(|fracture| fracture.body.clone()).unwrap_or_default();
         self.divide();
+        self.face_what_is_near(&one);
         let booked = self.taken();
         self.evaluate(0.0);
         // Damage that grew meanwhile is booked.

@@ -3,10 +3,14 @@
 //! They repel as bodies do, k (d - r), but from the distance d on that they have when they are cut, at most dx:
 //! nothing pushes at that moment. While they are farther apart d grows with their distance, up to dx. A body does not
 //! see itself, so inside of one the whole force is here; between two bodies it is what is to be added to that of
-//! their contact, k (dx - r).
+//! their contact, k (dx - r). The same holds for particles that never were neighbours, of a body that was crushed, and
+//! are of two from a cut on.
 
 use super::Fracture;
 use crate::total_lagrangian::model::TotalLagrangian;
+use halfstep_scene::geometry::Cells;
+use halfstep_sph::neighbours::PADDING;
+use std::collections::BTreeSet;
 
 /// A pair that is cut, by its slots.
 #[derive(Clone, Copy, Debug)]
@@ -17,6 +21,30 @@ pub(super) struct Face {
 }
 
 impl<const D: usize> TotalLagrangian<D> {
+    /// Particles that were of one body and now are of two, and closer than bodies come without pushing each other, begin
+    /// to push from where they are.
+    pub(super) fn face_what_is_near(&mut self, one: &[u32]) {
+        let Some(fracture) = self.fracture.as_ref().filter(|fracture| fracture.body != one) else { return };
+        let known: BTreeSet<[usize; 2]> = fracture.faces.iter().map(|face| face.pair).collect();
+        let mut cells: Cells<usize, D> = Cells::new(self.spacing);
+        let mut found = Vec::new();
+        for slot in (0..self.id.len()).filter(|&slot| self.id[slot] != PADDING) {
+            let (at, p) = (self.position_at(slot), self.id[slot] as usize);
+            for &other in cells.around(&at) {
+                let (pair, q) = ([other, slot], self.id[other] as usize);
+                let parted = one[p] == one[q] && fracture.body[p] != fracture.body[q];
+                let distance = self.distance(pair);
+                if parted && distance < self.spacing && !known.contains(&pair) {
+                    found.push(Face { pair, distance });
+                }
+            }
+            cells.add(&at, slot);
+        }
+        if let Some(fracture) = &mut self.fracture {
+            fracture.faces.extend(found);
+        }
+    }
+
     /// Present distance of a pair, m.
     pub(super) fn distance(&self, [i, j]: [usize; 2]) -> f64 {
         let (x, y) = (self.position_at(i), self.position_at(j));
