@@ -21,8 +21,8 @@ pub(super) struct Face {
 }
 
 impl<const D: usize> TotalLagrangian<D> {
-    /// Particles that were of one body and now are of two, and closer than bodies come without pushing each other, begin
-    /// to push from where they are.
+    /// Particles that were of one body and now are of two, and closer than bodies come without pushing each other,
+    /// begin to push from where they are.
     pub(super) fn face_what_is_near(&mut self, one: &[u32]) {
         let Some(fracture) = self.fracture.as_ref().filter(|fracture| fracture.body != one) else { return };
         let known: BTreeSet<[usize; 2]> = fracture.faces.iter().map(|face| face.pair).collect();

@@ -398,3 +398,24 @@ fn a_particle_that_is_cut_off_has_no_hourglass_resistance() {
     assert_eq!(run.model.summary().loose, 1);
     run_on(&mut run, 100);
 }
+
+/// A soft bar that is thrown and torn at its clamp, squeezed there to less than half: particles of two sides that are
+/// closer than surfaces may be, and were never neighbours, part without a jump.
+#[test]
+fn a_crushed_root_gives_no_energy() {
+    let text = "resolution = 0.01\nend_time = 1.0\ngravity = [0.0, 0.0]\n[solid]\ndensity = 1100.0\n\
+                youngs_modulus = 2e6\npoissons_ratio = 0.0\nfracture = { strength = 8e3, energy = 1.5 }\n\
+                [[shape]]\nname = \"bar\"\nphase = \"solid\"\nbox = { min = [0.0, -0.05], max = [0.04, 0.25] }\n\
+                clamp = { min = [0.0, -0.05], max = [0.04, 0.0] }\nvelocity = [3.0, 0.0]\n\
+                load = { within = { min = [0.0, 0.0], max = [0.01, 0.2] }, traction = [1500.0, 0.0], ramp = 0.05 }\n";
+    let mut run = Run::<2>::of(text);
+    let mut most = 0.0_f64;
+    while run.time < 0.11 {
+        run.step();
+        let taken = run.model.fracture().energy;
+        assert!(taken > most - 0.02, "{taken} J at {} s, {most} J before", run.time);
+        most = most.max(taken);
+    }
+    println!("{most} J taken, rest {}", run.rest());
+    assert!(most > 1.0 && run.rest().abs() < 0.01 * (run.start + run.given.abs()), "{most} {}", run.rest());
+}
