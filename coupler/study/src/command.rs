@@ -93,7 +93,12 @@ fn positive(text: &str) -> Result<f64, String> {
 
 /// Runs the study.
 pub fn study(arguments: StudyArguments) -> ExitCode {
-    match run(arguments) {
+    ended(run(arguments))
+}
+
+/// The exit status of a command of several runs; an error is told.
+pub(crate) fn ended(result: Result<ExitCode, StudyError>) -> ExitCode {
+    match result {
         Ok(code) => code,
         Err(StudyError::Scene(errors)) => {
             say::warn(format_args!("{:?}", miette::Report::new(errors)));
@@ -104,6 +109,27 @@ pub fn study(arguments: StudyArguments) -> ExitCode {
             ExitCode::from(1)
         }
     }
+}
+
+/// Tells what was found, as JSON or as text with the files that were `made`. Returns the exit status where no run
+/// finished.
+pub(crate) fn tell(
+    json: Option<String>,
+    text: impl FnOnce() -> String,
+    (made, folder): (&str, &Path),
+    finished: bool,
+) -> Option<ExitCode> {
+    match json {
+        Some(json) => say::tell(format_args!("{json}")),
+        None => {
+            say::tell(format_args!("{}", text().trim_end()));
+            say::tell(format_args!("\n{made} are in {}", folder.display()));
+        }
+    }
+    if !finished {
+        say::warn(format_args!("error: no run finished"));
+    }
+    (!finished).then(|| ExitCode::from(2))
 }
 
 fn run(arguments: StudyArguments) -> Result<ExitCode, StudyError> {
@@ -152,16 +178,12 @@ fn run(arguments: StudyArguments) -> Result<ExitCode, StudyError> {
     }
     study.write(session.folder())?;
     pictures::draw(&study, session.folder())?;
-    if json {
-        let text = serde_json::to_string_pretty(&study).map_err(|e| StudyError::System(e.to_string()))?;
-        say::tell(format_args!("{text}"));
-    } else {
-        say::tell(format_args!("{}", study.text().trim_end()));
-        say::tell(format_args!("\nstudy.csv, study.json and pictures are in {}", session.folder().display()));
-    }
-    if study.rows.iter().all(|row| row.error.is_some()) {
-        say::warn(format_args!("error: no run finished"));
-        return Ok(ExitCode::from(2));
+    let as_json = || serde_json::to_string_pretty(&study).map_err(|e| StudyError::System(e.to_string()));
+    let as_json = json.then(as_json).transpose()?;
+    let finished = study.rows.iter().any(|row| row.error.is_none());
+    let made = ("study.csv, study.json and pictures", session.folder());
+    if let Some(code) = tell(as_json, || study.text(), made, finished) {
+        return Ok(code);
     }
     Ok(match reached {
         Some(Reached::Yes(changes)) => {
@@ -182,17 +204,10 @@ fn run(arguments: StudyArguments) -> Result<ExitCode, StudyError> {
 /// Writes and says what a parameter study found.
 fn report(sweep: &Sweep, json: bool, folder: &Path) -> Result<ExitCode, StudyError> {
     sweep.write(folder)?;
-    if json {
-        say::tell(format_args!("{}", sweep.json()?));
-    } else {
-        say::tell(format_args!("{}", sweep.text().trim_end()));
-        say::tell(format_args!("\nsweep.csv, sweep.json and sweep.png are in {}", folder.display()));
-    }
-    if sweep.rows.iter().all(|row| row.status != Some(RunStatus::Finished)) {
-        say::warn(format_args!("error: no run finished"));
-        return Ok(ExitCode::from(2));
-    }
-    Ok(ExitCode::SUCCESS)
+    let as_json = json.then(|| sweep.json()).transpose()?;
+    let finished = sweep.rows.iter().any(|row| row.status == Some(RunStatus::Finished));
+    let made = ("sweep.csv, sweep.json and sweep.png", folder);
+    Ok(tell(as_json, || sweep.text(), made, finished).unwrap_or(ExitCode::SUCCESS))
 }
 
 /// The overrides of which no later one says otherwise.

@@ -1,5 +1,6 @@
 //! The command line of `halfstep compare`.
 
+use super::command::{ended, tell};
 use super::compare::{Candidate, Comparison, default_probe};
 use super::error::StudyError;
 use super::runs::{self, Job, Program};
@@ -43,17 +44,7 @@ pub struct CompareArguments {
 
 /// Runs the comparison.
 pub fn compare(arguments: CompareArguments) -> ExitCode {
-    match run(arguments) {
-        Ok(code) => code,
-        Err(StudyError::Scene(errors)) => {
-            say::warn(format_args!("{:?}", miette::Report::new(errors)));
-            ExitCode::from(1)
-        }
-        Err(error) => {
-            say::warn(format_args!("error: {error}"));
-            ExitCode::from(1)
-        }
-    }
+    ended(run(arguments))
 }
 
 fn run(arguments: CompareArguments) -> Result<ExitCode, StudyError> {
@@ -108,15 +99,8 @@ fn run(arguments: CompareArguments) -> Result<ExitCode, StudyError> {
     }
     let comparison = Comparison::new(&scene, &probe, ended)?;
     comparison.write(&scene, &folder)?;
-    if arguments.json {
-        say::tell(format_args!("{}", comparison.json()?));
-    } else {
-        say::tell(format_args!("{}", comparison.text().trim_end()));
-        say::tell(format_args!("\ncompare.json, compare.png and the runs are in {}", folder.display()));
-    }
-    if comparison.solids.iter().all(|solid| solid.status != Some(RunStatus::Finished)) {
-        say::warn(format_args!("error: no run finished"));
-        return Ok(ExitCode::from(2));
-    }
-    Ok(ExitCode::SUCCESS)
+    let json = arguments.json.then(|| comparison.json()).transpose()?;
+    let finished = comparison.solids.iter().any(|solid| solid.status == Some(RunStatus::Finished));
+    let made = ("compare.json, compare.png and the runs", folder.as_path());
+    Ok(tell(json, || comparison.text(), made, finished).unwrap_or(ExitCode::SUCCESS))
 }
