@@ -6,6 +6,7 @@ MuJoCo's body has the plane's three degrees of freedom: two slides and a hinge a
 import halfstep
 import mujoco
 import numpy as np
+from body import Body
 
 scene, points = halfstep.description(), halfstep.particles()
 box = scene["shapes"][points.shape[0]]["geometry"]["box"]
@@ -26,31 +27,5 @@ model = mujoco.MjModel.from_xml_string(f"""
 </mujoco>
 """)
 
-
-class Body:
-    """Unknowns: displacement x, y (m) and angle (rad)."""
-
-    def __init__(self):
-        self.data = mujoco.MjData(model)
-
-    @property
-    def u(self):
-        return self.data.qpos.copy()
-
-    @property
-    def v(self):
-        return self.data.qvel.copy()
-
-    def acceleration(self, load):
-        self.data.qfrc_applied[:] = load
-        mujoco.mj_forward(model, self.data)
-        return self.data.qacc.copy()
-
-    def advance(self, load, dt):
-        self.data.qfrc_applied[:] = load
-        model.opt.timestep = dt
-        mujoco.mj_step(model, self.data)
-
-
 solid = halfstep.Solid(points.position, points.mass, points.density)
-halfstep.integrate.advance_once(solid, halfstep.mapping.Rigid(points.position, centre), Body())
+halfstep.integrate.advance_once(solid, halfstep.mapping.Rigid(points.position, centre), Body(model))

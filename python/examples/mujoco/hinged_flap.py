@@ -8,6 +8,7 @@ import sys
 import halfstep
 import mujoco
 import numpy as np
+from body import Body
 
 stiffness, damping = float(sys.argv[1]), float(sys.argv[2])
 scene, points = halfstep.description(), halfstep.particles()
@@ -27,31 +28,5 @@ model = mujoco.MjModel.from_xml_string(f"""
 </mujoco>
 """)
 
-
-class Flap:
-    """Its unknown is the angle, rad."""
-
-    def __init__(self):
-        self.data = mujoco.MjData(model)
-
-    @property
-    def u(self):
-        return self.data.qpos.copy()
-
-    @property
-    def v(self):
-        return self.data.qvel.copy()
-
-    def acceleration(self, load):
-        self.data.qfrc_applied[:] = load
-        mujoco.mj_forward(model, self.data)
-        return self.data.qacc.copy()
-
-    def advance(self, load, dt):
-        self.data.qfrc_applied[:] = load
-        model.opt.timestep = dt
-        mujoco.mj_step(model, self.data)
-
-
 solid = halfstep.Solid(points.position, points.mass, points.density)
-halfstep.integrate.advance_once(solid, halfstep.mapping.Hinged(points.position, low), Flap())
+halfstep.integrate.advance_once(solid, halfstep.mapping.Hinged(points.position, low), Body(model))
