@@ -16,9 +16,10 @@ gate: setup
 test: setup
 	cargo test --release --workspace
 
-# The benchmarks of the literature at full resolution: long.
+# The benchmarks of the literature at full resolution, and long tests of solids alone.
 validate: setup
 	cargo test --release -p halfstep-tests -- --ignored --nocapture
+	cargo test --release -p halfstep-solid --lib -- --ignored --nocapture
 
 # Interrupts real runs at random instants by random signals, and resumes them: RUNS (1000) of them or SECONDS long.
 torture: setup
