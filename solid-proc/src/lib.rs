@@ -19,6 +19,7 @@
 //! assert!((block.particles().velocity[0][1] / (-9.81 * dt) - 1.0).abs() < 1e-9);
 //! ```
 
+mod account;
 mod columns;
 pub mod effects;
 pub mod finite_element;
@@ -35,6 +36,7 @@ pub mod solid;
 mod sub_steps;
 mod surface;
 pub mod total_lagrangian;
+mod verlet;
 mod wall;
 
 pub use model::{Load, OuterRates, Particles, SolidModel};

@@ -3,19 +3,20 @@
 //! Lumped mass and velocity Verlet (kick, drift, kick), as of the total-Lagrangian particles: the central difference of
 //! explicit finite elements (Belytschko, Liu, Moran and Elkhodary 2014, section 6.2).
 
-use super::account::Account;
 use super::element::{Element, MOST_PATTERNS};
 use super::mesh::Mesh;
+use crate::account::Account;
 use crate::columns::{ParticleColumns, Vectors, vectors};
 use crate::effects::takes_part;
 use crate::model::{Load, OutOfBounds, Particles, SolidModel};
 use crate::shown_velocity::ShownVelocity;
 use crate::side_friction;
 use crate::surface::surface_set;
-use crate::total_lagrangian::bounds::VolumeBounds;
+use crate::total_lagrangian::bounds::{VolumeBounds, keep_worse, refuse_worst};
 use crate::total_lagrangian::contact::{Contact, Present};
 use crate::total_lagrangian::material::{Law, Matrix};
 use crate::total_lagrangian::step_limit::{squared_stretches, sub_step};
+use crate::verlet::Kinematics;
 use halfstep_scene::bounds::Excess;
 use halfstep_scene::geometry::{self, SolidPoint};
 use halfstep_scene::{EffectName, EnergyPart, KernelName, ModelKeys, Motion, Plane, Scene, Solid};
@@ -23,18 +24,7 @@ use halfstep_sph::lane::Isa;
 use halfstep_sph::with_kernel;
 use halfstep_wire::half_step::{HalfStep, Stage};
 use halfstep_wire::protocol::StateRecord;
-use halfstep_wire::{wide, wire_component};
-
-/// What time integration advances, by node, and the inner acceleration that belongs to it.
-#[derive(Clone, Debug)]
-pub(super) struct Nodes<const D: usize> {
-    /// u, m.
-    pub(super) displacement: Vectors<D>,
-    /// m/s.
-    pub(super) velocity: Vectors<D>,
-    /// By all but loads and gravity, m/s².
-    pub(super) acceleration: Vectors<D>,
-}
+use halfstep_wire::wide;
 
 /// The finite-element solid.
 pub struct FiniteElement<const D: usize> {
@@ -62,8 +52,9 @@ pub struct FiniteElement<const D: usize> {
     pub(super) clamped: Vec<bool>,
     /// Of these, those that clamps move, and how.
     pub(super) driven: Vec<(usize, Motion)>,
-    pub(super) now: Nodes<D>,
-    at_n: Nodes<D>,
+    /// Of the nodes.
+    pub(super) now: Kinematics<D>,
+    at_n: Kinematics<D>,
     pub(super) shown_velocity: ShownVelocity<D>,
     /// Loads and gravity, m/s².
     pub(super) load: Vectors<D>,
@@ -107,7 +98,7 @@ impl<const D: usize> FiniteElement<D> {
         for column in &mut velocity {
             column.iter_mut().zip(&clamped).filter(|(_, held)| **held).for_each(|(v, _)| *v = 0.0);
         }
-        let now = Nodes { displacement: vectors(nodes), velocity, acceleration: vectors(nodes) };
+        let now = Kinematics::new(velocity);
         let driven = motions.into_iter().enumerate().filter_map(|(node, motion)| Some((node, motion?)));
         let kinematic =
             material.artificial_viscosity.kinematic(material.smoothing_ratio * dx, material.sound_speed());
@@ -195,24 +186,10 @@ impl<const D: usize> FiniteElement<D> {
         }
     }
 
-    fn drift(&mut self, dt: f64) {
-        for d in 0..D {
-            for (u, v) in self.now.displacement[d].iter_mut().zip(&self.now.velocity[d]) {
-                *u += dt * v;
-            }
-        }
-    }
-
     /// Brings what clamps move to where they are at a time, s.
     fn drive(&mut self, time: f64) {
-        for (node, motion) in &self.driven {
-            let (placement, place) = (motion.at(time), self.mesh.reference[*node]);
-            let (moved, velocity) = (placement.displacement_of(place), placement.velocity_of(place));
-            for d in 0..D {
-                self.now.displacement[d][*node] = moved[d];
-                self.now.velocity[d][*node] = velocity[d];
-            }
-        }
+        let reference = &self.mesh.reference;
+        self.now.drive(&self.driven, time, |node| reference[node]);
     }
 
     /// `count` Verlet steps over `dt` from `time` on, both s.
@@ -224,7 +201,7 @@ impl<const D: usize> FiniteElement<D> {
             }
             self.kick(0.5 * each);
             let driven = self.driven_from();
-            self.drift(each);
+            self.now.drift(each);
             self.drive(time + f64::from(k) * each);
             self.evaluate();
             self.note_sub_step(each, &driven);
@@ -240,11 +217,7 @@ impl<const D: usize> FiniteElement<D> {
             let nodes = self.mesh.of(p);
             let f = Matrix::identity() + self.element.gradient(nodes, &self.now.displacement);
             let j = self.law.volume_ratio(&f);
-            if let Some(excess) = self.bounds.excess(j, 0.0)
-                && worst.is_none_or(|(_, other)| excess.ratio > other.ratio)
-            {
-                worst = Some((p as u32, excess));
-            }
+            keep_worse(&mut worst, p as u32, self.bounds.excess(j, 0.0));
             let mut stress = self.law.first_piola_kirchhoff(&f, j);
             let patterns = self.element.patterns(nodes, &self.now.displacement);
             let mut on_patterns = patterns.map(|q| q.map(|q| self.hourglass * q));
@@ -325,14 +298,7 @@ impl<const D: usize> FiniteElement<D> {
             mass: self.mass,
             ..StateRecord::default()
         };
-        for a in 0..D {
-            for b in a..D {
-                r.deviatoric_stress[wire_component(a, b)] = cauchy.deviator[(a, b)];
-            }
-        }
-        if D == 2 {
-            r.deviatoric_stress[2] = -cauchy.deviator.trace();
-        }
+        cauchy.put_deviator(&mut r);
         r
     }
 
@@ -351,11 +317,7 @@ impl<const D: usize> FiniteElement<D> {
             Some((p as u32, self.bounds.excess(1.0, speed)?))
         };
         let all = self.shown.view().velocity.iter().enumerate().filter_map(excess).chain(self.failure);
-        let Some((particle, worst)) = all.max_by(|a, b| a.1.ratio.total_cmp(&b.1.ratio)) else {
-            return Ok(());
-        };
-        let position = wide(self.shown.position[particle as usize]);
-        Err(OutOfBounds { particle, quantity: worst.quantity, value: worst.value, position })
+        refuse_worst(all, |p| self.shown.position[p])
     }
 }
 
@@ -414,16 +376,16 @@ impl<const D: usize> SolidModel<D> for FiniteElement<D> {
         let span = half_step.span();
         match half_step.stage {
             Stage::First => {
-                self.at_n.clone_from(&self.now);
+                self.at_n.copy_from(&self.now);
                 let (mesh, from) = (&self.mesh, &self.at_n.displacement);
                 self.shown_velocity.leave(|p| mesh.mean(p, from));
                 self.sub_step((sub_steps / 2).max(1), span, half_step.time);
             }
             Stage::Second => {
-                self.now.clone_from(&self.at_n);
-                self.set_account_open(true);
+                self.now.copy_from(&self.at_n);
+                self.account.iter_mut().for_each(|account| account.given.open = true);
                 self.sub_step(sub_steps, span, half_step.time);
-                self.set_account_open(false);
+                self.account.iter_mut().for_each(|account| account.given.open = false);
             }
         }
         let (mesh, now) = (&self.mesh, &self.now);
@@ -434,7 +396,7 @@ impl<const D: usize> SolidModel<D> for FiniteElement<D> {
     }
 
     fn keep_account(&mut self) {
-        self.open_account();
+        self.account = Some(Account::new(self.sinks()));
     }
 
     fn account(&mut self, give: &mut dyn FnMut(EnergyPart, f64)) {

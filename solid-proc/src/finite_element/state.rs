@@ -1,7 +1,7 @@
 //! What the finite-element solid keeps over an interruption at a state n: nodes and the order of contacts. The mesh
 //! comes from the scene, stresses and energies from the displacements.
 
-use super::model::{FiniteElement, Nodes};
+use super::model::FiniteElement;
 use halfstep_wire::state::{Fields, State, StateError};
 
 impl<const D: usize> State for FiniteElement<D> {
@@ -10,8 +10,7 @@ impl<const D: usize> State for FiniteElement<D> {
         fields.part("nodes", &mut self.now)?;
         fields.part("shown_velocity", &mut self.shown_velocity)?;
         fields.count("evaluations", &mut self.evaluations)?;
-        let now = [&self.now.displacement, &self.now.velocity, &self.now.acceleration];
-        now.into_iter().flatten().try_for_each(|column| fields.length("nodes", nodes, column.len()))?;
+        self.now.check_length(fields, "nodes", nodes)?;
         if let Some(account) = &mut self.account {
             fields.part("account", account)?;
         }
@@ -27,13 +26,5 @@ impl<const D: usize> State for FiniteElement<D> {
         }
         self.show_restored();
         Ok(())
-    }
-}
-
-impl<const D: usize> State for Nodes<D> {
-    fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
-        fields.vectors("displacement", &mut self.displacement)?;
-        fields.vectors("velocity", &mut self.velocity)?;
-        fields.vectors("acceleration", &mut self.acceleration)
     }
 }

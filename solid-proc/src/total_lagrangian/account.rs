@@ -1,73 +1,17 @@
-//! What effects give the solid over a step: the sum over its sub-steps of dt v . (a + a') / 2, where v is the velocity
-//! of the drift, and a and a' are the accelerations of the kicks before and after it.
+//! What the effects of the total-Lagrangian solid give it over a step (see [`crate::account`]).
 
 use super::material::Matrix;
 use super::model::TotalLagrangian;
 use super::pass::Viscosity;
-use crate::columns::{Vectors, vectors};
-use crate::ledger::Given;
-use halfstep_scene::EnergyPart;
+use crate::account::{self, Driven, Sinks, SubStep};
 use halfstep_sph::lane::LANES;
 use halfstep_sph::neighbours::PADDING;
 use halfstep_sph::pair;
-use halfstep_wire::state::{Fields, State, StateError};
-
-/// Accelerations by what takes energy, at one evaluation.
-#[derive(Clone, Debug)]
-struct Sinks<const D: usize> {
-    /// By the artificial viscosity, m/s².
-    viscous: Vectors<D>,
-    /// By walls, m/s².
-    walls: Vectors<D>,
-    /// Power of walls that move, W (2D: W/m).
-    moving_walls: f64,
-    /// By all that acts inside, on the particles that clamps move, m/s².
-    driven: Vec<[f64; D]>,
-}
-
-/// What was given over the present step, and what that takes to know.
-#[derive(Clone, Debug)]
-pub(super) struct Account<const D: usize> {
-    pub(super) given: Given,
-    last: Sinks<D>,
-}
-
-impl<const D: usize> Account<D> {
-    pub(super) fn new(slots: usize, driven: usize) -> Self {
-        let none = Sinks {
-            viscous: vectors(slots),
-            walls: vectors(slots),
-            moving_walls: 0.0,
-            driven: vec![[0.0; D]; driven],
-        };
-        Self { given: Given::default(), last: none }
-    }
-}
-
-impl<const D: usize> State for Account<D> {
-    fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
-        let (slots, driven) = (self.last.walls[0].len(), self.last.driven.len());
-        fields.vectors("viscous", &mut self.last.viscous)?;
-        fields.vectors("walls", &mut self.last.walls)?;
-        fields.real("moving_walls", &mut self.last.moving_walls)?;
-        fields.points("driven", &mut self.last.driven)?;
-        let columns = self.last.viscous.iter().chain(&self.last.walls);
-        columns.map(Vec::len).try_for_each(|n| fields.length("viscous", slots, n))?;
-        fields.length("driven", driven, self.last.driven.len())
-    }
-}
 
 impl<const D: usize> TotalLagrangian<D> {
     /// What the present sub-step gives is noted.
     pub(super) fn keeps_account(&self) -> bool {
-        self.account.as_ref().is_some_and(|account| account.given.open)
-    }
-
-    /// What follows belongs to a step that is kept, or no longer does.
-    pub(super) fn set_account_open(&mut self, open: bool) {
-        if let Some(account) = &mut self.account {
-            account.given.open = open;
-        }
+        account::is_open(self.account.as_ref())
     }
 
     /// Kinetic energy of the particles that no clamp holds, J (2D: J/m), where account is kept.
@@ -81,9 +25,9 @@ impl<const D: usize> TotalLagrangian<D> {
     }
 
     /// The velocities are those of the drift, and the present state has been evaluated.
-    fn sinks(&mut self) -> Sinks<D> {
+    pub(super) fn sinks(&self) -> Sinks<D> {
         let slots = self.id.len();
-        let mut sinks = Account::new(slots, 0).last;
+        let mut sinks = Sinks::none(slots);
         if let Some(damping) = self.damping() {
             let law = Viscosity {
                 damping,
@@ -121,41 +65,11 @@ impl<const D: usize> TotalLagrangian<D> {
             return;
         }
         let sinks = self.sinks();
-        let Some(account) = &mut self.account else { return };
-        let velocity = &self.now.velocity;
-        let work = |a: &Vectors<D>, b: &Vectors<D>| -> f64 {
-            let of = |slot: usize| -> f64 {
-                (0..D).map(|d| velocity[d][slot] * 0.5 * (a[d][slot] + b[d][slot])).sum()
-            };
-            let real = (0..self.id.len()).filter(|&slot| self.id[slot] != PADDING);
-            dt * self.mass * real.map(of).sum::<f64>()
-        };
-        let viscous = work(&account.last.viscous, &sinks.viscous);
-        let contact = work(&account.last.walls, &sinks.walls);
-        let moving = 0.5 * dt * (account.last.moving_walls + sinks.moving_walls);
-        account.given.give(EnergyPart::ArtificialViscosity, viscous);
-        account.given.give(EnergyPart::WallContact, contact - moving);
-        account.given.give(EnergyPart::MovingWalls, moving);
-        let mut clamps = 0.0;
-        for (((slot, _), before), (a, b)) in
-            self.driven.iter().zip(before).zip(account.last.driven.iter().zip(&sinks.driven))
-        {
-            for d in 0..D {
-                let way = self.now.displacement[d][*slot] - before.displacement[d];
-                let kinetic = 0.5 * (velocity[d][*slot].powi(2) - before.velocity[d].powi(2));
-                clamps += kinetic - (0.5 * (a[d] + b[d]) + self.gravity[d] + before.load[d]) * way;
-            }
-        }
-        account.given.give(EnergyPart::Clamps, self.mass * clamps);
-        account.last = sinks;
-    }
-
-    /// Begins to keep account, from the present state on.
-    pub(super) fn open_account(&mut self) {
-        self.account = Some(Account::new(self.id.len(), self.driven.len()));
-        let sinks = self.sinks();
+        let (now, gravity) = (&self.now, self.gravity);
+        let step = SubStep { dt, mass: self.mass, now, driven: before, gravity };
+        let share = |slot: usize| if self.id[slot] == PADDING { 0.0 } else { 1.0 };
         if let Some(account) = &mut self.account {
-            account.last = sinks;
+            account.note(&step, sinks, share);
         }
     }
 
@@ -164,22 +78,9 @@ impl<const D: usize> TotalLagrangian<D> {
         if !self.keeps_account() {
             return Vec::new();
         }
-        let of = |columns: &Vectors<D>, slot: usize| std::array::from_fn(|d| columns[d][slot]);
-        let from = |(&(slot, _), &load): (&(usize, _), &[f64; D])| Driven {
-            displacement: of(&self.now.displacement, slot),
-            velocity: of(&self.now.velocity, slot),
-            load,
-        };
+        let from = |((slot, _), load): (&(usize, _), &[f64; D])| Driven::of(&self.now, *slot, *load);
         self.driven.iter().zip(&self.driven_load).map(from).collect()
     }
-}
-
-/// A particle that a clamp moves, before a sub-step.
-pub(super) struct Driven<const D: usize> {
-    displacement: [f64; D],
-    velocity: [f64; D],
-    /// By the fluid, m/s².
-    load: [f64; D],
 }
 
 /// Energy that an arm of relative modulus `share` and relaxation time `time` loses while its elastic deviator goes

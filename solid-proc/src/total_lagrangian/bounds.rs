@@ -45,6 +45,28 @@ impl VolumeBounds {
     }
 }
 
+/// Keeps of two particles out of bounds the one that is farther out.
+pub(crate) fn keep_worse(worst: &mut Option<(u32, Excess)>, particle: u32, excess: Option<Excess>) {
+    if let Some(excess) = excess
+        && worst.is_none_or(|(_, other)| excess.ratio > other.ratio)
+    {
+        *worst = Some((particle, excess));
+    }
+}
+
+/// Fails with the one of these particles that is farthest out of bounds; `position` by particle number, m.
+pub(crate) fn refuse_worst<const D: usize>(
+    all: impl Iterator<Item = (u32, Excess)>,
+    position: impl Fn(usize) -> [f64; D],
+) -> Result<(), OutOfBounds> {
+    match all.max_by(|a, b| a.1.ratio.total_cmp(&b.1.ratio)) {
+        None => Ok(()),
+        Some((particle, Excess { quantity, value, .. })) => {
+            Err(OutOfBounds { particle, quantity, value, position: wide(position(particle as usize)) })
+        }
+    }
+}
+
 impl<const D: usize> TotalLagrangian<D> {
     /// Names the particle that is farthest out of bounds, if any is.
     pub(super) fn check(&self) -> Result<(), OutOfBounds> {
@@ -53,11 +75,7 @@ impl<const D: usize> TotalLagrangian<D> {
             Some((p as u32, self.bounds.excess(1.0, v2.sqrt())?))
         };
         let all = self.slot_of.iter().enumerate().filter_map(excess).chain(self.failure);
-        let Some((particle, worst)) = all.max_by(|a, b| a.1.ratio.total_cmp(&b.1.ratio)) else {
-            return Ok(());
-        };
-        let position = wide(self.position_at(self.slot_of[particle as usize] as usize));
-        Err(OutOfBounds { particle, quantity: worst.quantity, value: worst.value, position })
+        refuse_worst(all, |p| self.position_at(self.slot_of[p] as usize))
     }
 }
 

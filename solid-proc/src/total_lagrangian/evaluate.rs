@@ -1,5 +1,6 @@
 //! Inner acceleration of a state: deformation gradient, stress, momentum, contacts.
 
+use super::bounds::keep_worse;
 use super::contact::{Contact, Present};
 use super::fracture::Fracture;
 use super::material::{Cauchy, Matrix};
@@ -79,11 +80,7 @@ impl<const D: usize> TotalLagrangian<D> {
             let h = at(&self.deformations[slot / LANES].gradient, slot % LANES) * correction;
             let f = Matrix::identity() + h;
             let j = self.law.volume_ratio(&f);
-            if let Some(excess) = self.bounds.excess(j, 0.0)
-                && worst.is_none_or(|(_, other)| excess.ratio > other.ratio)
-            {
-                worst = Some((self.id[slot], excess));
-            }
+            keep_worse(&mut worst, self.id[slot], self.bounds.excess(j, 0.0));
             let mut p = self.stress_at(slot, &f, j);
             let tense = screen < f64::INFINITY && (p.norm_squared() > screen || self.damage_at(slot) > 0.0);
             if tense && self.fixed.clamped[slot] == 0.0 {
@@ -119,7 +116,7 @@ impl<const D: usize> TotalLagrangian<D> {
             d if d > 0.0 => self.law.damaged_cauchy(f, j, d),
             _ => self.law.cauchy(f, j),
         };
-        self.now.memory.added_to(cauchy, slot, f, j)
+        self.memory.added_to(cauchy, slot, f, j)
     }
 
     /// Acceleration of the present state, `elapsed` (s) after the one before, by everything but loads and gravity.
@@ -128,7 +125,7 @@ impl<const D: usize> TotalLagrangian<D> {
         if self.arms.is_empty() {
             self.stresses(&mut ());
         } else {
-            let mut memory = std::mem::take(&mut self.now.memory);
+            let mut memory = std::mem::take(&mut self.memory);
             let arms = std::mem::take(&mut self.arms);
             let shear_modulus = self.material.shear_modulus();
             let mut relaxation = Arms::over(elapsed, &arms, shear_modulus, &mut memory);
@@ -141,7 +138,7 @@ impl<const D: usize> TotalLagrangian<D> {
             if let Some(account) = self.account.as_mut().filter(|_| accounted) {
                 account.given.give(EnergyPart::Relaxation, -lost);
             }
-            (self.now.memory, self.arms) = (memory, arms);
+            (self.memory, self.arms) = (memory, arms);
         }
         let mut sums = std::mem::take(&mut self.sums);
         match self.damping() {
@@ -204,7 +201,7 @@ impl<const D: usize> TotalLagrangian<D> {
     /// Parts of an evaluation's time, each effect's measured by leaving it out. The hourglass force and the clamps'
     /// gain are factors of the passes: there is nothing to leave out.
     pub(super) fn costs_of_effects(&mut self) -> Costs {
-        let (before, state) = (self.pair_evaluations, self.now.clone());
+        let (before, state, memory) = (self.pair_evaluations, self.now.clone(), self.memory.clone());
         let evaluation = |model: &mut Self| fastest(|| model.evaluate(0.0));
         let mut costs = Costs::default();
         // Damage does not grow where it has grown: it is looked for only.
@@ -242,6 +239,7 @@ impl<const D: usize> TotalLagrangian<D> {
             self.fracture = Some(fracture);
         }
         self.now.copy_from(&state);
+        self.memory.copy_from(&memory);
         self.pair_evaluations = before;
         costs
     }
@@ -258,7 +256,7 @@ impl<const D: usize> TotalLagrangian<D> {
                     d if d > 0.0 => self.volume * self.law.damaged(f, self.volume_ratio[slot], d).energy,
                     _ => self.volume * self.law.energy(f, self.volume_ratio[slot]),
                 };
-                let relaxing = self.now.memory.energy(slot, &self.arms, self.material.shear_modulus());
+                let relaxing = self.memory.energy(slot, &self.arms, self.material.shear_modulus());
                 strained
                     + self.volume * relaxing
                     + 0.5 * self.hourglass[slot] * self.volume * self.error_square(slot)

@@ -12,6 +12,8 @@
 
 use halfstep_scene::{Material, Plane, Solid};
 use halfstep_sph::tensor;
+use halfstep_wire::protocol::StateRecord;
+use halfstep_wire::wire_component;
 use nalgebra::SMatrix;
 
 /// A matrix of the scene's dimension.
@@ -34,6 +36,20 @@ pub(crate) struct Law {
 pub(crate) struct Cauchy<const D: usize> {
     pub pressure: f64,
     pub deviator: Matrix<D>,
+}
+
+impl<const D: usize> Cauchy<D> {
+    /// Puts the deviator into a record; in two dimensions with what stands across.
+    pub(crate) fn put_deviator(&self, record: &mut StateRecord) {
+        for a in 0..D {
+            for b in a..D {
+                record.deviatoric_stress[wire_component(a, b)] = self.deviator[(a, b)];
+            }
+        }
+        if D == 2 {
+            record.deviatoric_stress[2] = -self.deviator.trace();
+        }
+    }
 }
 
 impl Law {

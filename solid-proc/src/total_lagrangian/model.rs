@@ -3,7 +3,6 @@
 //! Velocity Verlet (kick, drift, kick), which keeps the energy of an undamped solid: the midpoint scheme would amplify
 //! it by 1 + (omega dt)⁴/8 a step. One evaluation a sub-step, since the acceleration at its start is known.
 
-use super::account::Account;
 use super::bounds::VolumeBounds;
 use super::clamp;
 use super::contact::Contact;
@@ -13,12 +12,14 @@ use super::loads::{self, Loads};
 use super::material::{Law, Matrix};
 use super::pass::{Acceleration, DeformationSum, Fixed, Matrices};
 use super::relaxation::{self, Arm, Memory};
+use crate::account::Account;
 use crate::columns::{ParticleColumns, Vectors, vector, vectors};
 use crate::effects::takes_part;
 use crate::model::{FractureSummary, Load, OutOfBounds, Particles, SolidModel};
 use crate::shown_velocity::ShownVelocity;
 use crate::side_friction;
 use crate::surface::surface_set;
+use crate::verlet::Kinematics;
 use halfstep_role::role::Costs;
 use halfstep_scene::bounds::Excess;
 use halfstep_scene::geometry::{self, SolidPoint};
@@ -30,31 +31,6 @@ use halfstep_sph::with_kernel;
 use halfstep_wire::half_step::{HalfStep, Stage};
 use halfstep_wire::protocol::StateRecord;
 use halfstep_wire::wide;
-use halfstep_wire::wire_component;
-
-/// What time integration advances, and the inner acceleration that belongs to it.
-#[derive(Clone, Debug)]
-pub(super) struct State<const D: usize> {
-    /// u, m.
-    pub displacement: Vectors<D>,
-    /// m/s.
-    pub velocity: Vectors<D>,
-    /// By all but loads and gravity, m/s².
-    pub acceleration: Vectors<D>,
-    /// What Maxwell arms remember.
-    pub memory: Memory<D>,
-}
-
-impl<const D: usize> State<D> {
-    pub(super) fn copy_from(&mut self, other: &Self) {
-        for d in 0..D {
-            self.displacement[d].clone_from(&other.displacement[d]);
-            self.velocity[d].clone_from(&other.velocity[d]);
-            self.acceleration[d].clone_from(&other.acceleration[d]);
-        }
-        self.memory.copy_from(&other.memory);
-    }
-}
 
 /// The total-Lagrangian solid.
 pub struct TotalLagrangian<const D: usize> {
@@ -98,9 +74,12 @@ pub struct TotalLagrangian<const D: usize> {
     pub(super) correction: Vec<Matrix<D>>,
     /// a, Pa.
     pub(super) hourglass: Vec<f64>,
-    pub(super) now: State<D>,
+    pub(super) now: Kinematics<D>,
+    /// What Maxwell arms remember.
+    pub(super) memory: Memory<D>,
     /// State at n.
-    at_n: State<D>,
+    at_n: Kinematics<D>,
+    memory_at_n: Memory<D>,
     pub(super) shown_velocity: ShownVelocity<D>,
     /// Loads and gravity, m/s².
     load: Vectors<D>,
@@ -178,12 +157,7 @@ impl<const D: usize> TotalLagrangian<D> {
         let mass = material.density * dx.powi(D as i32);
         let relaxes = takes_part(scene, solid, EffectName::Relaxation);
         let arms = if relaxes { relaxation::arms(&keys.prony) } else { Vec::new() };
-        let now = State {
-            displacement: vectors(slots),
-            acceleration: vectors(slots),
-            velocity,
-            memory: Memory::new(slots, arms.len()),
-        };
+        let (now, memory) = (Kinematics::new(velocity), Memory::new(slots, arms.len()));
         let mut pairs =
             with_kernel!(scene.numerics.kernel, h, D, |k| FixedPairs::new(isa, k, position, list));
         let body_at = |slot: usize| body.get(id[slot] as usize);
@@ -215,6 +189,8 @@ impl<const D: usize> TotalLagrangian<D> {
             fracture: Fracture::new(scene, solid, &body, dormant),
             loads: Loads::new(scene, &layout.solid, &slot_of, dx, mass),
             at_n: now.clone(),
+            memory_at_n: memory.clone(),
+            memory,
             shown_velocity: ShownVelocity::new(layout.solid.iter().map(|p| p.velocity)),
             load: vectors(slots),
             gradient: vec![Matrix::identity(); slots],
@@ -287,14 +263,6 @@ impl<const D: usize> TotalLagrangian<D> {
         }
     }
 
-    fn drift(&mut self, dt: f64) {
-        for d in 0..D {
-            for (u, v) in self.now.displacement[d].iter_mut().zip(&self.now.velocity[d]) {
-                *u += dt * v;
-            }
-        }
-    }
-
     /// Notes the work of tractions over the step; `time` is its middle, s.
     fn account_for_loads(&mut self, time: f64) {
         if self.keeps_account() {
@@ -307,15 +275,8 @@ impl<const D: usize> TotalLagrangian<D> {
 
     /// Brings what clamps move to where they are at a time, s.
     fn drive(&mut self, time: f64) {
-        for (slot, motion) in &self.driven {
-            let placement = motion.at(time);
-            let place: [f64; D] = std::array::from_fn(|d| self.pairs.position()[d][*slot]);
-            let (moved, velocity) = (placement.displacement_of(place), placement.velocity_of(place));
-            for d in 0..D {
-                self.now.displacement[d][*slot] = moved[d];
-                self.now.velocity[d][*slot] = velocity[d];
-            }
-        }
+        let position = self.pairs.position();
+        self.now.drive(&self.driven, time, |slot| vector(position, slot as u32));
     }
 
     /// `count` Verlet steps over `dt` from `time` on, both s.
@@ -327,7 +288,7 @@ impl<const D: usize> TotalLagrangian<D> {
             }
             self.kick(0.5 * each);
             let driven = self.driven_from();
-            self.drift(each);
+            self.now.drift(each);
             self.drive(time + f64::from(k) * each);
             self.evaluate(each);
             self.tear();
@@ -364,14 +325,7 @@ impl<const D: usize> TotalLagrangian<D> {
             mass: self.mass,
             ..StateRecord::default()
         };
-        for a in 0..D {
-            for b in a..D {
-                r.deviatoric_stress[wire_component(a, b)] = cauchy.deviator[(a, b)];
-            }
-        }
-        if D == 2 {
-            r.deviatoric_stress[2] = -cauchy.deviator.trace();
-        }
+        cauchy.put_deviator(&mut r);
         r
     }
 }
@@ -415,18 +369,20 @@ impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {
         match half_step.stage {
             Stage::First => {
                 self.at_n.copy_from(&self.now);
+                self.memory_at_n.copy_from(&self.memory);
                 let (slot_of, from) = (&self.slot_of, &self.at_n.displacement);
                 self.shown_velocity.leave(|p| vector(from, slot_of[p]));
                 self.sub_step((sub_steps / 2).max(1), span, half_step.time);
             }
             Stage::Second => {
                 self.now.copy_from(&self.at_n);
-                self.set_account_open(true);
+                self.memory.copy_from(&self.memory_at_n);
+                self.account.iter_mut().for_each(|account| account.given.open = true);
                 self.fracture.iter_mut().for_each(|fracture| fracture.accept(true));
                 self.sub_step(sub_steps, span, half_step.time);
                 self.fracture.iter_mut().for_each(|fracture| fracture.accept(false));
                 self.account_for_loads(half_step.time + 0.5 * span);
-                self.set_account_open(false);
+                self.account.iter_mut().for_each(|account| account.given.open = false);
             }
         }
         let (slot_of, now) = (&self.slot_of, &self.now);
@@ -449,7 +405,7 @@ impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {
     }
 
     fn keep_account(&mut self) {
-        self.open_account();
+        self.account = Some(Account::new(self.sinks()));
     }
 
     fn account(&mut self, give: &mut dyn FnMut(EnergyPart, f64)) {

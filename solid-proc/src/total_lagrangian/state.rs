@@ -3,7 +3,7 @@
 //! reference configuration and its pairs come from the scene, stresses and energies from the displacements.
 
 use super::contact::Contact;
-use super::model::{State as Columns, TotalLagrangian};
+use super::model::TotalLagrangian;
 use crate::wall::Walls;
 use halfstep_wire::state::{Fields, State, StateError};
 
@@ -17,13 +17,12 @@ impl<const D: usize> State for TotalLagrangian<D> {
         }
         fields.part("particles", &mut self.now)?;
         if !self.arms.is_empty() {
-            fields.part("relaxation", &mut self.now.memory)?;
+            fields.part("relaxation", &mut self.memory)?;
         }
         self.fracture_fields(fields)?;
         fields.part("shown_velocity", &mut self.shown_velocity)?;
         fields.count("pair_evaluations", &mut self.pair_evaluations)?;
-        let now = [&self.now.displacement, &self.now.velocity, &self.now.acceleration];
-        now.into_iter().flatten().try_for_each(|column| fields.length("particles", slots, column.len()))?;
+        self.now.check_length(fields, "particles", slots)?;
         if let Some(account) = &mut self.account {
             fields.part("account", account)?;
         }
@@ -45,14 +44,6 @@ impl<const D: usize> State for TotalLagrangian<D> {
         self.keep_gradients();
         self.show_particles();
         Ok(())
-    }
-}
-
-impl<const D: usize> State for Columns<D> {
-    fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
-        fields.vectors("displacement", &mut self.displacement)?;
-        fields.vectors("velocity", &mut self.velocity)?;
-        fields.vectors("acceleration", &mut self.acceleration)
     }
 }
 

@@ -71,7 +71,7 @@ impl<const D: usize> TotalLagrangian<D> {
             let slot = slot as usize;
             let f = &self.gradient[slot];
             let squares = squared_stretches(f);
-            let arms = match self.now.memory.stress(slot) {
+            let arms = match self.memory.stress(slot) {
                 Some(h) => h.norm() + 4.0 / 3.0 * shares * self.material.shear_modulus() * squares[1],
                 None => 0.0,
             };

@@ -1,8 +1,7 @@
 //! What a scene says to the finite-element model alone.
 
 use super::models::Rules;
-use super::total_lagrangian::{Material, Plane, material, plane};
-use crate::ArtificialViscosity;
+use super::total_lagrangian::{self, Material, Plane, material, plane};
 use crate::preset::Defaults;
 use crate::section::{Range, Section};
 use serde::{Deserialize, Serialize};
@@ -21,11 +20,7 @@ pub(super) const RULES: Rules = Rules {
     smoothing: Range::at_least(0.75)
         .up_to(0.75)
         .why("finite elements have no kernel; it is the length of the viscosity"),
-    defaults: |defaults| Defaults {
-        solid_smoothing_ratio: 0.75,
-        solid_viscosity: ArtificialViscosity { linear: 0.1, quadratic: 0.0 },
-        ..defaults
-    },
+    defaults: total_lagrangian::RULES.defaults,
     keys: &[
         ("material", "only the total-lagrangian and the finite-element model have a choice of materials"),
         ("plane", "only the total-lagrangian and the finite-element model know the strain across the plane"),
