@@ -64,6 +64,11 @@ conformance! {
     total_lagrangian: TotalLagrangian, "model = \"total-lagrangian\"";
     finite_element: FiniteElement, "model = \"finite-element\"";
 }
+// By the midpoint rule.
+conformance!(whole implicit_finite_element 2: FiniteElement,
+    "model = \"finite-element\"\ntime_integration = \"implicit\"");
+conformance!(whole implicit_finite_element_in_space 3: FiniteElement,
+    "model = \"finite-element\"\ntime_integration = \"implicit\"");
 // With a memory.
 conformance!(whole relaxing_total_lagrangian 2: TotalLagrangian,
     "model = \"total-lagrangian\"\nprony = [[0.5, 0.01]]");

@@ -67,7 +67,8 @@ pub use probe::{BodyQuantity, Probe, ProbeKind, Reference};
 pub use resources::{expected_speed, memory_available, memory_needed};
 pub use solid::{
     ArtificialStress, ContactKeys, FiniteElementKeys, Fracture, HypoelasticKeys, Joint, JointKind, Material,
-    ModelKeys, Plane, RigidBody, RigidKeys, Solid, SolidModelName, SubSteps, TotalLagrangianKeys,
+    ModelKeys, Plane, RigidBody, RigidKeys, Solid, SolidModelName, SubSteps, TimeIntegration,
+    TotalLagrangianKeys,
 };
 pub use velocity_field::VelocityField;
 

@@ -7,7 +7,7 @@ mod models;
 mod rigid;
 mod total_lagrangian;
 
-pub use finite_element::FiniteElementKeys;
+pub use finite_element::{FiniteElementKeys, TimeIntegration};
 pub use fracture::Fracture;
 pub use hypoelastic::{ArtificialStress, HypoelasticKeys};
 pub use models::{ModelKeys, SolidModelName};

@@ -10,7 +10,7 @@ impl<const D: usize> FiniteElement<D> {
     }
 
     /// Mass of a node, kg (2D: kg/m).
-    fn mass_of(&self, node: usize) -> f64 {
+    pub(super) fn mass_of(&self, node: usize) -> f64 {
         self.mass * self.mesh.share(node)
     }
 
@@ -36,7 +36,7 @@ impl<const D: usize> FiniteElement<D> {
     pub(super) fn sinks(&self) -> Sinks<D> {
         let mut sinks = Sinks::none(self.mesh.nodes());
         for (p, f) in self.gradient.iter().enumerate().filter(|_| self.viscosity > 0.0) {
-            let (stress, on_patterns) = self.viscous(p, f);
+            let (stress, on_patterns) = self.viscous(p, f, &self.now.velocity);
             for (corner, &node) in self.mesh.of(p).iter().enumerate() {
                 let node = node as usize;
                 let force = self.element.force(corner, &stress, &on_patterns);

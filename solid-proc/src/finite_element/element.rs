@@ -40,7 +40,7 @@ impl<const D: usize> Element<D> {
     }
 
     /// The slope of a corner's shape function in the middle, 1/m.
-    fn slope(&self, corner: usize, axis: usize) -> f64 {
+    pub(super) fn slope(&self, corner: usize, axis: usize) -> f64 {
         side(corner, axis) / ((Mesh::<D>::CORNERS / 2) as f64 * self.spacing)
     }
 
@@ -62,6 +62,11 @@ impl<const D: usize> Element<D> {
             });
         }
         found
+    }
+
+    /// Sum over the patterns of what two corners have of each.
+    pub(super) fn pattern_product(&self, a: usize, b: usize) -> f64 {
+        patterns::<D>().map(|axes| gamma::<D>(a, axes) * gamma::<D>(b, axes)).sum()
     }
 
     /// Force on a corner by the stress P in the middle, Pa, and by forces that work on the patterns, N (2D: N/m).

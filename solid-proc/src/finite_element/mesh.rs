@@ -60,6 +60,11 @@ impl<const D: usize> Mesh<D> {
         self.sharing.len()
     }
 
+    /// Number of elements.
+    pub(super) fn elements(&self) -> usize {
+        self.corners.len()
+    }
+
     /// Nodes of an element, corner by corner.
     pub(super) fn of(&self, element: usize) -> &[u32] {
         &self.corners[element][..Self::CORNERS]

@@ -1,11 +1,14 @@
-//! Finite elements: squares with one point of integration on the particles' cells, large rotation, explicit in time.
+//! Finite elements: squares with one point of integration on the particles' cells, large rotation, explicit
+//! or implicit in time.
 
 mod account;
 mod decide;
 mod element;
+mod implicit;
 mod mesh;
 mod model;
 mod state;
+mod stress;
 #[cfg(test)]
 mod tests;
 

@@ -1,10 +1,12 @@
 //! The model behind [`SolidModel`]: nodes in time.
 //!
 //! Lumped mass and velocity Verlet (kick, drift, kick), as of the total-Lagrangian particles: the central difference of
-//! explicit finite elements (Belytschko, Liu, Moran and Elkhodary 2014, section 6.2).
+//! explicit finite elements (Belytschko, Liu, Moran and Elkhodary 2014, section 6.2); or implicit steps.
 
-use super::element::{Element, MOST_PATTERNS};
+use super::element::Element;
+use super::implicit::Equations;
 use super::mesh::Mesh;
+use super::stress::Stressed;
 use crate::account::Account;
 use crate::columns::{ParticleColumns, Vectors, vectors};
 use crate::effects::takes_part;
@@ -19,7 +21,9 @@ use crate::total_lagrangian::step_limit::{squared_stretches, sub_step};
 use crate::verlet::Kinematics;
 use halfstep_scene::bounds::Excess;
 use halfstep_scene::geometry::{self, SolidPoint};
-use halfstep_scene::{EffectName, EnergyPart, KernelName, ModelKeys, Motion, Plane, Scene, Solid};
+use halfstep_scene::{
+    EffectName, EnergyPart, KernelName, ModelKeys, Motion, Plane, Scene, Solid, TimeIntegration,
+};
 use halfstep_sph::lane::Isa;
 use halfstep_sph::with_kernel;
 use halfstep_wire::half_step::{HalfStep, Stage};
@@ -29,18 +33,18 @@ use halfstep_wire::wide;
 /// The finite-element solid.
 pub struct FiniteElement<const D: usize> {
     pub(super) material: Solid,
-    law: Law,
+    pub(super) law: Law,
     pub(super) element: Element<D>,
     pub(super) mesh: Mesh<D>,
     /// K of the patterns without a gradient.
-    hourglass: f64,
+    pub(super) hourglass: f64,
     /// Viscosity, Pa s.
     pub(super) viscosity: f64,
     /// Deceleration by side friction, m/s².
     side_friction: Option<f64>,
     pub(super) kernel: KernelName,
     pub(super) isa: Isa,
-    spacing: f64,
+    pub(super) spacing: f64,
     pub(super) gravity: [f64; D],
     courant: f64,
     /// Of a particle, kg (2D: kg/m).
@@ -63,13 +67,17 @@ pub struct FiniteElement<const D: usize> {
     /// F.
     pub(super) gradient: Vec<Matrix<D>>,
     /// J.
-    volume_ratio: Vec<f64>,
+    pub(super) volume_ratio: Vec<f64>,
     pub(super) contact: Option<Contact<D>>,
     bounds: VolumeBounds,
     /// The particle whose volume left its bounds first, or of several the one farthest out.
     failure: Option<(u32, Excess)>,
     pub(super) evaluations: u64,
     pub(super) account: Option<Account<D>>,
+    /// Of implicit time integration.
+    equations: Option<Equations<D>>,
+    /// There is no fluid, whose time step it could take.
+    alone: bool,
 }
 
 impl<const D: usize> FiniteElement<D> {
@@ -99,6 +107,8 @@ impl<const D: usize> FiniteElement<D> {
             column.iter_mut().zip(&clamped).filter(|(_, held)| **held).for_each(|(v, _)| *v = 0.0);
         }
         let now = Kinematics::new(velocity);
+        let implicit = keys.time_integration == TimeIntegration::Implicit;
+        let equations = implicit.then(|| Equations::new(&mesh, &clamped));
         let driven = motions.into_iter().enumerate().filter_map(|(node, motion)| Some((node, motion?)));
         let kinematic =
             material.artificial_viscosity.kinematic(material.smoothing_ratio * dx, material.sound_speed());
@@ -134,6 +144,8 @@ impl<const D: usize> FiniteElement<D> {
             failure: None,
             evaluations: 0,
             account: None,
+            equations,
+            alone: scene.fluid.is_none(),
         };
         model.drive(0.0);
         model.evaluate();
@@ -174,6 +186,11 @@ impl<const D: usize> FiniteElement<D> {
                 }
             }
         }
+        self.rub(dt);
+    }
+
+    /// Slows by side friction.
+    pub(super) fn rub(&mut self, dt: f64) {
         if let Some(friction) = self.side_friction {
             let before = self.accounted_kinetic_energy();
             let clamped = &self.clamped;
@@ -187,9 +204,20 @@ impl<const D: usize> FiniteElement<D> {
     }
 
     /// Brings what clamps move to where they are at a time, s.
-    fn drive(&mut self, time: f64) {
+    pub(super) fn drive(&mut self, time: f64) {
         let reference = &self.mesh.reference;
         self.now.drive(&self.driven, time, |node| reference[node]);
+    }
+
+    /// `count` steps over `dt` from `time` on, both s.
+    fn go_on(&mut self, count: u32, dt: f64, time: f64) {
+        match self.equations.take() {
+            Some(mut equations) => {
+                self.implicit_steps(&mut equations, count, dt, time);
+                self.equations = Some(equations);
+            }
+            None => self.sub_step(count, dt, time),
+        }
     }
 
     /// `count` Verlet steps over `dt` from `time` on, both s.
@@ -209,27 +237,26 @@ impl<const D: usize> FiniteElement<D> {
         }
     }
 
+    /// The stable Verlet step, s; springs, 1/s², and walls, 1/s, are those of contacts.
+    fn explicit_step(&self, springs: f64, walls: f64) -> f64 {
+        let stiffness = |(f, &j): (&Matrix<D>, &f64)| self.law.stiffness(f, j, squared_stretches(f));
+        let stiffest = self.gradient.iter().zip(&self.volume_ratio).map(stiffness).fold(0.0, f64::max);
+        let square = 4.0 * D as f64 / (self.material.density * self.spacing.powi(2));
+        let omega = (square * stiffest + springs).sqrt();
+        let damping = 0.5 * (square * 2.0 * self.viscosity + walls);
+        sub_step(omega, damping)
+    }
+
     /// Inner acceleration of the present state: stresses, patterns, contacts.
     pub(super) fn evaluate(&mut self) {
         self.inner.iter_mut().for_each(|column| column.fill(0.0));
         let mut worst: Option<(u32, Excess)> = None;
         for p in 0..self.points.len() {
-            let nodes = self.mesh.of(p);
-            let f = Matrix::identity() + self.element.gradient(nodes, &self.now.displacement);
-            let j = self.law.volume_ratio(&f);
-            keep_worse(&mut worst, p as u32, self.bounds.excess(j, 0.0));
-            let mut stress = self.law.first_piola_kirchhoff(&f, j);
-            let patterns = self.element.patterns(nodes, &self.now.displacement);
-            let mut on_patterns = patterns.map(|q| q.map(|q| self.hourglass * q));
-            if self.viscosity > 0.0 {
-                let (viscous, slowing) = self.viscous(p, &f);
-                stress += viscous;
-                for (force, more) in on_patterns.iter_mut().zip(slowing) {
-                    (0..D).for_each(|d| force[d] += more[d]);
-                }
-            }
-            (self.gradient[p], self.volume_ratio[p]) = (f, j);
-            for (corner, &node) in nodes.iter().enumerate() {
+            let Stressed { gradient, volume_ratio, stress, on_patterns } =
+                self.stressed(p, &self.now.displacement, &self.now.velocity);
+            keep_worse(&mut worst, p as u32, self.bounds.excess(volume_ratio, 0.0));
+            (self.gradient[p], self.volume_ratio[p]) = (gradient, volume_ratio);
+            for (corner, &node) in self.mesh.of(p).iter().enumerate() {
                 let node = node as usize;
                 let force = self.element.force(corner, &stress, &on_patterns);
                 let part = 1.0 / (self.mass * self.mesh.share(node));
@@ -238,8 +265,10 @@ impl<const D: usize> FiniteElement<D> {
         }
         self.evaluations += self.points.len() as u64;
         self.failure = self.failure.or(worst);
-        if let Some(contact) = self.contact.take() {
-            self.contact = Some(self.touch(contact));
+        if let Some(mut contact) = self.contact.take() {
+            self.touch(&mut contact);
+            contact.accelerations(|id, a| add_to_nodes(&self.mesh, &mut self.inner, id, a));
+            self.contact = Some(contact);
         }
         for d in 0..D {
             let of = self.inner[d].iter().zip(&self.clamped).map(|(a, held)| if *held { 0.0 } else { *a });
@@ -248,18 +277,8 @@ impl<const D: usize> FiniteElement<D> {
         }
     }
 
-    /// Viscous stress of an element, Pa, and forces on its patterns, N (2D: N/m): 2 eta dE/dt for the stress that
-    /// belongs to Green's strain E.
-    pub(super) fn viscous(&self, p: usize, f: &Matrix<D>) -> (Matrix<D>, [[f64; D]; MOST_PATTERNS]) {
-        let nodes = self.mesh.of(p);
-        let rate = self.element.gradient(nodes, &self.now.velocity);
-        let of_strain = f.transpose() * rate;
-        let slowing = self.element.hourglass(2.0 * self.viscosity);
-        let patterns = self.element.patterns(nodes, &self.now.velocity);
-        (f * (of_strain + of_strain.transpose()) * self.viscosity, patterns.map(|q| q.map(|q| slowing * q)))
-    }
-
-    fn touch(&mut self, mut contact: Contact<D>) -> Contact<D> {
+    /// Contacts of the present state.
+    pub(super) fn touch(&self, contact: &mut Contact<D>) {
         contact.update(|id| {
             let (p, j) = (id as usize, self.volume_ratio[id as usize]);
             Present {
@@ -272,8 +291,6 @@ impl<const D: usize> FiniteElement<D> {
         let material = &self.material;
         with_kernel!(self.kernel, contact.smoothing_length(), D, |kernel| contact
             .act(self.isa, kernel, material));
-        contact.accelerations(|id, a| add_to_nodes(&self.mesh, &mut self.inner, id, a));
-        contact
     }
 
     fn show_particles(&mut self) {
@@ -359,16 +376,24 @@ impl<const D: usize> SolidModel<D> for FiniteElement<D> {
     /// omega² = 4 D M / (rho0 dx²) bounds that of every element, M the largest eigenvalue of the present acoustic
     /// tensor: D M is no less than the stiffness against any gradient, and a node has a 2^D-th of an element's mass.
     fn sub_step_limit(&self) -> f64 {
-        let stiffness = |(f, &j): (&Matrix<D>, &f64)| self.law.stiffness(f, j, squared_stretches(f));
-        let stiffest = self.gradient.iter().zip(&self.volume_ratio).map(stiffness).fold(0.0, f64::max);
         let (springs, walls) = self
             .contact
             .as_ref()
             .map_or((0.0, 0.0), |contact| contact.stiffness(self.kernel, &self.material));
-        let square = 4.0 * D as f64 / (self.material.density * self.spacing.powi(2));
-        let omega = (square * stiffest + springs).sqrt();
-        let damping = 0.5 * (square * 2.0 * self.viscosity + walls);
-        self.courant.min(LARGEST_PART) * sub_step(omega, damping)
+        let part = self.courant.min(LARGEST_PART);
+        if self.equations.is_some() {
+            let of_contacts = if springs + walls > 0.0 {
+                part * sub_step(springs.sqrt(), 0.5 * walls)
+            } else {
+                f64::INFINITY
+            };
+            return if self.alone {
+                of_contacts.min(ALONE * part * self.explicit_step(0.0, 0.0))
+            } else {
+                of_contacts
+            };
+        }
+        part * self.explicit_step(springs, walls)
     }
 
     fn advance(&mut self, half_step: &HalfStep, sub_steps: u32, load: &Load<D>) -> Result<(), OutOfBounds> {
@@ -379,18 +404,20 @@ impl<const D: usize> SolidModel<D> for FiniteElement<D> {
                 self.at_n.copy_from(&self.now);
                 let (mesh, from) = (&self.mesh, &self.at_n.displacement);
                 self.shown_velocity.leave(|p| mesh.mean(p, from));
-                self.sub_step((sub_steps / 2).max(1), span, half_step.time);
+                self.go_on((sub_steps / 2).max(1), span, half_step.time);
             }
             Stage::Second => {
                 self.now.copy_from(&self.at_n);
                 self.account.iter_mut().for_each(|account| account.given.open = true);
-                self.sub_step(sub_steps, span, half_step.time);
+                self.go_on(sub_steps, span, half_step.time);
                 self.account.iter_mut().for_each(|account| account.given.open = false);
             }
         }
         let (mesh, now) = (&self.mesh, &self.now);
         let place = |p: usize| mesh.mean(p, &now.displacement);
-        self.shown_velocity.arrive(half_step, sub_steps, place, |p| mesh.mean(p, &now.velocity));
+        // Nodes go an implicit step by the mean of their velocities, which may be far from each.
+        let parts = if self.equations.is_some() { sub_steps.max(2) } else { sub_steps };
+        self.shown_velocity.arrive(half_step, parts, place, |p| mesh.mean(p, &now.velocity));
         self.show_particles();
         self.check()
     }
@@ -406,11 +433,8 @@ impl<const D: usize> SolidModel<D> for FiniteElement<D> {
     }
 
     fn strain_energy(&self) -> f64 {
-        let of = |p: usize| {
-            let strained = self.element.volume() * self.law.energy(&self.gradient[p], self.volume_ratio[p]);
-            let patterns = self.element.patterns(self.mesh.of(p), &self.now.displacement);
-            strained + 0.5 * self.hourglass * patterns.iter().flatten().map(|q| q * q).sum::<f64>()
-        };
+        let of =
+            |p: usize| self.stored_by(p, &self.gradient[p], self.volume_ratio[p], &self.now.displacement);
         let inner: f64 = (0..self.points.len()).map(of).sum();
         inner + self.contact.as_ref().map_or(0.0, Contact::energy)
     }
@@ -427,6 +451,9 @@ impl<const D: usize> SolidModel<D> for FiniteElement<D> {
         self.evaluations
     }
 }
+
+/// Implicit steps of a solid without fluid over explicit ones.
+const ALONE: f64 = 10.0;
 
 /// Part of the stable sub-step that a state may take.
 const LARGEST_PART: f64 = 0.9;

@@ -94,21 +94,23 @@ impl Law {
             Material::StVenantKirchhoff => {
                 1.0 - 2.0 * self.lambda / (self.lambda + 2.0 * self.mu) * green(f).trace()
             }
-            Material::NeoHookean => {
-                // Newton for x = ln F_zz²: mu (exp x - 1) + lambda (ln det F + x / 2) = 0, which is convex and grows.
-                let log = libm::log(in_plane);
-                let mut x = -2.0 * self.lambda / (self.lambda + 2.0 * self.mu) * log;
-                for _ in 0..MOST_ITERATIONS {
-                    let value = self.mu * libm::expm1(x) + self.lambda * (log + 0.5 * x);
-                    let step = value / (self.mu * libm::exp(x) + 0.5 * self.lambda);
-                    x -= step;
-                    if step.abs() <= 1e-15 * (1.0 + x.abs()) {
-                        break;
-                    }
-                }
-                libm::exp(x)
+            Material::NeoHookean => self.neo_hookean_across(in_plane),
+        }
+    }
+
+    fn neo_hookean_across(&self, in_plane: f64) -> f64 {
+        // Newton for x = ln F_zz²: mu (exp x - 1) + lambda (ln det F + x / 2) = 0, which is convex and grows.
+        let log = libm::log(in_plane);
+        let mut x = -2.0 * self.lambda / (self.lambda + 2.0 * self.mu) * log;
+        for _ in 0..MOST_ITERATIONS {
+            let value = self.mu * libm::expm1(x) + self.lambda * (log + 0.5 * x);
+            let step = value / (self.mu * libm::exp(x) + 0.5 * self.lambda);
+            x -= step;
+            if step.abs() <= 1e-15 * (1.0 + x.abs()) {
+                break;
             }
         }
+        libm::exp(x)
     }
 
     /// lambda in the plane.
@@ -133,6 +135,26 @@ impl Law {
                 };
                 let Some(inverse) = tensor::inverse(f, in_plane) else { return Matrix::repeat(f64::NAN) };
                 f * self.mu + inverse.transpose() * (self.lambda * libm::log(j) - self.mu)
+            }
+        }
+    }
+
+    /// Second Piola-Kirchhoff stress for Green's strain E, Pa.
+    pub(crate) fn second_piola_kirchhoff<const D: usize>(&self, e: &Matrix<D>) -> Matrix<D> {
+        match self.material {
+            Material::StVenantKirchhoff => {
+                Matrix::identity() * (self.lambda_in_plane() * e.trace()) + e * (2.0 * self.mu)
+            }
+            Material::NeoHookean => {
+                let c = e * 2.0 + Matrix::identity();
+                let square = tensor::determinant(&c);
+                let Some(inverse) = tensor::inverse(&c, square) else { return Matrix::repeat(f64::NAN) };
+                let in_plane = square.sqrt();
+                let j = match self.plane {
+                    Plane::Strain => in_plane,
+                    Plane::Stress => in_plane * self.neo_hookean_across(in_plane).sqrt(),
+                };
+                Matrix::identity() * self.mu + inverse * (self.lambda * libm::log(j) - self.mu)
             }
         }
     }
@@ -173,7 +195,7 @@ impl Law {
 const MOST_ITERATIONS: u32 = 50;
 
 /// Green's strain E.
-pub(super) fn green<const D: usize>(f: &Matrix<D>) -> Matrix<D> {
+pub(crate) fn green<const D: usize>(f: &Matrix<D>) -> Matrix<D> {
     (f.transpose() * f - Matrix::identity()) * 0.5
 }
 
@@ -212,6 +234,18 @@ mod tests {
         let cauchy = law.cauchy(&f, 2.0);
         assert!((cauchy.pressure + 0.5 + log).abs() < 1e-15);
         assert!((cauchy.deviator - Matrix2::new(1.0, 0.0, 0.0, -0.5)).norm() < 1e-15);
+    }
+
+    /// P = F S.
+    #[test]
+    fn both_stresses_are_one() {
+        let f = Matrix2::new(1.1, 0.2, -0.1, 0.85);
+        for (material, plane) in BOTH.into_iter().flat_map(|m| [(m, Plane::Strain), (m, Plane::Stress)]) {
+            let law = Law { plane, ..law(material) };
+            let first = law.first_piola_kirchhoff(&f, law.volume_ratio(&f));
+            let second = law.second_piola_kirchhoff(&green(&f));
+            assert!((first - f * second).norm() < 1e-14, "{material:?} {plane:?}: {first} {second}");
+        }
     }
 
     #[test]

@@ -14,6 +14,20 @@ pub struct FiniteElementKeys {
     /// What happens across the plane of two dimensions.
     #[serde(default)]
     pub plane: Plane,
+    /// How nodes go on in time.
+    #[serde(default)]
+    pub time_integration: TimeIntegration,
+}
+
+/// How the nodes of finite elements go on in time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TimeIntegration {
+    /// Velocity Verlet: cheap steps, which the fastest wave limits.
+    #[default]
+    Explicit,
+    /// The midpoint rule: a system of equations for each step, of any length.
+    Implicit,
 }
 
 pub(super) const RULES: Rules = Rules {
@@ -24,6 +38,7 @@ pub(super) const RULES: Rules = Rules {
     keys: &[
         ("material", "only the total-lagrangian and the finite-element model have a choice of materials"),
         ("plane", "only the total-lagrangian and the finite-element model know the strain across the plane"),
+        ("time_integration", "only the finite-element model has a choice of time integration"),
     ],
     rows: 1,
     not_phase_blind: Some("the fluid's share in a velocity gradient means nothing to a deformation gradient"),
@@ -39,6 +54,10 @@ impl FiniteElementKeys {
         {
             viscosity.wrong("quadratic", node, "must be 0: the viscosity of finite elements is linear");
         }
-        Self { material: material(section), plane: plane(section) }
+        const CHOICES: [(&str, TimeIntegration); 2] =
+            [("explicit", TimeIntegration::Explicit), ("implicit", TimeIntegration::Implicit)];
+        let default = TimeIntegration::default();
+        let time_integration = section.choice("time_integration", Some(default), &CHOICES).unwrap_or(default);
+        Self { material: material(section), plane: plane(section), time_integration }
     }
 }
