@@ -6,7 +6,7 @@
 //! does not strain, angular momentum is kept, and a St. Venant-Kirchhoff material with kappa = 1/2 keeps its energy (J.
 //! C. Simo and N. Tarnow, The discrete energy-momentum method, Zeitschrift für angewandte Mathematik und Physik 43,
 //! 1992; for small strains that is Newmark's method, beta = 1/4 and gamma = 1/2). kappa = 1/2 + theta is a viscosity of
-//! theta dt times the stiffness: a mode of the frequency omega loses the part 2 theta (omega dt)² of its energy in a
+//! theta dt times the stiffness: a mode of the frequency omega loses the part theta (omega dt)² of its energy in a
 //! step where omega dt is small, and the fastest are multiplied by -(1 - 2 theta) / (1 + 2 theta).
 //!
 //! Newton's method, whose matrix a sparse Cholesky factorisation solves: 2 M / dt² makes it definite. Contacts act as
@@ -315,8 +315,8 @@ impl<const D: usize> FiniteElement<D> {
         Some(())
     }
 
-    /// How the forces on an element's nodes fall with their way, N/m (2D: N/m²), row by row, made symmetric: a step that
-    /// turns has a matrix that is not. The stress is differentiated by differences.
+    /// How the forces on an element's nodes fall with their way, N/m (2D: N/m²), row by row, made symmetric: a step
+    /// that turns has a matrix that is not. The stress is differentiated by differences.
     fn stiffness_of(&self, p: usize, way: &Vectors<D>, dt: f64) -> Vec<f64> {
         let [before, after] = self.gradients(p, way);
         let column = |k: usize, l: usize| -> Matrix<D> {
@@ -397,7 +397,8 @@ impl<const D: usize> FiniteElement<D> {
         }
     }
 
-    /// What the clamp that moves a node, in the end with this velocity, m/s, gives: what the node gains, and what it does on the others.
+    /// What the clamp that moves a node, in the end with this velocity, m/s, gives: what the node gains, and what it
+    /// does on the others.
     fn by_clamp(
         &self,
         node: usize,

@@ -90,8 +90,8 @@ fn a_turning_block_does_not_strain() {
     assert!(model.strain_energy().abs() < 1e-12 && largest < 1e-5, "{} {largest}", model.strain_energy());
 }
 
-/// Undamped, kinetic and strain energy stay what the push gave; the account holds what viscosity, or the implicit steps,
-/// took.
+/// Undamped, kinetic and strain energy stay what the push gave; the account holds what viscosity, or the implicit
+/// steps, took.
 #[test]
 fn energy_is_kept_and_what_viscosity_takes_is_booked() {
     let mode = "shape.plate.cantilever_mode={fraction=0.01,root=0.0,length=0.2}";
@@ -173,6 +173,28 @@ fn long_implicit_steps_swing_as_short_explicit_ones() {
     });
     println!("steps of {:.1} explicit ones: errors {errors:?}", span / 160.0 / limit);
     assert!(errors[0].abs() < 0.02 && errors[2].abs() < 0.002, "{errors:?}");
+}
+
+/// One element, held on its left, nu = 0: along x, E dx u / dx against half of its mass, omega² = 2 c² / dx². With
+/// omega dt = 0.05 each step takes 0.05 omega² dt² of the energy.
+#[test]
+fn theta_takes_its_part_of_a_mode() {
+    let text = "resolution = 0.01\nend_time = 1.0\ngravity = [0.0, 0.0]\n[solid]\nmodel = \"finite-element\"\n\
+                time_integration = \"implicit\"\nmaterial = \"st-venant-kirchhoff\"\ndensity = 1000.0\n\
+                youngs_modulus = 1e6\npoissons_ratio = 0.0\nartificial_viscosity = { linear = 0, quadratic = 0 }\n\
+                [[shape]]\nname = \"bar\"\nphase = \"solid\"\nbox = { min = [0.0, 0.0], max = [0.02, 0.01] }\n\
+                clamp = { min = [0.0, 0.0], max = [0.01, 0.01] }\nvelocity = [1e-4, 0.0]\n";
+    let scene = parse(text, Path::new("bar.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}"));
+    let mut model = model(&scene);
+    let start = model.nodal_kinetic_energy();
+    let omega = (2.0 * 1e6 / 1000.0_f64).sqrt() / 0.01;
+    for n in 0..100 {
+        step(&mut model, n, 0.05 / omega);
+    }
+    let kept = (model.nodal_kinetic_energy() + model.strain_energy()) / start;
+    let expected = (1.0 - 0.05 * 0.05_f64.powi(2)).powi(100);
+    println!("kept {kept}, expected {expected}");
+    assert!(((1.0 - kept) / (1.0 - expected) - 1.0).abs() < 0.05, "{kept} {expected}");
 }
 
 /// Steel, with a thousand times the stable explicit step: it hangs as a beam does, and does not ring.
