@@ -41,6 +41,7 @@ fn what_cannot_be_compared_is_refused() {
     for (arguments, reason) in [
         (&["--solid", "hypoelastic", "--solid", "hypoelastic"][..], "two solids are called `hypoelastic`"),
         (&["--solid", "hypoelastic", "--set", "solid.model=none"], "solid.model"),
+        (&["--solid", "hypoelastic", "--solid", "finite-elements"], "`finite-elements` is no model"),
     ] {
         let output = compare(arguments);
         let said = String::from_utf8_lossy(&output.stderr).into_owned();

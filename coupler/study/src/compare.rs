@@ -53,6 +53,20 @@ impl Candidate {
         Self::Program { name: name.unwrap_or_else(|| "program".into()), command: text.into() }
     }
 
+    /// Why no shell would start it, where it is a single word that is neither a model nor a program.
+    pub fn unknown(&self) -> Option<String> {
+        let Self::Program { command, .. } = self else { return None };
+        if command.is_empty() || command.contains(|c: char| c.is_whitespace() || "/=;&|$`'\"".contains(c)) {
+            return None;
+        }
+        let path = std::env::var_os("PATH").unwrap_or_default();
+        if std::env::split_paths(&path).any(|folder| folder.join(command).is_file()) {
+            return None;
+        }
+        let models = SolidModelName::ALL.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
+        Some(format!("`{command}` is no model ({models}) and no program on PATH"))
+    }
+
     /// What the solid is called in table, picture and folder.
     pub fn name(&self) -> &str {
         match self {
@@ -305,6 +319,19 @@ mod tests {
         assert_eq!(named("./solid"), "solid");
         let command = Candidate::Program { name: "a".into(), command: "b --key=c".into() };
         assert_eq!(Candidate::parse("a=b --key=c"), command);
+    }
+
+    #[test]
+    fn a_word_that_is_neither_model_nor_program_is_unknown() {
+        let unknown = |text: &str| Candidate::parse(text).unknown();
+        assert!(
+            unknown("hypoelastc")
+                .is_some_and(|why| why.contains("hypoelastic, ") || why.contains(", hypoelastic"))
+        );
+        assert!(unknown("mine=total-lagrange").is_some());
+        for known in ["hypoelastic", "sh", "./hypoelastc", "hypoelastc --now", "A=1 hypoelastc"] {
+            assert_eq!(unknown(known), None, "{known}");
+        }
     }
 
     #[test]

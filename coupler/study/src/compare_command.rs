@@ -54,6 +54,9 @@ fn run(arguments: CompareArguments) -> Result<ExitCode, StudyError> {
         let name = names[k];
         return Err(StudyError::Usage(format!("two solids are called `{name}`: call one NAME=COMMAND")));
     }
+    if let Some(unknown) = candidates.iter().find_map(Candidate::unknown) {
+        return Err(StudyError::Usage(unknown));
+    }
     let mut base = arguments.set;
     base.extend(arguments.until.map(|t| format!("end_time={t}")));
     let scene = halfstep_scene::load(&arguments.scene, &base)?;
