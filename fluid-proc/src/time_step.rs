@@ -27,9 +27,9 @@ impl StepLimits {
             limits.fixed = 0.125 * h * h * fluid.density / fluid.viscosity;
         }
         let mut lightest = 1.0_f64;
-        for solid in &scene.solids {
+        for (index, solid) in scene.solids.iter().enumerate() {
             if scene.interface.treatment == Treatment::MovingWall {
-                lightest = lightest.max((fluid.density / solid.density).sqrt());
+                lightest = lightest.max((fluid.density / scene.lightest_density(index)).sqrt());
             } else {
                 let c = scene.interface.cross_viscosity * 0.5 * (fluid.sound_speed + solid.sound_speed());
                 let mean = 0.5 * (fluid.density + solid.density);

@@ -6,7 +6,8 @@ use crate::energy::Account;
 use crate::error::RunError;
 use crate::external::ExternalSolid;
 use crate::recorder::Measured;
-use crate::solids::{Jump, Solids};
+pub use crate::solids::ContactSummary;
+use crate::solids::{Jump, Solids, Work};
 use halfstep_link::{CouplerPort, Expect, StateMessage};
 use halfstep_output::run_json::RoleSeconds;
 use halfstep_scene::Scene;
@@ -38,6 +39,8 @@ pub struct Outcome {
     pub checks: u64,
     /// Pairs listed in the coupler's sums.
     pub pair_evaluations: u64,
+    /// What contact did to each pair of solids.
+    pub contacts: Vec<ContactSummary>,
 }
 
 /// The coupler of a run, whatever carries its messages. A step is [`Self::first`], [`Self::note`], [`Self::second`].
@@ -146,7 +149,8 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
             participant: self.port.name(k),
             dt: state.header().dt_limit,
         };
-        let limits: Vec<Limit> = self.states.iter().enumerate().map(limit).collect();
+        let contact = self.solids.contact_limit().map(|dt| Limit { participant: Name::COUPLER, dt });
+        let limits: Vec<Limit> = self.states.iter().enumerate().map(limit).chain(contact).collect();
         // Before anything of this step is noted: a run that goes on from here notes it.
         let saved = self.save_if_due(course, &limits)?;
         let work = self.solids.work(&self.states);
@@ -259,12 +263,13 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
         }
     }
 
-    fn accounts<'a>(&'a self, work: &[f64]) -> Vec<Account<'a>> {
+    fn accounts<'a>(&'a self, work: &[Work]) -> Vec<Account<'a>> {
         let account = |(place, state): (usize, &'a P::State)| Account {
             name: self.port.name(place),
             phase: self.phases[place],
             audit: (!self.solids.is_external(place)).then_some(&state.header().audit),
-            work: work[place],
+            work: work[place].fluid,
+            contact: work[place].contact,
         };
         self.states.iter().enumerate().map(account).collect()
     }
@@ -383,6 +388,7 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
             action_reaction: self.action_reaction,
             checks: self.checks,
             pair_evaluations: self.pair_evaluations,
+            contacts: self.solids.contacts(),
         }
     }
 }

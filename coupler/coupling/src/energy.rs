@@ -84,6 +84,8 @@ pub struct Account<'a> {
     pub audit: Option<&'a Audit>,
     /// Work of the fluid on this solid since the last state, J; 0 for a fluid.
     pub work: f64,
+    /// Work of other solids on this one since the last state, J.
+    pub contact: f64,
 }
 
 /// The ledgers of a run.
@@ -154,14 +156,14 @@ impl EnergyBalance {
             return ledger.excess().map(|joules| (Name::COUPLER, joules));
         }
         let on_solids: f64 = accounts.iter().map(|account| account.work).sum();
-        for Account { name, phase, audit, work } in accounts {
+        for Account { name, phase, audit, work, contact } in accounts {
             let judged = match phase {
                 Phase::Solid => !self.driven.iter().any(|driven| driven == name.as_str()),
                 _ => self.walls_rest,
             };
             let Some(sums) = audit.filter(|_| judged) else { continue };
             let (limit, work) = match phase {
-                Phase::Solid => (SOLID_LIMIT, *work),
+                Phase::Solid => (SOLID_LIMIT, *work + *contact),
                 _ => (LIMIT, -on_solids),
             };
             self.ledger(*name, *phase).note(limit, sums, work, gravity, dt, speed);
@@ -253,11 +255,11 @@ mod tests {
     }
 
     fn of_fluid(audit: &Audit) -> Account<'_> {
-        Account { name: Name::FLUID, phase: Phase::Fluid, audit: Some(audit), work: 0.0 }
+        Account { name: Name::FLUID, phase: Phase::Fluid, audit: Some(audit), work: 0.0, contact: 0.0 }
     }
 
     fn of_solid(audit: &Audit, work: f64) -> Account<'_> {
-        Account { name: Name::SOLID, phase: Phase::Solid, audit: Some(audit), work }
+        Account { name: Name::SOLID, phase: Phase::Solid, audit: Some(audit), work, contact: 0.0 }
     }
 
     /// A tonne that falls freely for a second: gravity explains all of it.

@@ -3,11 +3,13 @@
 
 use crate::error::RunError;
 use crate::external::ExternalSolid;
+use halfstep_interface::contact::{Booked, Contact, PairLaw};
 use halfstep_interface::cross_viscosity::CrossViscosity;
 use halfstep_interface::{Interface, Parameters};
 use halfstep_link::{FLUID, StateMessage};
 use halfstep_scene::Scene;
 use halfstep_sph::lane::Isa;
+use halfstep_wire::half_step::Stage;
 use halfstep_wire::protocol::{ForceRecord, StateRecord};
 use halfstep_wire::state::{Fields, State, StateError};
 use halfstep_wire::wide;
@@ -25,6 +27,26 @@ pub(crate) struct Jump {
     pub(crate) speed: f64,
 }
 
+/// What contact did to a pair of solids.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactSummary {
+    /// Indices of the two in the scene.
+    pub solids: [usize; 2],
+    /// Pressure over penetration, Pa/m.
+    pub stiffness: f64,
+    /// Energies and largest values.
+    pub booked: Booked,
+}
+
+/// Work on a participant since the state before, J (2D: J/m).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Work {
+    /// Of the fluid on this solid.
+    pub(crate) fluid: f64,
+    /// Of the other solids on this one.
+    pub(crate) contact: f64,
+}
+
 /// All solids of a run. Participants are named by their place in the run, and `states` are those of all of them.
 pub(crate) struct Solids<const D: usize> {
     /// Place of the first solid: 1 after a fluid, else 0.
@@ -32,6 +54,8 @@ pub(crate) struct Solids<const D: usize> {
     solids: Vec<CoupledSolid<D>>,
     cross: CrossViscosity<D>,
     fluid_forces: Vec<ForceRecord>,
+    /// What solids do to each other; `None` where there is one.
+    contact: Option<Contact>,
 }
 
 struct CoupledSolid<const D: usize> {
@@ -69,6 +93,7 @@ impl<const D: usize> Solids<D> {
             solids: external.into_iter().enumerate().map(side).collect(),
             cross: CrossViscosity::default(),
             fluid_forces: Vec::new(),
+            contact: Contact::new(scene),
         }
     }
 
@@ -79,6 +104,24 @@ impl<const D: usize> Solids<D> {
                 external.begin(state.records());
             }
         }
+        if let Some(contact) = &mut self.contact {
+            contact.begin(states[self.first..].iter().map(StateMessage::records));
+        }
+    }
+
+    /// Largest time step that contacts are stable with, s; `None` where nothing can touch.
+    pub(crate) fn contact_limit(&self) -> Option<f64> {
+        self.contact.as_ref().map(Contact::limit).filter(|limit| limit.is_finite())
+    }
+
+    /// What contacts did to each pair of solids, whose places in the scene these are.
+    pub(crate) fn contacts(&self) -> Vec<ContactSummary> {
+        let of = |(solids, law, booked): ([usize; 2], &PairLaw, Booked)| ContactSummary {
+            solids,
+            stiffness: law.stiffness,
+            booked,
+        };
+        self.contact.iter().flat_map(Contact::booked).map(of).collect()
     }
 
     /// Notes the states that a checkpoint is made of.
@@ -149,10 +192,19 @@ impl<const D: usize> Solids<D> {
         Ok(external.try_for_each(ExternalSolid::finish)?)
     }
 
-    /// Work of the fluid on each participant from the state at n before to this one, J: the force of n + 1/2 moved a
-    /// solid all the way.
-    pub(crate) fn work(&mut self, states: &[impl StateMessage]) -> Vec<f64> {
-        let mut work = vec![0.0; states.len()];
+    /// Work on each participant from the state at n before to this one: the force of n + 1/2 moved a solid all the way.
+    pub(crate) fn work(&mut self, states: &[impl StateMessage]) -> Vec<Work> {
+        let mut work = vec![Work::default(); states.len()];
+        if let Some(contact) = &mut self.contact {
+            let way = |solid: usize, record: usize| {
+                let now = states[solid + self.first].records()[record].position;
+                let from = self.solids[solid].at_n.get(record).copied().unwrap_or(now);
+                [now[0] - from[0], now[1] - from[1]]
+            };
+            for (solid, done) in contact.work(way).into_iter().enumerate() {
+                work[solid + self.first].contact = done;
+            }
+        }
         for (place, side) in self.solids.iter_mut().enumerate() {
             let records = states[place + self.first].records();
             let ways = records.iter().zip(&side.at_n).zip(&side.forces);
@@ -160,7 +212,8 @@ impl<const D: usize> Solids<D> {
                 let force = force.force(record.mass);
                 (0..3).map(|d| force[d] * (record.position[d] - from[d])).sum::<f64>()
             });
-            work[place + self.first] = done.sum();
+            let work = &mut work[place + self.first];
+            work.fluid = done.sum::<f64>() - work.contact;
             side.at_n.clear();
             side.at_n.extend(records.iter().map(|r| r.position));
         }
@@ -169,19 +222,22 @@ impl<const D: usize> Solids<D> {
 
     /// Evaluates the forces on both sides; returns the pairs listed for it.
     pub(crate) fn evaluate(&mut self, states: &[impl StateMessage]) -> u64 {
-        if self.solids.is_empty() || self.first == 0 {
+        let touching = self.contact.is_some();
+        if self.solids.is_empty() || (self.first == 0 && !touching) {
             return 0;
         }
         let blank = |id| ForceRecord { id, ..ForceRecord::default() };
-        let fluid = &states[FLUID];
         let mut pairs = 0;
         self.fluid_forces.clear();
-        self.fluid_forces.extend(fluid.records().iter().map(|r| blank(r.id)));
+        if self.first > 0 {
+            self.fluid_forces.extend(states[FLUID].records().iter().map(|r| blank(r.id)));
+        }
         for (place, side) in self.solids.iter_mut().enumerate() {
             let solid = &states[place + self.first];
             side.forces.clear();
             side.forces.extend(solid.records().iter().map(|r| blank(r.id)));
             let Some(interface) = &mut side.interface else { continue };
+            let fluid = &states[FLUID];
             interface.update(fluid.records(), solid.records(), fluid.header().epoch);
             pairs += interface.pairs() as u64;
             let forces = &mut side.forces;
@@ -194,7 +250,19 @@ impl<const D: usize> Solids<D> {
                 *sum = if place == 0 { wide(a) } else { std::array::from_fn(|d| sum[d] + wide(a)[d]) };
             });
         }
+        self.touch(states);
         pairs
+    }
+
+    /// Adds the forces of contacts to those of the fluid.
+    fn touch(&mut self, states: &[impl StateMessage]) {
+        let Some(contact) = &mut self.contact else { return };
+        let whole = states[self.first].header().stage == Stage::First.number();
+        contact.evaluate(|solid| states[solid + self.first].records(), whole);
+        contact.forces(|solid, record, force| {
+            let sum = &mut self.solids[solid].forces[record].stress_force;
+            (0..2).for_each(|d| sum[d] += force[d]);
+        });
     }
 
     /// The forces on each participant, in the order in which they are answered: the solids before the fluid.
@@ -233,10 +301,12 @@ impl<const D: usize> Solids<D> {
 impl<const D: usize> State for Solids<D> {
     fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
         let mut solids = self.solids.iter_mut().enumerate();
-        solids.try_for_each(|(solid, side)| fields.part(&format!("solid_{solid}"), side))
+        solids.try_for_each(|(solid, side)| fields.part(&format!("solid_{solid}"), side))?;
+        self.contact.as_mut().map_or(Ok(()), |contact| fields.part("contact", contact))
     }
 
     fn restored(&mut self) -> Result<(), StateError> {
+        self.contact.as_mut().map_or(Ok(()), State::restored)?;
         self.solids.iter_mut().try_for_each(State::restored)
     }
 }

@@ -2,12 +2,14 @@
 
 use crate::effects;
 use crate::options::{SolidSource, source};
-use halfstep_coupling::couple::{Outcome, combined_hash};
+use halfstep_coupling::couple::{ContactSummary, Outcome, combined_hash};
 use halfstep_coupling::error::RunError;
 use halfstep_coupling::roles;
 use halfstep_link::{FLUID, LinkConfig, Participant};
 use halfstep_output::RunReport;
-use halfstep_output::run_json::{EnergyReport, ParticipantEnergy, ParticipantReport, RoleSeconds};
+use halfstep_output::run_json::{
+    ContactReport, EnergyReport, ParticipantEnergy, ParticipantReport, RoleSeconds,
+};
 use halfstep_role::report::Report;
 use halfstep_scene::geometry::Layout;
 use halfstep_scene::{Phase, Scene};
@@ -75,6 +77,15 @@ fn values(scene: &Scene, place: usize) -> usize {
 /// Puts what the coupler found into the report of a run.
 pub(crate) fn report_outcome(scene: &Scene, outcome: &Outcome, report: &mut RunReport) {
     report.audit.state_hash = Some(format!("{:016x}", combined_hash(&outcome.last)));
+    let contact = |ContactSummary { solids, stiffness, booked }: &ContactSummary| ContactReport {
+        solids: solids.iter().map(|&solid| scene.solids[solid].name.clone()).collect(),
+        stiffness: *stiffness,
+        normal: booked.normal,
+        friction: booked.friction,
+        largest_force: booked.largest_force,
+        largest_penetration: booked.largest_penetration,
+    };
+    report.contacts = outcome.contacts.iter().map(contact).collect();
     if scene.fluid.is_some() && !scene.solids.is_empty() {
         report.audit.action_reaction = Some(outcome.action_reaction);
         report.audit.checks = outcome.checks;
@@ -142,7 +153,7 @@ pub(crate) fn report_participants(
             times,
         });
     }
-    report.energy = energy(reports);
+    report.energy = energy(reports, &report.contacts);
     let phases = scene.participants().into_iter().map(|participant| participant.phase);
     let known: Vec<(Phase, Report)> =
         phases.zip(reports).filter_map(|(phase, own)| Some((phase, own.clone()?))).collect();
@@ -150,10 +161,10 @@ pub(crate) fn report_participants(
 }
 
 /// The energy ledgers that participants kept.
-fn energy(reports: &[Option<Report>]) -> Option<EnergyReport> {
+fn energy(reports: &[Option<Report>], contacts: &[ContactReport]) -> Option<EnergyReport> {
     let kept = reports.iter().flatten().filter(|own| !own.energy.is_empty());
     let ledger = |own: &Report| ParticipantEnergy { name: own.name.clone(), parts: own.energy.clone() };
     let ledgers: Vec<ParticipantEnergy> = kept.map(ledger).collect();
     let complete = ledgers.len() == reports.len();
-    EnergyReport::of(ledgers, complete)
+    EnergyReport::of(ledgers, complete, contacts)
 }

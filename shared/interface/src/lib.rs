@@ -26,6 +26,7 @@
 //! assert!(on_solid > 0.0 && (on_solid + on_water).abs() < 1e-12 * on_solid);
 //! ```
 
+pub mod contact;
 pub mod cross_viscosity;
 mod interface_particles;
 mod moving_wall;

@@ -43,6 +43,8 @@ pub struct RunReport {
     pub round_trip_us: Option<Percentiles>,
     /// What the run checked about itself.
     pub audit: Audit,
+    /// Contact of pairs of solids; empty where no two can touch.
+    pub contacts: Vec<ContactReport>,
     /// The energy ledgers; `null` where no probe asks for energies.
     pub energy: Option<EnergyReport>,
     /// Owners of particles: the fluid, then the solids in the scene's order. `particles` and `roles` are their sums.
@@ -89,6 +91,24 @@ pub struct ParticipantReport {
     pub capacity: Option<u32>,
     /// Where its time went, s.
     pub times: Option<RoleSeconds>,
+}
+
+/// What contact did to a pair of solids.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ContactReport {
+    /// Names of the two.
+    pub solids: Vec<String>,
+    /// Pressure over penetration, Pa/m.
+    pub stiffness: f64,
+    /// Energy that both got by normal forces, J (2D: J/m); negative: impacts took it.
+    pub normal: f64,
+    /// Energy that both got by friction, J (2D: J/m); negative: friction took it.
+    pub friction: f64,
+    /// Largest force on one of the two, N (2D: N/m).
+    pub largest_force: f64,
+    /// Largest penetration, m.
+    pub largest_penetration: f64,
 }
 
 /// The energy ledgers of all participants, J (2D: J/m).
@@ -138,8 +158,9 @@ pub struct ParticipantEnergy {
 }
 
 impl EnergyReport {
-    /// From the ledgers of those participants that kept one; `complete`: all did. `None` where nobody did.
-    pub fn of(participants: Vec<ParticipantEnergy>, complete: bool) -> Option<Self> {
+    /// From the ledgers of those participants that kept one; `complete`: all did. `None` where nobody did. The work of
+    /// contacts, which solids book as pressure of the interface, is none of the exchange with the fluid.
+    pub fn of(participants: Vec<ParticipantEnergy>, complete: bool, contacts: &[ContactReport]) -> Option<Self> {
         let all = || participants.iter().flat_map(|own| own.parts.iter().map(move |entry| (own, entry)));
         let exchanged = all().filter(|(_, entry)| entry.part != EnergyPart::Integration);
         let largest = exchanged.max_by(|a, b| a.1.largest.total_cmp(&b.1.largest)).map(|(own, entry)| {
@@ -150,7 +171,8 @@ impl EnergyReport {
         let given = |part| of(part).map(|entry| entry.joules).sum();
         let relative_residual = if largest.joules > 0.0 { residual / largest.joules } else { 0.0 };
         let interface = InterfaceEnergy {
-            pressure: given(EnergyPart::InterfacePressure),
+            pressure: given(EnergyPart::InterfacePressure)
+                - contacts.iter().map(|contact| contact.normal + contact.friction).sum::<f64>(),
             cross_viscosity: given(EnergyPart::CrossViscosity),
         };
         let interface = (complete && participants.len() > 1).then_some(interface);

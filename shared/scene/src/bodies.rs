@@ -1,7 +1,7 @@
 //! Bodies: connected pieces of solid.
 
 use crate::geometry::{self, Layout};
-use crate::{Joint, Phase, Scene, Shape, Solid, dispatch};
+use crate::{Joint, Phase, RigidBody, Scene, Shape, Solid, dispatch};
 
 /// A connected piece of a solid.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -39,6 +39,30 @@ impl Scene {
             }
         }
         bodies
+    }
+
+    /// The lowest mean density of a body of the solid of that index, and of all that it is made of, kg/m³: a rigid body
+    /// may have been given a mass of its own.
+    pub fn lightest_density(&self, solid: usize) -> f64 {
+        let Some(material) = self.solids.get(solid) else { return f64::INFINITY };
+        let own = || self.shapes.iter().filter(|shape| shape.solid == Some(solid));
+        let lightest = own().filter_map(|shape| shape.density).fold(material.density, f64::min);
+        let given = material.rigid().map_or(&[][..], |keys| &keys.bodies);
+        if given.iter().all(|body| body.mass.is_none()) {
+            return lightest;
+        }
+        let bodies = self.bodies();
+        let cell = self.solid_spacing(solid).powi(self.dimension as i32);
+        let of = |said: &RigidBody| {
+            let named = |body: &&Body| {
+                body.shapes.iter().any(|&k| {
+                    self.shapes[k].solid == Some(solid) && self.shapes[k].body() == said.name
+                })
+            };
+            let particles: usize = bodies.iter().filter(named).map(|body| body.particles).sum();
+            said.mass.map(|mass| mass / (particles.max(1) as f64 * cell))
+        };
+        given.iter().filter_map(of).fold(lightest, f64::min)
     }
 
     /// A joint or a motion of its own holds a shape's rigid body.

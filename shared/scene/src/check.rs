@@ -26,6 +26,7 @@ impl Check<'_> {
     pub(super) fn all(&self) {
         self.phases();
         self.solids();
+        self.contacts();
         self.rigid_bodies();
         self.shape_names();
         self.sizes();

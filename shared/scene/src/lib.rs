@@ -18,11 +18,13 @@ mod bodies;
 pub mod bounds;
 mod brackets;
 mod check;
+mod check_contact;
 mod check_lattice;
 mod check_metric;
 mod check_probe;
 mod check_rigid;
 mod check_solid;
+mod contact;
 mod dimension;
 mod document;
 mod effect;
@@ -40,6 +42,7 @@ mod participant;
 mod preset;
 mod probe;
 mod read;
+mod read_contact;
 mod read_geometry;
 mod read_metric;
 mod read_motion;
@@ -59,6 +62,7 @@ pub use energy::{EnergyEntry, EnergyPart};
 pub use error::{Place, SceneError, SceneErrors};
 pub use halfstep_sph::Phase;
 pub use halfstep_sph::kernel::KernelName;
+pub use contact::PairContact;
 pub use load::{load, load_with, parse, parse_with};
 pub use metric::{Metric, MetricKind, MetricReference};
 pub use motion::{Composed, Course, Motion, Part, Placement, Spline, Turn};
@@ -106,6 +110,9 @@ pub struct Scene {
     pub interface: Interface,
     /// Files that a run writes, and when.
     pub output: Output,
+    /// Contact of pairs of solids of which the file says something, see [`Scene::contacts`].
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pair_contacts: Vec<PairContact>,
     /// Where the particles are at first.
     pub shapes: Vec<Shape>,
     /// Places without particles.

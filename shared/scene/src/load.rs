@@ -85,6 +85,7 @@ pub fn parse_with(
     }
     if report.is_empty() {
         resources::check_clamps(&draft.scene, &root, &report);
+        resources::check_loads(&draft.scene, &root, &report);
     }
     if report.is_empty() {
         resources::check_solids(&draft.scene, &root, &report);

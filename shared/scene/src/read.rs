@@ -5,7 +5,7 @@ use super::error::{Report, listed, nearest};
 use super::preset::Defaults;
 use super::section::{Range, Section};
 use super::*;
-use super::{read_metric, read_probe, read_shape, read_solid};
+use super::{read_contact, read_metric, read_probe, read_shape, read_solid};
 use std::path::Path;
 
 /// What a scene's file holds, before the sound speed `auto` is resolved.
@@ -64,6 +64,8 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&s
     }
     let probe = |p| read_probe::probe(p, dimension, &names, &shapes);
     let probes = top.tables("probe").into_iter().filter_map(probe).collect();
+    let contact = |table| read_contact::contact(table, &names);
+    let pair_contacts = top.tables("contact").into_iter().filter_map(contact).collect();
     let (effects, own_effects) = effects(&top, &defaults, own_effects);
     let mut scene = Scene {
         name: stem,
@@ -82,6 +84,7 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&s
         fluid,
         solids,
         interface,
+        pair_contacts,
         output: output(top.section("output"), end_time),
         shapes,
         voids,

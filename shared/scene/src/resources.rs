@@ -100,6 +100,35 @@ pub(super) fn check_clamps(scene: &Scene, root: &Node, report: &Report) {
     }
 }
 
+/// Refuses a traction on particles that a clamp holds, all of them, and one on none.
+pub(super) fn check_loads(scene: &Scene, root: &Node, report: &Report) {
+    if scene.shapes.iter().all(|shape| shape.load.is_none()) {
+        return;
+    }
+    let found = dispatch!(scene.dimension, D => {
+        let points = geometry::solids::<D>(scene).solid;
+        let of = |(index, shape): (usize, &Shape)| {
+            let within = shape.load.as_ref()?.within;
+            let tolerance = 1e-6 * scene.spacing(shape);
+            let own = points.iter().filter(|p| p.body as usize == index);
+            let held = own.filter(|p| geometry::holds(&within, &p.position, tolerance)).map(|p| p.clamped);
+            Some((index, held.fold([0, 0], |[free, clamped], is| [free + u32::from(!is), clamped + u32::from(is)])))
+        };
+        scene.shapes.iter().enumerate().filter_map(of).collect::<Vec<_>>()
+    });
+    for (index, [free, clamped]) in found.unwrap_or_default() {
+        if free > 0 {
+            continue;
+        }
+        let shape = &scene.shapes[index];
+        let reason = match clamped {
+            0 => format!("holds no particle of `{}`, and would load nothing", shape.name),
+            n => format!("holds {n} particles of `{}`, all of them clamped: a load would move nothing", shape.name),
+        };
+        report.among(root, &format!("shape.{}.load.within", shape.name), &[], reason);
+    }
+}
+
 /// Refuses a solid without particles, where there are several: earlier shapes may lie over all of its shapes.
 pub(super) fn check_solids(scene: &Scene, root: &Node, report: &Report) {
     if scene.solids.len() < 2 {

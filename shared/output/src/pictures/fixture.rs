@@ -29,6 +29,7 @@ pub(crate) fn scene() -> Scene {
             cross_viscosity_far: 0.0,
         },
         output: Output { frame_interval: 0.02, probe_interval: 0.001, checkpoint_interval: 0.0 },
+        pair_contacts: Vec::new(),
         shapes: Vec::new(),
         voids: Vec::new(),
         probes: vec![

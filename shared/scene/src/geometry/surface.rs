@@ -3,6 +3,7 @@
 use super::points::sides;
 use super::polygon::Edges;
 use crate::{Block, Geometry, TankSide};
+use std::f64::consts::TAU;
 
 /// The surface of a geometry.
 #[derive(Clone, Debug)]
@@ -84,6 +85,17 @@ impl Surface {
             });
         }
     }
+
+    /// Calls `visit` with the number of a copy and the ends of a part of its outline in the plane, at most `spacing` (m)
+    /// apart: the geometry lies on its left. The ends of parts that meet agree bit by bit. A tank has none.
+    pub fn outline(&self, spacing: f64, visit: &mut impl FnMut(u32, [[f64; 2]; 2])) {
+        for copy in self.copies.clone() {
+            self.part.outline(spacing, &mut |ends| match &self.moved {
+                None => visit(copy, ends),
+                Some(moved) => visit(copy, ends.map(|end| moved.place(copy, end))),
+            });
+        }
+    }
 }
 
 /// A unit vector along an axis, one way or the other.
@@ -144,6 +156,23 @@ impl Part {
         }
     }
 
+    fn outline(&self, spacing: f64, visit: &mut impl FnMut([[f64; 2]; 2])) {
+        match self {
+            Self::Block(Block { min, max }) => {
+                let corners = [[min[0], min[1]], [max[0], min[1]], [max[0], max[1]], [min[0], max[1]]];
+                (0..4).for_each(|k| parts(corners[k], corners[(k + 1) % 4], spacing, visit));
+            }
+            Self::Ring { center, inner, outer } => {
+                around(center, *outer, 1.0, spacing, visit);
+                if *inner > 0.0 {
+                    around(center, *inner, -1.0, spacing, visit);
+                }
+            }
+            Self::Tank { .. } => {}
+            Self::Polygon(edges) => edges.all.iter().for_each(|edge| parts(edge.from, edge.to, spacing, visit)),
+        }
+    }
+
     fn balls<const D: usize>(&self, spacing: f64, visit: &mut impl FnMut([f64; D], f64)) {
         match self {
             Self::Block(block) => {
@@ -177,6 +206,27 @@ impl Part {
             }
         }
     }
+}
+
+/// Calls `visit` with the parts of a straight line, at most `spacing` (m) long.
+fn parts(from: [f64; 2], to: [f64; 2], spacing: f64, visit: &mut impl FnMut([[f64; 2]; 2])) {
+    let length = libm::hypot(to[0] - from[0], to[1] - from[1]);
+    let count = (length / spacing).ceil().max(1.0) as usize;
+    let place = |k: usize| {
+        let share = k as f64 / count as f64;
+        if k == count { to } else { [0, 1].map(|a| from[a] + share * (to[a] - from[a])) }
+    };
+    (0..count).for_each(|k| visit([place(k), place(k + 1)]));
+}
+
+/// Calls `visit` with the parts of a circle, counter-clockwise or clockwise.
+fn around(center: &[f64; 3], radius: f64, way: f64, spacing: f64, visit: &mut impl FnMut([[f64; 2]; 2])) {
+    let count = (TAU * radius / spacing).ceil().max(8.0) as usize;
+    let place = |k: usize| {
+        let angle = way * TAU * (k % count) as f64 / count as f64;
+        [center[0] + radius * libm::cos(angle), center[1] + radius * libm::sin(angle)]
+    };
+    (0..count).for_each(|k| visit([place(k), place(k + 1)]));
 }
 
 /// Distance of a point from a block, m, negative inside, and the normal of the surface there.
@@ -245,6 +295,41 @@ mod tests {
         let both = nearest(&Geometry::Moved(moved), [1.0, 1.0]);
         close(both[0], (1.0, [1.0, 0.0]));
         close(both[1], (7.0, [-1.0, 0.0]));
+    }
+
+    /// Twice the area on the left of an outline's parts, and their length.
+    fn measured(geometry: &Geometry) -> [f64; 2] {
+        let mut sums = [0.0; 2];
+        Surface::new(geometry, None).outline(0.01, &mut |_, [from, to]| {
+            sums[0] += from[0] * to[1] - from[1] * to[0];
+            let length = libm::hypot(to[0] - from[0], to[1] - from[1]);
+            assert!(length < 0.01 + 1e-12);
+            sums[1] += length;
+        });
+        sums
+    }
+
+    #[test]
+    fn outlines_have_their_geometry_on_the_left() {
+        let block = Geometry::Box(Block { min: [0.1, 0.2, 0.0], max: [0.3, 0.3, 0.0] });
+        let near = |found: [f64; 2], right: [f64; 2], by: f64| {
+            assert!((0..2).all(|k| (found[k] / right[k] - 1.0).abs() < by), "{found:?} {right:?}");
+        };
+        near(measured(&block), [2.0 * 0.02, 0.6], 1e-12);
+        let ring = Geometry::Ring { center: [1.0, 1.0, 0.0], inner: 0.1, outer: 0.2 };
+        near(measured(&ring), [TAU * 0.03, TAU * 0.3], 1e-3);
+        let corners = vec![[0.0, 0.0], [0.0, 0.3], [0.4, 0.0]];
+        let triangle = Geometry::Polygon(Polygon::new(corners, Vec::new()).expect("a triangle"));
+        near(measured(&triangle), [0.12, 1.2], 1e-12);
+        let turned = Moved {
+            geometry: Box::new(block),
+            angle: 30.0,
+            about: [0.0; 3],
+            translate: [1.0, 0.0, 0.0],
+            count: 2,
+            step: [0.0, 1.0, 0.0],
+        };
+        near(measured(&Geometry::Moved(turned)), [2.0 * 2.0 * 0.02, 2.0 * 0.6], 1e-12);
     }
 
     #[test]

@@ -46,6 +46,7 @@ fn scene(shapes: Vec<Shape>) -> Scene {
             cross_viscosity_far: 1.0,
         },
         output: Output { frame_interval: 0.1, probe_interval: 0.1, checkpoint_interval: 0.0 },
+        pair_contacts: Vec::new(),
         shapes,
         voids: Vec::new(),
         probes: Vec::new(),

@@ -63,8 +63,8 @@ pub(super) const RULES: Rules = Rules {
     rigid: true,
 };
 
-const FRICTION: Range = Range::at_least(0.0).up_to(100.0).why("it is Coulomb's coefficient");
-const RESTITUTION: Range =
+pub(crate) const FRICTION: Range = Range::at_least(0.0).up_to(100.0).why("it is Coulomb's coefficient");
+pub(crate) const RESTITUTION: Range =
     Range::at_least(0.0).up_to(1.0).why("it is the speed after an impact over the one before");
 /// Ends beyond any body, within which no formula overflows.
 const MASS: Range = Range::positive().up_to(1e15);

@@ -1,0 +1,231 @@
+//! The law of contact, and the search for points of one outline inside of another.
+
+use super::outline::{Outline, Placed};
+use super::{Side, THETA};
+use halfstep_scene::{PairContact, Scene};
+
+/// Decay time of the damper along the surface, in steps of the limit.
+const ALONG: f64 = 2.0;
+
+/// How deep a point is looked for inside of another solid, in that solid's spacings.
+const DEPTH: f64 = 3.0;
+
+/// Room between the step that a derived stiffness allows and the fluid's.
+const ROOM: f64 = 1.01;
+
+/// Law of a pair.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Law {
+    /// Coulomb's coefficient.
+    friction: f64,
+    /// Speed after an impact over that before it.
+    restitution: f64,
+    /// Pressure over penetration, Pa/m.
+    pub stiffness: f64,
+    said: Option<f64>,
+    /// Largest stable time step, s.
+    pub limit: f64,
+}
+
+/// A point of one solid inside of a piece of the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Touch {
+    /// Which pass, point and piece.
+    pub(super) key: [u32; 3],
+    /// The part of the outline on which the point sticks.
+    pub(super) part: u32,
+    /// Where along that part, over its length.
+    pub(super) share: f64,
+    /// Largest approach so far, m/s.
+    pub(super) approach: f64,
+}
+
+/// What is nearest to a point.
+struct Foot {
+    part: u32,
+    share: f64,
+    /// How far inside the point is, m.
+    depth: f64,
+    normal: [f64; 2],
+}
+
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+fn less(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+impl Law {
+    pub(super) fn of(contact: &PairContact) -> Self {
+        Self {
+            friction: contact.friction,
+            restitution: contact.restitution,
+            stiffness: 0.0,
+            said: contact.stiffness,
+            limit: f64::INFINITY,
+        }
+    }
+
+    /// Finds stiffness and limit from the least masses behind a length of both outlines, kg/m (2D: kg/m²). A stiffness
+    /// that the scene does not say leaves the fluid its step.
+    pub(super) fn fit(&mut self, scene: &Scene, solids: [usize; 2], masses: [f64; 2]) {
+        let give: f64 = masses.iter().map(|mass| 1.0 / mass).sum();
+        if give <= 0.0 {
+            // An outline without particles touches nothing.
+            return;
+        }
+        self.stiffness = self.said.unwrap_or_else(|| {
+            let derived = scene.contact_stiffness(solids);
+            let Some(fluid) = &scene.fluid else { return derived };
+            let step = ROOM * scene.numerics.cfl * scene.smoothing_ratio * scene.resolution / fluid.sound_speed;
+            derived.min((THETA / step).powi(2) / give)
+        });
+        self.limit = THETA / (self.stiffness * give).sqrt();
+    }
+
+    /// Points of the first solid inside of the second; returns the largest penetration, m.
+    pub(super) fn pass(
+        &self,
+        pass: u32,
+        [own, other]: [(&Outline, &Placed); 2],
+        [on_own, on_other]: [&mut Side; 2],
+        touches: &[Touch],
+        found: &mut Vec<Touch>,
+    ) -> f64 {
+        let (outline, placed) = own;
+        let mut deepest = 0.0_f64;
+        for (points, around) in outline.pieces.iter().map(|piece| &piece.points).zip(&placed.pieces) {
+            for (k, target) in other.1.pieces.iter().enumerate() {
+                if !around.touches(target) {
+                    continue;
+                }
+                for &point in points {
+                    let at = placed.position[point as usize];
+                    if !target.holds(at) {
+                        continue;
+                    }
+                    let Some(foot) = nearest(other, k, at) else { continue };
+                    deepest = deepest.max(foot.depth);
+                    let key = [pass, point, k as u32];
+                    let before = touches.binary_search_by(|touch| touch.key.cmp(&key)).ok().map(|k| touches[k]);
+                    let (forces, touch) = self.force([own, other], key, &foot, before);
+                    found.push(touch);
+                    let part = &other.0.parts[foot.part as usize];
+                    for (kind, force) in forces.into_iter().enumerate() {
+                        give(outline, point, force, &mut on_own.forces[kind]);
+                        for (end, share) in [(0, 1.0 - foot.share), (1, foot.share)] {
+                            let back = force.map(|f| -share * f);
+                            give(other.0, part.ends[end], back, &mut on_other.forces[kind]);
+                        }
+                    }
+                }
+            }
+        }
+        // By pass, point and piece: points of a piece are not numbered after those of the one before it.
+        let start = found.iter().position(|touch| touch.key[0] == pass).unwrap_or(found.len());
+        found[start..].sort_unstable_by_key(|touch| touch.key);
+        deepest
+    }
+
+    /// Forces on a point along the normal and along the surface, N (2D: N/m), and the contact as it goes on.
+    fn force(
+        &self,
+        [(outline, placed), (other, surface)]: [(&Outline, &Placed); 2],
+        key: [u32; 3],
+        foot: &Foot,
+        before: Option<Touch>,
+    ) -> ([[f64; 2]; 2], Touch) {
+        let point = key[1] as usize;
+        let on = |part: u32, share: f64, of: &[[f64; 2]]| {
+            let [from, to] = other.parts[part as usize].ends.map(|end| of[end as usize]);
+            [0, 1].map(|d| (1.0 - share) * from[d] + share * to[d])
+        };
+        let slip = less(placed.velocity[point], on(foot.part, foot.share, &surface.velocity));
+        let normal = foot.normal;
+        let tangent = [-normal[1], normal[0]];
+        let approach = -dot(slip, normal);
+        let fresh = Touch { key, part: foot.part, share: foot.share, approach: 0.0 };
+        let mut touch = before.unwrap_or(fresh);
+        touch.approach = touch.approach.max(approach);
+        let spring = 0.5 * self.stiffness * outline.points[point].length;
+        let kept = self.restitution * self.restitution;
+        let slow = (0.5 * THETA * THETA / self.limit * foot.depth * (1.0 - kept)).min(0.1 * touch.approach);
+        let way = if slow > 0.0 { libm::tanh(approach / slow) } else { sign(approach) };
+        let push = spring * foot.depth * 0.5 * (1.0 + kept + (1.0 - kept) * way);
+        let most = self.friction * push;
+        let stuck = on(touch.part, touch.share, &surface.position);
+        let from = less(placed.position[point], stuck);
+        let pull = -spring * (dot(from, tangent) + ALONG * self.limit * dot(slip, tangent));
+        let along = pull.clamp(-most, most);
+        if along != pull || self.friction == 0.0 {
+            // It slips: what stays of the spring holds no more than friction does.
+            let most = if spring > 0.0 { most / spring } else { 0.0 };
+            let left = dot(from, tangent).clamp(-most, most);
+            let [start, end] = other.parts[foot.part as usize].ends.map(|end| surface.position[end as usize]);
+            let line = less(end, start);
+            touch.part = foot.part;
+            touch.share = foot.share - left * dot(tangent, line) / dot(line, line);
+        }
+        ([normal.map(|n| push * n), tangent.map(|t| along * t)], touch)
+    }
+}
+
+fn sign(x: f64) -> f64 {
+    if x > 0.0 {
+        1.0
+    } else if x < 0.0 {
+        -1.0
+    } else {
+        0.0
+    }
+}
+
+/// Adds a force on a point of an outline to those on the records that carry it.
+fn give(outline: &Outline, point: u32, force: [f64; 2], forces: &mut [[f64; 2]]) {
+    for (record, w) in &outline.points[point as usize].weights {
+        let sum = &mut forces[*record as usize];
+        *sum = [sum[0] + w * force[0], sum[1] + w * force[1]];
+    }
+}
+
+/// The nearest place on a piece to a point that is inside of it and not too deep.
+fn nearest((outline, placed): (&Outline, &Placed), piece: usize, at: [f64; 2]) -> Option<Foot> {
+    let ends = |part: u32| outline.parts[part as usize].ends.map(|end| placed.position[end as usize]);
+    let mut best: Option<(f64, u32, f64)> = None;
+    for part in outline.pieces[piece].parts.clone() {
+        let [from, to] = ends(part);
+        let (line, way) = (less(to, from), less(at, from));
+        let share = (dot(way, line) / dot(line, line)).clamp(0.0, 1.0);
+        let away = less(way, line.map(|x| share * x));
+        let square = dot(away, away);
+        if best.is_none_or(|(least, ..)| square < least) {
+            best = Some((square, part, share));
+        }
+    }
+    let (square, part, share) = best?;
+    let out = |part: u32| {
+        let [from, to] = ends(part);
+        let line = less(to, from);
+        let length = libm::hypot(line[0], line[1]);
+        [line[1] / length, -line[0] / length]
+    };
+    let [from, to] = ends(part);
+    let line = less(to, from);
+    let away = less(less(at, from), line.map(|x| share * x));
+    // At a corner both of its parts say which side is out.
+    let beside = outline.parts[part as usize].beside;
+    let side = match share {
+        s if s <= 0.0 => [out(part), out(beside[0])],
+        s if s >= 1.0 => [out(part), out(beside[1])],
+        _ => [out(part); 2],
+    };
+    let depth = square.sqrt();
+    let outside = dot(away, side[0]) + dot(away, side[1]) >= 0.0;
+    if outside || depth > DEPTH * outline.spacing {
+        return None;
+    }
+    let normal = if share > 0.0 && share < 1.0 { side[0] } else { away.map(|x| -x / depth) };
+    Some(Foot { part, share, depth, normal })
+}

@@ -1,0 +1,61 @@
+//! Contact between two solids: what `[[contact]]` says of a pair, and what holds where it says nothing.
+
+use crate::bounds::flow_speed;
+use crate::{Phase, Scene, geometry};
+use serde::{Deserialize, Serialize};
+
+/// Contact of two solids, as a scene says it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PairContact {
+    /// Indices of the two in [`Scene::solids`], ascending.
+    pub solids: [usize; 2],
+    /// The two feel each other.
+    pub touch: bool,
+    /// Coulomb's coefficient of friction, sticking and sliding.
+    pub friction: f64,
+    /// Normal speed after an impact over that before it.
+    pub restitution: f64,
+    /// Pressure over penetration, Pa/m; `None`: from the scene.
+    pub stiffness: Option<f64>,
+}
+
+impl PairContact {
+    /// What holds for two solids of which the scene says nothing: they touch without friction and do not bounce.
+    pub fn unsaid(solids: [usize; 2]) -> Self {
+        Self { solids, touch: true, friction: 0.0, restitution: 0.0, stiffness: None }
+    }
+}
+
+/// Speed of the stiffness from the scene over the flow's, U ([`flow_speed`]): a body that meets another with U goes at
+/// most a twentieth of its thickness into it.
+const STIFFNESS_SPEED: f64 = 20.0;
+
+impl Scene {
+    /// Contact of each pair of solids that feel each other, in ascending order.
+    pub fn contacts(&self) -> Vec<PairContact> {
+        let count = self.solids.len();
+        let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b]));
+        let of = |pair: [usize; 2]| {
+            let said = self.pair_contacts.iter().find(|contact| contact.solids == pair);
+            said.cloned().unwrap_or_else(|| PairContact::unsaid(pair))
+        };
+        pairs.map(of).filter(|contact| contact.touch).collect()
+    }
+
+    /// Stiffness of contact that follows from the scene, Pa/m: rho (20 U)² / l with the lower density of the two, the
+    /// speed U that the flow is expected to reach, and the smallest side l of a box around a shape of the two. It does
+    /// not know the spacing.
+    pub fn contact_stiffness(&self, solids: [usize; 2]) -> f64 {
+        let shapes = || {
+            let own = |shape: &&crate::Shape| shape.solid.is_some_and(|solid| solids.contains(&solid));
+            self.shapes.iter().filter(|shape| shape.phase == Phase::Solid).filter(own)
+        };
+        let sides = shapes().flat_map(|shape| {
+            let around = geometry::bounding_box(shape, self);
+            (0..self.dimension).map(move |d| around.max[d] - around.min[d])
+        });
+        let smallest = sides.fold(f64::INFINITY, f64::min);
+        let density = solids.iter().map(|&k| self.lightest_density(k)).fold(f64::INFINITY, f64::min);
+        density * (STIFFNESS_SPEED * flow_speed(self)).powi(2) / smallest
+    }
+}
