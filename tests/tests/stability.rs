@@ -50,6 +50,7 @@ macro_rules! families {
 families! {
     contact "contact",
     droplets "droplets",
+    fracture "fracture",
     impact "impact",
     rest "rest",
     solids "solids",
