@@ -47,6 +47,12 @@ pub trait FluidEffect<const D: usize>: Send + Sync + Sized + 'static {
     fn at_wall(&self) -> Option<Self::AtWall<'_>> {
         None
     }
+    /// The effect acts on single particles ([`Self::on_particle`]).
+    const ON_PARTICLES: bool = false;
+    /// Acceleration that the effect gives a particle at a position, m, with a velocity, m/s; m/s².
+    fn on_particle(&self, _position: &[f64; D], _velocity: &[f64; D]) -> [f64; D] {
+        [0.0; D]
+    }
     /// Bytes allocated for its columns.
     fn bytes(&self) -> usize {
         0
@@ -109,9 +115,14 @@ pub trait Effects<const D: usize>: Send + Sync {
     fn measure_pairs<K: Kernel<D>>(&self, measuring: &mut Measuring<'_, K, D>);
     /// Measures the power of each share of a pair of a fluid and a wall particle.
     fn measure_walls<K: Kernel<D>>(&self, measuring: &mut Measuring<'_, K, D>);
+    /// Gives each effect that acts on single particles, by its name, to a function.
+    fn on_particles(&self, act: &mut dyn FnMut(&str, OnParticle<'_, D>));
     /// Bytes allocated.
     fn bytes(&self) -> usize;
 }
+
+/// See [`FluidEffect::on_particle`].
+pub type OnParticle<'a, const D: usize> = &'a dyn Fn(&[f64; D], &[f64; D]) -> [f64; D];
 
 impl<const D: usize> Effects<D> for () {
     type Pairs<'a> = ();
@@ -122,6 +133,7 @@ impl<const D: usize> Effects<D> for () {
     }
     fn pairs_without(&self, _: &str) {}
     fn at_walls(&self) {}
+    fn on_particles(&self, _: &mut dyn FnMut(&str, OnParticle<'_, D>)) {}
     fn measure<K: Kernel<D>>(&mut self, _: &Neighbourhood<'_, K, D>, _: &mut Vec<(&'static str, f64)>) {}
     fn measure_pairs<K: Kernel<D>>(&self, _: &mut Measuring<'_, K, D>) {}
     fn measure_walls<K: Kernel<D>>(&self, _: &mut Measuring<'_, K, D>) {}
@@ -180,6 +192,12 @@ impl<const D: usize, E: FluidEffect<D>, R: Effects<D>> Effects<D> for (Option<E>
             measuring.add(EnergyPart::of_effect(E::NAME), share);
         }
         self.1.measure_walls(measuring);
+    }
+    fn on_particles(&self, act: &mut dyn FnMut(&str, OnParticle<'_, D>)) {
+        if let Some(effect) = self.0.as_ref().filter(|_| E::ON_PARTICLES) {
+            act(E::NAME, &|position, velocity| effect.on_particle(position, velocity));
+        }
+        self.1.on_particles(act);
     }
     fn bytes(&self) -> usize {
         self.0.as_ref().map_or(0, E::bytes) + self.1.bytes()

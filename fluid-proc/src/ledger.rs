@@ -6,7 +6,7 @@
 //!
 //! Only scenes whose probes ask for energies pay for these passes, one for each share of a pair.
 
-use crate::columns::{PairParticles, Vectors};
+use crate::columns::{PairParticles, Source, Vectors};
 use crate::effects::{Effects, FluidEffect};
 use crate::fluid::Fluid;
 use crate::momentum::pressure_and_continuity;
@@ -160,6 +160,13 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
             Measuring { kernel, isa, id, fluid, sources: fluid, walls, list, sums, powers: powers.as_mut() };
         among.add(EnergyPart::Continuity, Pressure);
         self.effects.measure_pairs(&mut among);
+        self.effects.on_particles(&mut |name, of| {
+            let real = fluid.sources.iter().zip(id).filter(|(_, id)| **id != PADDING);
+            let power = |(p, _): (&Source<D>, _)| -> f64 {
+                of(&p.position, &p.velocity).iter().zip(&p.velocity).map(|(a, v)| a * v).sum()
+            };
+            powers[EnergyPart::of_effect(name) as usize] += fluid.mass * real.map(power).sum::<f64>();
+        });
         let Some(walls) = &self.walls else { return };
         let (sources, list) = (&walls.shown, &self.wall_list);
         let walls = Some(&walls.own_velocity);

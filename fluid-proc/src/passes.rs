@@ -8,6 +8,7 @@ use crate::walls::{WallLaw, Walls};
 use halfstep_role::role::{Costs, fastest};
 use halfstep_scene::EffectName;
 use halfstep_sph::kernel::Kernel;
+use halfstep_sph::lane::LANES;
 use halfstep_sph::pair;
 
 impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
@@ -19,6 +20,11 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         let mut sums = std::mem::take(&mut self.sums);
         self.rates(kernel, self.effects.pairs(), &mut sums);
         self.wall_rates(kernel, &mut sums);
+        self.effects.on_particles(&mut |_, of| {
+            for (slot, particle) in self.columns.now.sources.iter().enumerate() {
+                sums[slot / LANES].add(slot % LANES, of(&particle.position, &particle.velocity), 0.0);
+            }
+        });
         self.sums = sums;
         self.pair_evaluations += evaluations(&self.fluid_list) + evaluations(&self.wall_list);
     }

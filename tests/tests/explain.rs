@@ -35,7 +35,7 @@ fn row<'a>(explanation: &'a Value, name: &str) -> &'a Value {
 
 #[test]
 fn every_shipped_scene_is_explained_and_its_shares_are_the_whole() {
-    let coarse: [(&str, &[&str]); 15] = [
+    let coarse: [(&str, &[&str]); 18] = [
         ("breaking-wall", &["resolution=0.004"]),
         ("colliding-rings", &["resolution=0.002"]),
         ("dam-break-plate", &["resolution=0.004"]),
@@ -43,9 +43,12 @@ fn every_shipped_scene_is_explained_and_its_shares_are_the_whole() {
         ("elastic-gate", &["resolution=0.0025"]),
         ("elastic-gate-rubber", &[]),
         ("floating-box", &["resolution=0.02"]),
+        ("gate-lift", &["resolution=0.005", "shape.plate.box.max=[0.61, 0.09]"]),
         ("hydrostatic-plate", &["resolution=0.025"]),
         ("hydrostatic-tank", &[]),
         ("oscillating-plate", &["resolution=0.004"]),
+        ("rolling-tank", &[]),
+        ("solitary-wave-wall", &["resolution=0.02"]),
         ("spring-block", &[]),
         ("standing-wave", &["resolution=0.025"]),
         ("taylor-green", &["resolution=0.05"]),

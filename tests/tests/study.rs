@@ -11,6 +11,7 @@ use std::time::{Duration, Instant, SystemTime};
 const SCENE: &str = r#"
 resolution = 0.025
 end_time = 0.3
+gravity = [0.0, -9.81]
 
 [fluid]
 density = 1000.0
@@ -165,4 +166,38 @@ fn what_cannot_be_studied_is_said_before_anything_runs() {
         assert!(said.contains(message), "{said}");
         assert!(study.done().is_empty());
     }
+}
+
+#[test]
+fn a_sweep_tells_what_physics_does() {
+    let study = Study::new();
+    let sweep = ["--sweep", "fluid.density=500,1000,2000", "--sweep", "gravity.1=-4.905,-9.81", "--json"];
+    let done = study.run(&sweep);
+    assert_eq!(done.status.code(), Some(0), "{done:?}");
+    let told: serde_json::Value = serde_json::from_slice(&done.stdout).expect("JSON and nothing else");
+    let written = std::fs::read(study.out().join("sweep.json")).unwrap();
+    assert_eq!(told, serde_json::from_slice::<serde_json::Value>(&written).unwrap());
+    let rows = told["rows"].as_array().unwrap();
+    assert_eq!((rows.len(), told["keys"].as_array().unwrap().len()), (6, 2));
+    let reach = |density: &str, gravity: &str| {
+        let row = rows.iter().find(|row| row["values"] == serde_json::json!([density, gravity])).unwrap();
+        assert_eq!(row["status"], "finished");
+        row["numbers"][0].as_f64().unwrap()
+    };
+    // Twice the density is twice of every force and mass: the same accelerations to the bit.
+    for gravity in ["-4.905", "-9.81"] {
+        let all = ["500", "1000", "2000"].map(|density| reach(density, gravity));
+        assert!(all[0] == all[1] && all[1] == all[2], "{all:?}");
+    }
+    // And what weighs more runs farther: from 0.2 m, with Ritter's 2 sqrt(g d) at most.
+    let [light, heavy] = ["-4.905", "-9.81"].map(|gravity| reach("1000", gravity));
+    assert!(
+        0.22 < light && light < heavy && heavy < 0.2 + 0.15 * 2.0 * (9.81 * 0.2_f64).sqrt(),
+        "{light} {heavy}"
+    );
+    // A line for each run below the titles, and a picture.
+    let table = std::fs::read_to_string(study.out().join("sweep.csv")).unwrap();
+    assert!(table.starts_with("fluid.density,gravity.1,reach [m],late [m],status,"), "{table}");
+    assert_eq!(table.lines().count(), 7);
+    assert!(study.out().join("sweep.png").metadata().unwrap().len() > 5000);
 }

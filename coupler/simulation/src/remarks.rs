@@ -43,6 +43,8 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     walls::thin(scene, layout, &mut all);
     water::hanging(scene, layout, &mut all);
     water::expected_speed(scene, &mut all);
+    water::wave_makers(scene, &mut all);
+    water::walls_that_meet(scene, &mut all);
     magnitudes::materials(scene, &mut all);
     magnitudes::lengths(scene, &mut all);
     magnitudes::parameters(scene, &mut all);

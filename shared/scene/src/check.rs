@@ -33,6 +33,8 @@ impl Check<'_> {
         self.thin_plates();
         self.interface();
         self.times();
+        self.wave_makers();
+        self.beach();
         self.probes();
         self.references();
         self.metrics();

@@ -24,6 +24,8 @@ macro_rules! fluid_effects {
             NonNegativeWallPressure "non-negative-wall-pressure" non_negative_wall_pressure,
             /// Thin plates show the fluid on each face a pressure of its own.
             ThinPlateScreen "thin-plate-screen" thin_plate_screen,
+            /// Velocities decay where waves are to be absorbed.
+            Beach "beach" beach,
         }
     };
 }

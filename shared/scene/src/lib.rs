@@ -24,6 +24,7 @@ mod check_metric;
 mod check_probe;
 mod check_rigid;
 mod check_solid;
+mod check_waves;
 mod contact;
 mod dimension;
 mod document;
@@ -49,6 +50,7 @@ mod read_motion;
 mod read_probe;
 mod read_shape;
 mod read_solid;
+mod read_waves;
 mod resources;
 mod section;
 mod solid;
@@ -65,10 +67,10 @@ pub use halfstep_sph::kernel::KernelName;
 pub use contact::PairContact;
 pub use load::{load, load_with, parse, parse_with};
 pub use metric::{Metric, MetricKind, MetricReference};
-pub use motion::{Composed, Course, Motion, Part, Placement, Spline, Turn};
+pub use motion::{Composed, Course, Motion, Part, Placement, Solitary, Spline, Turn, WaveMaker};
 pub use participant::Participant;
 pub use probe::{BodyQuantity, Probe, ProbeKind, Reference};
-pub use resources::{expected_speed, memory_available, memory_needed};
+pub use resources::{expected_speed, expected_speed_of_fluid, memory_available, memory_needed};
 pub use solid::{
     ArtificialStress, ContactKeys, FiniteElementKeys, Fracture, HypoelasticKeys, Joint, JointKind, Material,
     ModelKeys, Plane, RigidBody, RigidKeys, Solid, SolidModelName, SubSteps, TimeIntegration,
@@ -172,6 +174,20 @@ pub struct Fluid {
     pub density_diffusion_coefficient: f64,
     /// Pressure added to the equation of state, Pa.
     pub background_pressure: f64,
+    /// Where waves are absorbed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub beach: Option<Beach>,
+}
+
+/// Where velocities decay so that waves are absorbed: at rate s², s from 0 at `from` to 1 at `to` and beyond.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Beach {
+    /// Where it begins, m along x.
+    pub from: f64,
+    /// Where it is strongest, m along x.
+    pub to: f64,
+    /// How fast velocities decay there, 1/s.
+    pub rate: f64,
 }
 
 /// Coefficients A (linear) and B (quadratic) of the artificial viscosity.

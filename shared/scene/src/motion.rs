@@ -3,10 +3,13 @@
 mod course;
 mod placement;
 mod spline;
+mod waves;
 
 pub use course::{Composed, Course, Part};
 pub use placement::{Placement, Turn};
 pub use spline::Spline;
+pub(crate) use waves::{Paddle, Sea, breaking_height, wave_number};
+pub use waves::{Solitary, WaveMaker};
 
 use crate::Block;
 use serde::{Deserialize, Serialize};
@@ -123,6 +126,14 @@ impl Motion {
             Self::Composed(composed) => {
                 composed.fastest(farthest(&composed.pivot.unwrap_or_default(), around))
             }
+        }
+    }
+
+    /// What it makes as a wave maker.
+    pub fn makes(&self) -> Option<&WaveMaker> {
+        match self {
+            Self::Composed(composed) => composed.makes.as_ref(),
+            _ => None,
         }
     }
 

@@ -3,6 +3,7 @@
 use super::document::{Node, Value};
 use super::error::{Report, listed, nearest};
 use super::preset::Defaults;
+use super::read_motion::Around;
 use super::section::{Range, Section};
 use super::*;
 use super::{read_contact, read_metric, read_probe, read_shape, read_solid};
@@ -53,6 +54,8 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&s
     let names: Vec<&str> = solids.iter().map(|s| s.name.as_str()).collect();
     let tables = top.tables("shape");
     let folder = path.parent().unwrap_or(Path::new(""));
+    let gravity = top.vector("gravity", dimension, Some([0.0, -9.81, 0.0]));
+    let around = Around { dimension, folder, gravity, end_time };
     let (mut shapes, mut voids, mut contact_said) = (Vec::new(), Vec::new(), Vec::new());
     for table in tables {
         if read_shape::is_void(&table) {
@@ -60,7 +63,7 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&s
             continue;
         }
         contact_said.push(table.node("contact").is_some());
-        shapes.push(read_shape::shape(table, dimension, &names, numerics.lattice, folder));
+        shapes.push(read_shape::shape(table, &around, &names, numerics.lattice));
     }
     let probe = |p| read_probe::probe(p, dimension, &names, &shapes);
     let probes = top.tables("probe").into_iter().filter_map(probe).collect();
@@ -80,7 +83,7 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&s
             Some(dt) => TimeStep::Fixed(dt),
             None => TimeStep::Auto,
         },
-        gravity: top.vector("gravity", dimension, Some([0.0, -9.81, 0.0])),
+        gravity,
         fluid,
         solids,
         interface,
@@ -157,9 +160,28 @@ fn fluid(section: Section<'_>, defaults: &Defaults) -> (Fluid, bool) {
             Range::at_least(0.0).up_to(1.0).why("the usual value is 0.1"),
         ),
         background_pressure: section.number("background_pressure", Some(0.0), PRESSURE),
+        beach: beach(section.section("beach")),
     };
     section.finish();
     (fluid, sound_speed.is_none())
+}
+
+/// Where waves are absorbed.
+fn beach(section: Section<'_>) -> Option<Beach> {
+    const PLACE: Range = Range::at_least(-1e9).up_to(1e9);
+    if !section.is_present() {
+        return None;
+    }
+    let beach = Beach {
+        from: section.number("from", None, PLACE),
+        to: section.number("to", None, PLACE),
+        rate: section.number("rate", Some(10.0), Range::positive().up_to(1e6)),
+    };
+    if let (true, Some(node)) = (beach.from == beach.to, section.node("to")) {
+        section.wrong("to", node, "must be another place than `from`: waves run from there to it");
+    }
+    section.finish();
+    Some(beach)
 }
 
 pub(super) fn viscosity(section: &Section<'_>, default: ArtificialViscosity) -> ArtificialViscosity {

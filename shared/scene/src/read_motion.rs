@@ -8,14 +8,26 @@ use super::*;
 use std::path::Path;
 use std::sync::Arc;
 
-const INSTANT: Range = Range::at_least(0.0).up_to(1e12);
+pub(super) const INSTANT: Range = Range::at_least(0.0).up_to(1e12);
 /// Angles, rad, and angular velocities, rad/s.
 const ANGLE: Range = Range::at_least(-1e6).up_to(1e6);
 /// Longest series of a file.
 const MAX_ROWS: usize = 1_000_000;
 
+/// What of the rest of the scene motions need.
+#[derive(Clone, Copy)]
+pub(super) struct Around<'a> {
+    pub(super) dimension: usize,
+    pub(super) folder: &'a Path,
+    /// m/s².
+    pub(super) gravity: [f64; 3],
+    /// s.
+    pub(super) end_time: f64,
+}
+
 /// A motion, or a list of them that add up.
-pub(super) fn motion(section: &Section<'_>, dimension: usize, folder: &Path) -> Option<Motion> {
+pub(super) fn motion(section: &Section<'_>, around: &Around<'_>) -> Option<Motion> {
+    let dimension = around.dimension;
     let node = section.node("motion")?;
     let tables = match node.table() {
         Some(_) => vec![section.section("motion")],
@@ -28,13 +40,22 @@ pub(super) fn motion(section: &Section<'_>, dimension: usize, folder: &Path) -> 
         return None;
     }
     let alone = tables.len() == 1;
-    let mut composed = Composed { pivot: None, parts: Vec::new() };
+    let mut composed = Composed { pivot: None, parts: Vec::new(), makes: None };
     for table in tables {
         if alone && let Some(simple) = simple(&table, dimension) {
             table.finish();
             return Some(simple);
         }
-        let parts = parts(&table, dimension, folder);
+        let parts = if table.node("wave").is_some() {
+            let (parts, makes) = read_waves::waves(&table, around).unwrap_or_default();
+            if composed.makes.is_some() && makes.is_some() {
+                table.whole("makes waves beside another part that does: a paddle makes one sort of waves");
+            }
+            composed.makes = makes.or(composed.makes);
+            parts
+        } else {
+            parts(&table, dimension, around.folder)
+        };
         let turns = parts.iter().any(|part| part.angle != 0.0) || table.node("pivot").is_some();
         if turns {
             let pivot = table.vector("pivot", dimension, None);
@@ -56,7 +77,7 @@ pub(super) fn motion(section: &Section<'_>, dimension: usize, folder: &Path) -> 
 /// A translation at constant velocity, or one that swings.
 fn simple(table: &Section<'_>, dimension: usize) -> Option<Motion> {
     let has = |key| table.node(key).is_some();
-    if ["angular_velocity", "angle", "file", "pivot", "phase"].into_iter().any(has) {
+    if ["angular_velocity", "angle", "file", "pivot", "phase", "wave"].into_iter().any(has) {
         return None;
     }
     match (has("velocity"), has("amplitude")) {
@@ -128,7 +149,7 @@ fn parts(table: &Section<'_>, dimension: usize, folder: &Path) -> Vec<Part> {
         _ => {
             table.whole(
                 "needs one of `velocity` or `angular_velocity` (a steady motion), `amplitude` or `angle` with `period` \
-                 (an oscillation), and `file` (a series)",
+                 (an oscillation), `file` (a series) and `wave` (a wave maker)",
             );
             // What the others would have meant is not asked.
             ["start", "end", "ramp", "period", "phase", "columns", "scale"]

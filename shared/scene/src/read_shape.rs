@@ -4,6 +4,7 @@ use super::document::Value;
 use super::error::listed;
 use super::read::DENSITY;
 use super::read_geometry;
+use super::read_motion::{self, Around};
 use super::section::{Range, Section};
 use super::*;
 use std::path::Path;
@@ -46,13 +47,8 @@ pub(super) fn void(section: Section<'_>, dimension: usize, before: usize, folder
     void
 }
 
-pub(super) fn shape(
-    section: Section<'_>,
-    dimension: usize,
-    solids: &[&str],
-    lattice: Lattice,
-    folder: &Path,
-) -> Shape {
+pub(super) fn shape(section: Section<'_>, around: &Around<'_>, solids: &[&str], lattice: Lattice) -> Shape {
+    let Around { dimension, folder, .. } = *around;
     let phase = section.choice("phase", None, &SHAPE_PHASES).flatten();
     let geometry = geometry(&section, dimension, phase, folder);
     let (clamp, clamp_with) = clamp(&section, dimension);
@@ -71,7 +67,7 @@ pub(super) fn shape(
         load: load(&section, dimension),
         crack: crack(&section, dimension),
         body: body(&section),
-        motion: read_motion::motion(&section, dimension, folder),
+        motion: read_motion::motion(&section, around),
         contact: section.boolean("contact", false),
         free_slip: section.choice("slip", Some(true), &[("free", true), ("none", false)]).unwrap_or(true),
         hydrostatic: section

@@ -149,11 +149,31 @@ pub(super) fn check_solids(scene: &Scene, root: &Node, report: &Report) {
 /// The speed that a scene's fluid may reach, m/s: the larger of that of a fall from its highest point to the lowest
 /// floor, sqrt(2 g H), and the fastest shape's initial speed, or field's.
 pub fn expected_speed(scene: &Scene) -> f64 {
+    speed_with(scene, |_| true)
+}
+
+/// The same without walls that sweep no place where fluid is at the start: they slide along it or leave it.
+pub fn expected_speed_of_fluid(scene: &Scene) -> f64 {
+    let fluid = scene.shapes.iter().filter(|shape| shape.phase == Phase::Fluid);
+    let fluid: Vec<Block> = fluid.map(|shape| geometry::bounding_box(shape, scene)).collect();
+    let slack = 1e-6 * scene.resolution;
+    speed_with(scene, |shape| {
+        let Some(motion) = &shape.motion else { return true };
+        let swept = motion.swept(&geometry::bounding_box(shape, scene), scene.end_time);
+        let meets = |b: &Block, a: usize| swept.min[a] + slack < b.max[a] && b.min[a] + slack < swept.max[a];
+        fluid.iter().any(|block| (0..scene.dimension).all(|a| meets(block, a)))
+    })
+}
+
+fn speed_with(scene: &Scene, pushes: impl Fn(&Shape) -> bool) -> f64 {
     let speed = |v: &[f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
     let g = speed(&scene.gravity);
     let height = if g > 0.0 { fall(scene, scene.gravity.map(|c| c / g)) } else { 0.0 };
     let field = |s: &Shape| s.velocity_field.map_or(0.0, |field| field.fastest(g));
-    let moving = |s: &Shape| s.motion.as_ref().map_or(0.0, |m| m.fastest(&geometry::bounding_box(s, scene)));
+    let moving = |s: &Shape| match s.motion.as_ref().filter(|_| pushes(s)) {
+        Some(motion) => motion.fastest(&geometry::bounding_box(s, scene)),
+        None => 0.0,
+    };
     let fastest = scene.shapes.iter().map(|s| speed(&s.velocity) + field(s) + moving(s)).fold(0.0, f64::max);
     (2.0 * g * height).sqrt().max(fastest)
 }

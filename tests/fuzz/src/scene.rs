@@ -56,6 +56,36 @@ motion = { file = "curve.csv", columns = { time = "t", x = "x", angle = "x" }, p
     judge(&(SCENE.to_owned() + MOTION), &path, &[]);
 }
 
+/// An outline of walls, of water and of a solid, as CSV.
+///
+/// # Panics
+/// As [`curve`].
+pub fn outline(bytes: &[u8]) {
+    const SCENE: &str = r#"
+resolution = 0.05
+end_time = 1.0
+[fluid]
+density = 1000.0
+[[shape]]
+name = "around"
+phase = "fluid"
+box = { min = [0.0, 0.0], max = [0.5, 0.5] }
+[[shape]]
+name = "own"
+phase = "PHASE"
+outline = { file = "outline.csv", scale = 0.5 }
+rotate = { angle = 30 }
+"#;
+    const SOLID: &str = "[solid]\nmodel = \"rigid\"\ndensity = 500.0\n";
+    let folder = tempfile::tempdir().expect("a folder for temporary files");
+    std::fs::write(folder.path().join("outline.csv"), bytes).expect("the folder takes a file");
+    let path = folder.path().join("scene.toml");
+    for phase in ["wall", "fluid", "void"] {
+        judge(&SCENE.replace("PHASE", phase), &path, &[]);
+    }
+    judge(&(SCENE.replace("PHASE", "solid") + SOLID), &path, &[]);
+}
+
 fn judge(text: &str, path: &Path, overrides: &[String]) {
     match parse(text, path, overrides) {
         Ok(scene) => {

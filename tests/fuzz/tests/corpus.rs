@@ -59,6 +59,11 @@ fn curves() {
 }
 
 #[test]
+fn outlines() {
+    replay("outline", halfstep_fuzz::outline);
+}
+
+#[test]
 fn messages() {
     replay("message", halfstep_fuzz::message);
 }

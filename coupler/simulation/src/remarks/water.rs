@@ -1,7 +1,7 @@
 //! Remarks on the fluid: what carries it, how fast it may become.
 
-use halfstep_scene::geometry::Layout;
-use halfstep_scene::{Geometry, Phase, Scene, expected_speed as fastest};
+use halfstep_scene::geometry::{self, Layout};
+use halfstep_scene::{Block, Geometry, Motion, Phase, Scene, expected_speed_of_fluid as fastest};
 
 /// Mach number above which the density error, about its square, exceeds 3 %.
 const HIGHEST_MACH: f64 = 0.17;
@@ -48,4 +48,74 @@ pub(super) fn expected_speed(scene: &Scene, all: &mut Vec<String>) {
             (10.0 * fastest).ceil()
         ));
     }
+}
+
+/// Part of its depth by which the water may differ from what a wave maker is meant for.
+const DEPTH: f64 = 0.05;
+
+/// Wave makers for water of another depth.
+pub(super) fn wave_makers(scene: &Scene, all: &mut Vec<String>) {
+    let fluid = scene.shapes.iter().filter(|shape| shape.phase == Phase::Fluid);
+    let boxes: Vec<_> = fluid.map(|shape| geometry::bounding_box(shape, scene)).collect();
+    let level = boxes.iter().map(|b| b.max[1]).fold(f64::NEG_INFINITY, f64::max);
+    let lowest = boxes.iter().map(|b| b.min[1]).fold(f64::INFINITY, f64::min);
+    for shape in &scene.shapes {
+        let Some(makes) = shape.motion.as_ref().and_then(Motion::makes) else { continue };
+        if let Some(end) = makes.end.filter(|end| *end > scene.end_time) {
+            all.push(format!(
+                "`{}` moves until {end:.3} s for its wave, and the run ends at {} s",
+                shape.name, scene.end_time
+            ));
+        }
+        let depth = level - lowest;
+        if depth.is_finite() && (depth - makes.depth).abs() > DEPTH * makes.depth + 0.5 * scene.resolution {
+            all.push(format!(
+                "`{}` makes waves for a depth of {} m, and the water is {} m deep: they have another height and length",
+                shape.name, makes.depth as f32, depth as f32
+            ));
+        }
+    }
+}
+
+/// Walls that move into other walls.
+pub(super) fn walls_that_meet(scene: &Scene, all: &mut Vec<String>) {
+    let walls: Vec<_> = scene.shapes.iter().filter(|shape| shape.phase == Phase::Wall).collect();
+    for moving in &walls {
+        let Some(motion) = &moving.motion else { continue };
+        if motion.pivot().is_some() {
+            continue;
+        }
+        let block = geometry::bounding_box(moving, scene);
+        for other in walls.iter().filter(|other| !std::ptr::eq(**other, *moving)) {
+            // Where both are boxes that no motion shares: what slides along a wall meets nothing.
+            let Geometry::Box(fixed) = &other.geometry else { continue };
+            if other.motion == moving.motion || overlap(&block, fixed, scene) {
+                continue;
+            }
+            let meets =
+                (0..=INSTANTS).map(|k| scene.end_time * f64::from(k) / f64::from(INSTANTS)).find(|&t| {
+                    let way = motion.at(t).displacement;
+                    let mut now = block;
+                    (0..3)
+                        .for_each(|a| (now.min[a], now.max[a]) = (now.min[a] + way[a], now.max[a] + way[a]));
+                    overlap(&now, fixed, scene)
+                });
+            if let (Some(time), None) = (meets, &other.motion) {
+                all.push(format!(
+                    "`{}` goes through `{}` from about {time:.3} s on: walls do not stop each other, and fluid between \
+                     them is crushed",
+                    moving.name, other.name
+                ));
+            }
+        }
+    }
+}
+
+/// Instants of a run at which walls are looked at.
+const INSTANTS: u32 = 1000;
+
+/// Whether two boxes have more in common than a face: half a spacing in each direction.
+fn overlap(a: &Block, b: &Block, scene: &Scene) -> bool {
+    let common = |k: usize| a.max[k].min(b.max[k]) - a.min[k].max(b.min[k]);
+    (0..scene.dimension).all(|k| common(k) > 0.5 * scene.resolution)
 }

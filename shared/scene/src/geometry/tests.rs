@@ -24,6 +24,7 @@ fn scene(shapes: Vec<Shape>) -> Scene {
             density_diffusion: DensityDiffusion::DeltaSph,
             density_diffusion_coefficient: 0.1,
             background_pressure: 0.0,
+            beach: None,
         }),
         solids: vec![Solid {
             name: "solid".into(),

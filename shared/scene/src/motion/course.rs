@@ -1,5 +1,6 @@
 //! Motions that are sums of parts.
 
+use super::waves::{Solitary, WaveMaker};
 use super::{Placement, Spline, Turn};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -11,6 +12,9 @@ pub struct Composed {
     pub pivot: Option<[f64; 3]>,
     /// The parts.
     pub parts: Vec<Part>,
+    /// What it makes as a wave maker.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub makes: Option<WaveMaker>,
 }
 
 /// One part: a course in time s(t), times a translation and an angle.
@@ -50,6 +54,8 @@ pub enum Course {
     },
     /// Through points.
     Points(Spline),
+    /// A piston that makes a solitary wave; s is its way, m.
+    Solitary(Solitary),
 }
 
 impl Course {
@@ -57,6 +63,7 @@ impl Course {
     fn at(&self, time: f64) -> [f64; 3] {
         match *self {
             Self::Points(ref spline) => spline.at(time),
+            Self::Solitary(ref wave) => wave.at(time),
             Self::Steady { start, end, ramp } => {
                 let (since, rest) = (time - start, end - time);
                 if since <= 0.0 {
@@ -85,7 +92,7 @@ impl Course {
     /// Least and largest s until a time.
     fn extent(&self, end_time: f64) -> (f64, f64) {
         match self {
-            Self::Steady { .. } => (0.0, self.at(end_time)[0]),
+            Self::Steady { .. } | Self::Solitary(_) => (0.0, self.at(end_time)[0]),
             Self::Sine { .. } => (-1.0, 1.0),
             Self::Points(spline) => spline.extent(),
         }
@@ -97,6 +104,7 @@ impl Course {
             Self::Steady { .. } => 1.0,
             Self::Sine { period, ramp, .. } => fastest_swing(*period, *ramp),
             Self::Points(spline) => spline.fastest(),
+            Self::Solitary(wave) => wave.fastest(),
         }
     }
 }
@@ -155,6 +163,11 @@ impl Composed {
         placement
     }
 
+    /// Sum of the parts' displacements along x, m, and angles, rad, of those that have one or the other.
+    pub(crate) fn ways(&self, time: f64) -> f64 {
+        self.parts.iter().map(|part| (part.translation[0] + part.angle) * part.course.at(time)[0]).sum()
+    }
+
     /// See [`super::Motion::reach`].
     pub(super) fn reach(&self, end_time: f64) -> [(f64, f64); 3] {
         let mut reach = [(0.0, 0.0); 3];
@@ -189,7 +202,7 @@ mod tests {
     fn turning() -> Motion {
         let course = Course::Steady { start: 1.0, end: 6.0, ramp: 1.0 };
         let part = Part { course, translation: [0.0; 3], angle: PI / 4.0 };
-        Motion::Composed(Arc::new(Composed { pivot: Some([1.0, 2.0, 0.0]), parts: vec![part] }))
+        Motion::Composed(Arc::new(Composed { pivot: Some([1.0, 2.0, 0.0]), parts: vec![part], makes: None }))
     }
 
     #[test]
@@ -228,7 +241,8 @@ mod tests {
                 angle: 1.0,
             },
         ];
-        let motion = Motion::Composed(Arc::new(Composed { pivot: Some([0.2, -0.1, 0.0]), parts }));
+        let motion =
+            Motion::Composed(Arc::new(Composed { pivot: Some([0.2, -0.1, 0.0]), parts, makes: None }));
         let place = [0.9, 0.4];
         let around = Block { min: [0.9, 0.4, 0.0], max: [0.9, 0.4, 0.0] };
         let swept = motion.swept(&around, 2.5);

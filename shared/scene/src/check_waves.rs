@@ -1,0 +1,56 @@
+//! Wave makers beside the rest of the scene.
+
+use super::check::Check;
+use super::*;
+
+impl Check<'_> {
+    /// A beach is where the fluid may be, and no step overshoots its decay.
+    pub(super) fn beach(&self) {
+        let Some(beach) = self.scene.fluid.as_ref().and_then(|fluid| fluid.beach) else { return };
+        if self.report.has_any(&["fluid", "resolution", "dimension", "shape", "end_time"]) {
+            return;
+        }
+        let domain = geometry::domain(self.scene);
+        for (key, x) in [("fluid.beach.from", beach.from), ("fluid.beach.to", beach.to)] {
+            if x < domain.min[0] || x > domain.max[0] {
+                self.wrong(key, "is outside the domain: no fluid gets there");
+            }
+        }
+        // Gravity moves a particle by its spacing in about that time.
+        let g = self.scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+        let most = if g > 0.0 { (g / self.scene.resolution).sqrt() } else { f64::MAX };
+        if beach.rate > most {
+            let reason = format!(
+                "must be at most sqrt(g / dx), {most:.4} 1/s: beyond, velocities decay within the time in which gravity \
+                 moves a particle by its spacing, and the beach is a wall"
+            );
+            self.wrong("fluid.beach.rate", reason);
+        }
+    }
+
+    /// A paddle goes through less than half of the water.
+    pub(super) fn wave_makers(&self) {
+        if self.report.has_any(&["resolution", "dimension", "shape"]) {
+            return;
+        }
+        let fluid = self.scene.shapes.iter().filter(|s| s.phase == Phase::Fluid);
+        let boxes: Vec<Block> = fluid.map(|s| geometry::bounding_box(s, self.scene)).collect();
+        let least = boxes.iter().map(|b| b.min[0]).fold(f64::INFINITY, f64::min);
+        let largest = boxes.iter().map(|b| b.max[0]).fold(f64::NEG_INFINITY, f64::max);
+        for (index, shape) in self.scene.shapes.iter().enumerate() {
+            let Some(makes) = shape.motion.as_ref().and_then(Motion::makes) else { continue };
+            if boxes.is_empty() || makes.stroke <= 0.5 * (largest - least) {
+                continue;
+            }
+            self.place(
+                &format!("{}.motion", self.shape_key(index)),
+                format!(
+                    "the paddle's stroke is {:.3} m, and the water {:.3} m long: at most half of it, since theory knows \
+                     no tank; a lower `height` has a shorter stroke",
+                    makes.stroke,
+                    largest - least
+                ),
+            );
+        }
+    }
+}
