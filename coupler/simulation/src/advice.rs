@@ -29,10 +29,16 @@ pub(crate) fn advice(diverged: &Diverged, scene: &Scene, clock: &Clock, external
         [_] => "solid".to_owned(),
         _ => format!("solid.{name}"),
     };
+    let rigid = scene.solids.iter().any(|solid| solid.name == name.as_str() && solid.rigid().is_some());
     let change = match (scene.time_step, phase) {
         (TimeStep::Fixed(dt), _) => {
             format!("choose a smaller time_step than {dt:.4e} s, although it is within the stability limits")
         }
+        // A rigid body has no waves; the water that goes along with a light one needs the fluid's shorter step.
+        (TimeStep::Auto, Phase::Solid) if rigid && scene.fluid.is_some() => {
+            format!("lower numerics.cfl (now {})", scene.numerics.cfl)
+        }
+        (TimeStep::Auto, Phase::Solid) if rigid => "choose a time_step".into(),
         (TimeStep::Auto, Phase::Solid) => {
             format!("lower numerics.solid_cfl (now {})", scene.numerics.solid_cfl)
         }
@@ -44,6 +50,7 @@ pub(crate) fn advice(diverged: &Diverged, scene: &Scene, clock: &Clock, external
             look at the last frames for what goes wrong before"
                 .into()
         }
+        _ if rigid => change,
         (Quantity::Energy, Phase::Solid) => {
             format!("{change}; or raise {section}.artificial_viscosity: the last frames show where it moves")
         }
@@ -101,6 +108,22 @@ mod tests {
         }
         let text = advised(&scene, 2e-5, 2e-5, &DIVERGED);
         assert!(text.contains("smaller time_step") && text.contains("within"), "{text}");
+    }
+
+    #[test]
+    fn a_rigid_body_has_no_courant_number_of_its_own() {
+        let rigid = |fluid: &str, shape: &str| {
+            let text = format!(
+                "resolution = 0.01\nend_time = 1.0\n{fluid}[solid]\nmodel = \"rigid\"\ndensity = 10.0\n{shape}\
+                 [[shape]]\nname = \"box\"\nphase = \"solid\"\nbox = {{ min = [0.0, 0.0], max = [0.1, 0.1] }}\n"
+            );
+            scene::parse(&text, Path::new("box.toml"), &[]).unwrap()
+        };
+        let water =
+            "[[shape]]\nname = \"water\"\nphase = \"fluid\"\nbox = { min = [0.2, 0.0], max = [0.3, 0.1] }\n";
+        let floating = advised(&rigid("[fluid]\ndensity = 1000.0\n", water), 1e-5, 1e-5, &DIVERGED);
+        assert_eq!(floating, "lower numerics.cfl (now 0.4)");
+        assert_eq!(advised(&rigid("", ""), 1e-5, 1e-5, &DIVERGED), "choose a time_step");
     }
 
     #[test]

@@ -14,6 +14,8 @@ const SOLID: &str = "solid";
 const WALLS: &str = "walls";
 /// Sums across the interface.
 const INTERFACE: &str = "interface";
+/// Contact between two solids.
+const SOLID_CONTACT: &str = "solid-contact";
 /// The force f_i.
 const CROSS_VISCOSITY: &str = "cross-viscosity";
 
@@ -86,6 +88,17 @@ pub(crate) fn reports(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
         (true, false) => format!("interface.cross_viscosity is {c}, and {far} far off"),
     };
     list.push(row(CROSS_VISCOSITY, coupled && c > 0.0, why));
+    let pairs: Vec<String> = scene
+        .contacts()
+        .iter()
+        .map(|contact| {
+            let [a, b] = contact.solids.map(|solid| &scene.solids[solid].name);
+            format!("`{a}` and `{b}` (friction {}, restitution {})", contact.friction, contact.restitution)
+        })
+        .collect();
+    if !pairs.is_empty() {
+        list.push(row(SOLID_CONTACT, true, format!("touch in the coupler: {}", pairs.join(", "))));
+    }
     list
 }
 

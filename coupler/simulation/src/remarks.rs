@@ -4,6 +4,7 @@
 
 mod bodies;
 mod clamp_faces;
+mod contacts;
 mod magnitudes;
 mod outcome;
 mod shapes;
@@ -37,8 +38,11 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     bodies::cracks(scene, &mut all);
     bodies::touching(scene, layout, &bodies, &mut all);
     bodies::standing(scene, layout, &bodies, &mut all);
+    contacts::overlaps(scene, &mut all);
+    contacts::unsaid(scene, &mut all);
     clamp_faces::clamp_faces(scene, &mut all);
     shapes::sizes(scene, placed, &mut all);
+    shapes::nodal(scene, placed, &mut all);
     shapes::overlaps(placed, &mut all);
     walls::thin(scene, layout, &mut all);
     water::hanging(scene, layout, &mut all);

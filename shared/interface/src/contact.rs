@@ -11,7 +11,8 @@
 //!                                                         is e times that before it, whatever the masses
 //! F_t = -(k x + k tau u), at most mu F_n                  k = K w/2; x: way along the surface from where it sticks,
 //!                                                         u: its rate; beyond mu F_n it slips
-//! v_s = min(theta omega g (1 - e²) / 2, v_max / 10)       v_max: largest approach of this contact
+//! v_s = min(theta omega g (1 - e²) / 2, max(v_max / 100, v_g))
+//!         v_max: largest approach of this contact, v_g: what gravity gives in four steps
 //! ```
 //! omega² = K (1/m_a + 1/m_b) with the least mass behind a length of both outlines; steps of theta / omega resolve an
 //! impact ([`Contact::limit`]). Force and opposite force differ by rounding.
@@ -117,9 +118,8 @@ impl Contact {
 
     fn build(&mut self) {
         let scene = &self.scene;
-        let of = |(solid, (at, mass)): (usize, &(Vec<[f64; 2]>, Vec<f64>))| {
-            Outline::new(scene, solid, at, mass)
-        };
+        let of =
+            |(solid, (at, mass)): (usize, &(Vec<[f64; 2]>, Vec<f64>))| Outline::new(scene, solid, at, mass);
         self.outlines = self.first.iter().enumerate().map(of).collect();
         for pair in &mut self.pairs {
             let masses = pair.sides.each_ref().map(|side| self.outlines[side.solid].least_mass());
@@ -159,7 +159,8 @@ impl Contact {
             let [first, second] = &mut pair.sides;
             let view = |solid: usize| (&self.outlines[solid], &self.placed[solid]);
             let found = &mut self.halfway;
-            let mut deepest = pair.law.pass(0, [view(a), view(b)], [&mut *first, &mut *second], &pair.touches, found);
+            let mut deepest =
+                pair.law.pass(0, [view(a), view(b)], [&mut *first, &mut *second], &pair.touches, found);
             let other = pair.law.pass(1, [view(b), view(a)], [second, first], &pair.touches, found);
             deepest = deepest.max(other);
             if whole {
@@ -185,7 +186,7 @@ impl Contact {
 
     /// Books the work of the present forces on the way of the records from the state at n before to this one; returns
     /// that on each solid, J (2D: J/m).
-    pub fn work<'a>(&mut self, way: impl Fn(usize, usize) -> [f64; 2]) -> Vec<f64> {
+    pub fn work(&mut self, way: impl Fn(usize, usize) -> [f64; 2]) -> Vec<f64> {
         let mut work = vec![0.0; self.placed.len()];
         for pair in &mut self.pairs {
             for side in &pair.sides {

@@ -160,7 +160,11 @@ pub struct ParticipantEnergy {
 impl EnergyReport {
     /// From the ledgers of those participants that kept one; `complete`: all did. `None` where nobody did. The work of
     /// contacts, which solids book as pressure of the interface, is none of the exchange with the fluid.
-    pub fn of(participants: Vec<ParticipantEnergy>, complete: bool, contacts: &[ContactReport]) -> Option<Self> {
+    pub fn of(
+        participants: Vec<ParticipantEnergy>,
+        complete: bool,
+        contacts: &[ContactReport],
+    ) -> Option<Self> {
         let all = || participants.iter().flat_map(|own| own.parts.iter().map(move |entry| (own, entry)));
         let exchanged = all().filter(|(_, entry)| entry.part != EnergyPart::Integration);
         let largest = exchanged.max_by(|a, b| a.1.largest.total_cmp(&b.1.largest)).map(|(own, entry)| {

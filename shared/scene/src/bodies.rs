@@ -55,9 +55,9 @@ impl Scene {
         let cell = self.solid_spacing(solid).powi(self.dimension as i32);
         let of = |said: &RigidBody| {
             let named = |body: &&Body| {
-                body.shapes.iter().any(|&k| {
-                    self.shapes[k].solid == Some(solid) && self.shapes[k].body() == said.name
-                })
+                body.shapes
+                    .iter()
+                    .any(|&k| self.shapes[k].solid == Some(solid) && self.shapes[k].body() == said.name)
             };
             let particles: usize = bodies.iter().filter(named).map(|body| body.particles).sum();
             said.mass.map(|mass| mass / (particles.max(1) as f64 * cell))

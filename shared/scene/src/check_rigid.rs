@@ -61,7 +61,10 @@ impl Check<'_> {
         }
         let Some(motion) = &shape.motion else { return };
         if shape.velocity != [0.0; 3] {
-            refuse("velocity", "is that of a body whose `motion` prescribes where it is: leave one of the two out");
+            refuse(
+                "velocity",
+                "is that of a body whose `motion` prescribes where it is: leave one of the two out",
+            );
         }
         let same = |other: &&Shape| other.solid == shape.solid && other.body() == shape.body();
         if let Some(other) = self.scene.shapes.iter().filter(same).find(|s| s.motion.as_ref() != Some(motion))

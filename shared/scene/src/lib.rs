@@ -59,12 +59,12 @@ mod spacing;
 mod velocity_field;
 
 pub use bodies::Body;
+pub use contact::PairContact;
 pub use effect::{Decision, Derived, EffectName, Switch};
 pub use energy::{EnergyEntry, EnergyPart};
 pub use error::{Place, SceneError, SceneErrors};
 pub use halfstep_sph::Phase;
 pub use halfstep_sph::kernel::KernelName;
-pub use contact::PairContact;
 pub use load::{load, load_with, parse, parse_with};
 pub use metric::{Metric, MetricKind, MetricReference};
 pub use motion::{Composed, Course, Motion, Part, Placement, Solitary, Spline, Turn, WaveMaker};

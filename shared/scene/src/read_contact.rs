@@ -40,7 +40,8 @@ fn solids(section: &Section<'_>, names: &[&str]) -> Option<[usize; 2]> {
             return None;
         };
         let Some(place) = names.iter().position(|known| known == name) else {
-            let note = section.report.value(&section.path_of("solids"), item.origin, "no solid has this name");
+            let note =
+                section.report.value(&section.path_of("solids"), item.origin, "no solid has this name");
             match nearest(name, names.iter().copied()) {
                 Some(near) => note.help(format!("did you mean `{near}`?")),
                 None => note.help(format!("the solids are {}", listed(names.iter().copied(), "and"))),

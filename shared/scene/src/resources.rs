@@ -123,7 +123,10 @@ pub(super) fn check_loads(scene: &Scene, root: &Node, report: &Report) {
         let shape = &scene.shapes[index];
         let reason = match clamped {
             0 => format!("holds no particle of `{}`, and would load nothing", shape.name),
-            n => format!("holds {n} particles of `{}`, all of them clamped: a load would move nothing", shape.name),
+            n => format!(
+                "holds {n} particles of `{}`, all of them clamped: a load would move nothing",
+                shape.name
+            ),
         };
         report.among(root, &format!("shape.{}.load.within", shape.name), &[], reason);
     }

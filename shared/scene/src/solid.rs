@@ -11,8 +11,8 @@ pub use finite_element::{FiniteElementKeys, TimeIntegration};
 pub use fracture::Fracture;
 pub use hypoelastic::{ArtificialStress, HypoelasticKeys};
 pub use models::{ModelKeys, SolidModelName};
-pub(crate) use rigid::{FRICTION, RESTITUTION};
 pub use rigid::{ContactKeys, Joint, JointKind, RigidBody, RigidKeys};
+pub(crate) use rigid::{FRICTION, RESTITUTION};
 pub use total_lagrangian::{Material, Plane, TotalLagrangianKeys};
 
 use super::ArtificialViscosity;

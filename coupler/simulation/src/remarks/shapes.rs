@@ -1,7 +1,7 @@
 //! Every shape as asked and as computed.
 
 use halfstep_scene::geometry::{Layout, Plate};
-use halfstep_scene::{Geometry, Phase, Scene};
+use halfstep_scene::{Geometry, Lattice, Phase, Scene, Shape, SolidModelName};
 use serde::{Serialize, Serializer};
 use std::fmt;
 
@@ -195,6 +195,33 @@ pub(super) fn sizes(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
             shape.name,
             unit = shape.unit
         ));
+    }
+}
+
+/// Boxes of solids without a surface of their own particles' making, which the nodal lattice makes smaller: it has no
+/// particles on the surface, and what a particle stands for ends half a spacing from it.
+pub(super) fn nodal(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
+    if scene.numerics.lattice != Lattice::Nodal {
+        return;
+    }
+    let cells = |shape: &Shape| {
+        let model = shape.solid.map(|k| scene.solids[k].model.name());
+        matches!(model, Some(SolidModelName::FiniteElement | SolidModelName::Rigid))
+            && matches!(shape.geometry, Geometry::Box(_))
+    };
+    for (shape, of_scene) in placed.iter().zip(&scene.shapes).filter(|(_, of_scene)| cells(of_scene)) {
+        let dx = scene.spacing(of_scene);
+        let whole: f64 = shape.asked.iter().product();
+        let share = (shape.particles + shape.lost) as f64 * dx.powi(shape.asked.len() as i32) / whole;
+        if (share - 1.0).abs() >= NOTABLE {
+            all.push(format!(
+                "`{}` has {:.0} % of the mass that its size asks for: in the nodal lattice it lacks half a spacing, {}, \
+                 at each side (numerics.lattice = \"centred\" fills it)",
+                shape.name,
+                100.0 * share,
+                length(0.5 * dx)
+            ));
+        }
     }
 }
 

@@ -53,6 +53,59 @@ fn every_shipped_scene_means_what_it_says() {
     assert!(found >= 12, "{found}");
 }
 
+/// Two rigid blocks, the second from this x on, on a floor at this height; `more` after the solids.
+fn rigid(solids: [&str; 2], [x, floor]: [f64; 2], more: &str) -> Vec<String> {
+    let mut names = solids.to_vec();
+    names.dedup();
+    let solid = |name: &&str| {
+        format!("[[solid]]\nname = \"{name}\"\nmodel = \"rigid\"\ndensity = 2000.0\ncontact.friction = 0.3\n")
+    };
+    let block = |(k, solid): (usize, &str)| {
+        let from = [0.0, x][k];
+        format!(
+            "[[shape]]\nname = \"block-{k}\"\nphase = \"solid\"\nsolid = \"{solid}\"\nbody = \"b{k}\"\n\
+             box = {{ min = [{from}, 0.0], max = [{}, 0.1] }}\n",
+            from + 0.1
+        )
+    };
+    let text = format!(
+        "resolution = 0.01\nend_time = 1.0\n{more}{}{}[[shape]]\nname = \"floor\"\nphase = \"wall\"\n\
+         box = {{ min = [-1.0, -0.1], max = [1.0, {floor}] }}\n",
+        names.iter().map(solid).collect::<String>(),
+        solids.into_iter().enumerate().map(block).collect::<String>()
+    );
+    remarks(&parse(&text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}")))
+}
+
+#[test]
+fn what_lies_in_each_other_at_the_start() {
+    assert_eq!(rigid(["a", "a"], [0.1, 0.0], ""), [""; 0], "touching is none");
+    let both = "`block-0` and `block-1` lie 0.020 m in each other at the start";
+    for solids in [["a", "a"], ["a", "b"]] {
+        let more = "[[contact]]\nsolids = [\"a\", \"b\"]\n";
+        let found = rigid(solids, [0.08, 0.0], if solids[1] == "b" { more } else { "" });
+        assert!(found.iter().any(|text| text.starts_with(both)), "{found:?}");
+    }
+    let found = rigid(["a", "a"], [0.2, 0.005], "");
+    let floor = |text: &String| text.contains("`floor` lie 0.005 m in each other");
+    assert_eq!(found.iter().filter(|text| floor(text)).count(), 2, "{found:?}");
+}
+
+#[test]
+fn two_solids_whose_own_bodies_rub_and_that_do_not() {
+    let found = rigid(["a", "b"], [0.2, 0.0], "");
+    assert!(found.len() == 1 && found[0].contains("`a` and `b` touch without friction"), "{found:?}");
+    let said = rigid(["a", "b"], [0.2, 0.0], "[[contact]]\nsolids = [\"a\", \"b\"]\nfriction = 0.0\n");
+    assert_eq!(said, [""; 0]);
+}
+
+#[test]
+fn a_rigid_body_in_the_nodal_lattice_lacks_half_a_spacing() {
+    let found = rigid(["a", "a"], [0.2, 0.0], "numerics.lattice = \"nodal\"\n");
+    let lacks = found.iter().filter(|text| text.contains("has 81 % of the mass that its size asks for"));
+    assert_eq!(lacks.count(), 2, "{found:?}");
+}
+
 #[test]
 fn a_light_body_on_the_floor() {
     let block = |bottom: f64, density: &str| {

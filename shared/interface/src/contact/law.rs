@@ -7,6 +7,12 @@ use halfstep_scene::{PairContact, Scene};
 /// Decay time of the damper along the surface, in steps of the limit.
 const ALONG: f64 = 2.0;
 
+/// Part of the fastest approach within which a force changes from that of coming to that of leaving.
+const SLOW: f64 = 0.01;
+
+/// Steps of the limit in which gravity gives the speed of a body at rest.
+const REST: f64 = 4.0;
+
 /// How deep a point is looked for inside of another solid, in that solid's spacings.
 const DEPTH: f64 = 3.0;
 
@@ -23,6 +29,8 @@ pub struct Law {
     /// Pressure over penetration, Pa/m.
     pub stiffness: f64,
     said: Option<f64>,
+    /// Speed below which an approach is no impact, m/s: what gravity gives in a few steps.
+    rest: f64,
     /// Largest stable time step, s.
     pub limit: f64,
 }
@@ -64,6 +72,7 @@ impl Law {
             restitution: contact.restitution,
             stiffness: 0.0,
             said: contact.stiffness,
+            rest: 0.0,
             limit: f64::INFINITY,
         }
     }
@@ -79,10 +88,13 @@ impl Law {
         self.stiffness = self.said.unwrap_or_else(|| {
             let derived = scene.contact_stiffness(solids);
             let Some(fluid) = &scene.fluid else { return derived };
-            let step = ROOM * scene.numerics.cfl * scene.smoothing_ratio * scene.resolution / fluid.sound_speed;
+            let step =
+                ROOM * scene.numerics.cfl * scene.smoothing_ratio * scene.resolution / fluid.sound_speed;
             derived.min((THETA / step).powi(2) / give)
         });
         self.limit = THETA / (self.stiffness * give).sqrt();
+        let gravity = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+        self.rest = REST * gravity * self.limit;
     }
 
     /// Points of the first solid inside of the second; returns the largest penetration, m.
@@ -109,7 +121,8 @@ impl Law {
                     let Some(foot) = nearest(other, k, at) else { continue };
                     deepest = deepest.max(foot.depth);
                     let key = [pass, point, k as u32];
-                    let before = touches.binary_search_by(|touch| touch.key.cmp(&key)).ok().map(|k| touches[k]);
+                    let before =
+                        touches.binary_search_by(|touch| touch.key.cmp(&key)).ok().map(|k| touches[k]);
                     let (forces, touch) = self.force([own, other], key, &foot, before);
                     found.push(touch);
                     let part = &other.0.parts[foot.part as usize];
@@ -151,7 +164,8 @@ impl Law {
         touch.approach = touch.approach.max(approach);
         let spring = 0.5 * self.stiffness * outline.points[point].length;
         let kept = self.restitution * self.restitution;
-        let slow = (0.5 * THETA * THETA / self.limit * foot.depth * (1.0 - kept)).min(0.1 * touch.approach);
+        let slow = 0.5 * THETA * THETA / self.limit * foot.depth * (1.0 - kept);
+        let slow = slow.min(SLOW * touch.approach).max(self.rest.min(slow));
         let way = if slow > 0.0 { libm::tanh(approach / slow) } else { sign(approach) };
         let push = spring * foot.depth * 0.5 * (1.0 + kept + (1.0 - kept) * way);
         let most = self.friction * push;

@@ -15,11 +15,17 @@ const REACH: f64 = 2.3;
 /// A moment matrix with less than this part of its trace squared as determinant belongs to a row of particles.
 const FLAT: f64 = 1e-6;
 
+/// Records that carry a point, with their weights.
+type Weights = Vec<(u32, f64)>;
+
+/// Shape, copy and ends of a part.
+type ShapePart = (u32, u32, [[f64; 2]; 2]);
+
 /// A point of an outline.
 #[derive(Clone, Debug)]
 pub(super) struct Point {
     /// Records and weights.
-    pub(super) weights: Vec<(u32, f64)>,
+    pub(super) weights: Weights,
     /// What one row of particles cannot say of its place, m.
     offset: [f64; 2],
     /// Share of the outline, m.
@@ -106,13 +112,13 @@ impl Particles {
             [0, 1].map(|d| 0.5 * (from[d] + to[d]) + way * self.spacing * out[d])
         };
         let own = |k: usize| self.of[k].0 == shape && self.of[k].1 == copy;
-        let piece = self.of[self.nearest(beside(-0.5), 1.0, own)?].2;
-        let covered = self.nearest(beside(0.5), 0.6, |k| self.of[k].2 == piece).is_some();
+        let piece = self.of[self.nearest(beside(-0.5), 1.5, own)?].2;
+        let covered = self.nearest(beside(1.0), 0.72, |k| self.of[k].2 == piece).is_some();
         (!covered).then_some(piece)
     }
 
     /// Records and weights of a point of a piece, and what they leave of its place. The weights keep linear fields.
-    fn weights(&self, at: [f64; 2], piece: u32) -> Option<(Vec<(u32, f64)>, [f64; 2])> {
+    fn weights(&self, at: [f64; 2], piece: u32) -> Option<(Weights, [f64; 2])> {
         let reach = REACH * self.spacing;
         let mut near: Vec<(u32, Vector2<f64>, f64)> = self
             .records
@@ -129,18 +135,26 @@ impl Particles {
             return None;
         }
         let middle = near.iter().map(|(_, r, w)| r * (w / sum)).sum::<Vector2<f64>>();
-        let moment = near.iter().map(|(_, r, w)| (r - middle) * (r - middle).transpose() * (w / sum)).sum::<Matrix2<f64>>();
+        let moment = near
+            .iter()
+            .map(|(_, r, w)| (r - middle) * (r - middle).transpose() * (w / sum))
+            .sum::<Matrix2<f64>>();
         let trace = moment.trace();
         let inverse = if moment.determinant() > FLAT * trace * trace {
             moment.try_inverse()?
         } else {
             // One row: along it alone.
-            let along = Vector2::new(moment[(0, 0)], moment[(0, 1)]) + Vector2::new(moment[(1, 0)], moment[(1, 1)]);
+            let along =
+                Vector2::new(moment[(0, 0)], moment[(0, 1)]) + Vector2::new(moment[(1, 0)], moment[(1, 1)]);
             let size = along.norm_squared();
-            if size > 0.0 && trace > 0.0 { along * along.transpose() / (size * trace) } else { Matrix2::zeros() }
+            if size > 0.0 && trace > 0.0 {
+                along * along.transpose() / (size * trace)
+            } else {
+                Matrix2::zeros()
+            }
         };
         let slope = inverse * -middle;
-        let weights: Vec<(u32, f64)> =
+        let weights: Weights =
             near.iter().map(|(record, r, w)| (*record, w / sum * (1.0 + (r - middle).dot(&slope)))).collect();
         let left = -near.iter().zip(&weights).map(|((_, r, _), (_, w))| r * *w).sum::<Vector2<f64>>();
         let exact = left.norm() < 1e-9 * self.spacing;
@@ -154,7 +168,7 @@ impl Outline {
         let particles = Particles::new(scene, solid, at);
         let spacing = particles.spacing;
         // By piece: in the order in which their shapes stand in the file.
-        let mut parts: BTreeMap<u32, Vec<(u32, u32, [[f64; 2]; 2])>> = BTreeMap::new();
+        let mut parts: BTreeMap<u32, Vec<ShapePart>> = BTreeMap::new();
         let own = |s: &(usize, &halfstep_scene::Shape)| s.1.phase == Phase::Solid && s.1.solid == Some(solid);
         for (index, shape) in scene.shapes.iter().enumerate().filter(own) {
             Surface::new(&shape.geometry, None).outline(spacing / POINTS, &mut |copy, ends| {
@@ -171,7 +185,7 @@ impl Outline {
         outline
     }
 
-    fn add(&mut self, particles: &Particles, piece: u32, parts: &[(u32, u32, [[f64; 2]; 2])]) {
+    fn add(&mut self, particles: &Particles, piece: u32, parts: &[ShapePart]) {
         let mut known: BTreeMap<(u32, u32, [u64; 2]), Option<u32>> = BTreeMap::new();
         let first = self.parts.len() as u32;
         let mut points = Vec::new();

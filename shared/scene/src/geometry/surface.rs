@@ -169,7 +169,9 @@ impl Part {
                 }
             }
             Self::Tank { .. } => {}
-            Self::Polygon(edges) => edges.all.iter().for_each(|edge| parts(edge.from, edge.to, spacing, visit)),
+            Self::Polygon(edges) => {
+                edges.all.iter().for_each(|edge| parts(edge.from, edge.to, spacing, visit))
+            }
         }
     }
 

@@ -1,0 +1,112 @@
+//! Remarks on what touches: overlaps at the start, and pairs of solids of which the scene says nothing.
+
+use halfstep_scene::geometry::Surface;
+use halfstep_scene::{Geometry, Phase, Scene, Shape};
+
+/// Part of the spacing that surfaces may lie in each other.
+const OVERLAP: f64 = 1e-3;
+
+/// Copies of a shape.
+fn copies(shape: &Shape) -> Vec<Option<u32>> {
+    match &shape.geometry {
+        Geometry::Moved(moved) => moved.copies().map(Some).collect(),
+        _ => vec![None],
+    }
+}
+
+/// A copy of a shape that touches others: its outline's points and its surface.
+struct Toucher<'a> {
+    shape: &'a Shape,
+    copy: Option<u32>,
+    points: Vec<[f64; 2]>,
+    surface: Surface,
+}
+
+impl Toucher<'_> {
+    /// How deep points of its outline are in another shape, m.
+    fn depth_in(&self, other: &Self) -> f64 {
+        let mut deepest = 0.0_f64;
+        for point in &self.points {
+            other.surface.nearest(*point, &mut |distance, _| deepest = deepest.max(-distance));
+        }
+        deepest
+    }
+}
+
+/// Rigid bodies, and solids of which two touch, that lie in each other or in walls at the start: contact throws them
+/// apart.
+pub(super) fn overlaps(scene: &Scene, all: &mut Vec<String>) {
+    if scene.dimension != 2 || scene.solids.is_empty() {
+        return;
+    }
+    let touches =
+        |shape: &&Shape| shape.phase == Phase::Solid || (shape.phase == Phase::Wall && shape.contact);
+    let touchers: Vec<Toucher<'_>> = scene
+        .shapes
+        .iter()
+        .filter(touches)
+        .flat_map(|shape| {
+            copies(shape).into_iter().map(move |copy| {
+                let surface = Surface::new(&shape.geometry, copy);
+                let mut points = Vec::new();
+                surface.outline(scene.spacing(shape), &mut |_, [from, _]| points.push(from));
+                Toucher { shape, copy, points, surface }
+            })
+        })
+        .collect();
+    let rigid = |shape: &Shape| shape.solid.is_some_and(|k| scene.solids[k].rigid().is_some());
+    let pairs = scene.contacts();
+    let contact = |a: &Toucher<'_>, b: &Toucher<'_>| match (a.shape.solid, b.shape.solid) {
+        (Some(k), Some(l)) if k != l => pairs.iter().any(|pair| pair.solids == [k.min(l), k.max(l)]),
+        (Some(_), Some(_)) => {
+            let one_body = a.shape.body() == b.shape.body() && (!a.shape.body.is_empty() || a.copy == b.copy);
+            rigid(a.shape) && !one_body && !tied(scene, a.shape, b.shape)
+        }
+        (Some(_), None) => rigid(a.shape) && !tied(scene, a.shape, b.shape),
+        (None, Some(_)) => rigid(b.shape) && !tied(scene, b.shape, a.shape),
+        (None, None) => false,
+    };
+    for (k, a) in touchers.iter().enumerate() {
+        for b in touchers[k + 1..].iter().filter(|b| contact(a, b)) {
+            let depth = a.depth_in(b).max(b.depth_in(a));
+            let dx = scene.resolution;
+            if depth > OVERLAP * dx {
+                let text = format!(
+                    "`{}` and `{}` lie {:.3} m in each other at the start: contact throws them apart",
+                    a.shape.name, b.shape.name, depth
+                );
+                if !all.contains(&text) {
+                    all.push(text);
+                }
+            }
+        }
+    }
+}
+
+/// A joint ties two shapes' bodies, or a motion prescribes where one is beside a wall: they do not touch.
+fn tied(scene: &Scene, a: &Shape, b: &Shape) -> bool {
+    let Some(keys) = a.solid.and_then(|k| scene.solids[k].rigid()) else { return false };
+    let names =
+        |shape: &Shape| if shape.phase == Phase::Wall { shape.name.clone() } else { shape.body().to_owned() };
+    let (a_name, b_name) = (names(a), names(b));
+    let ties =
+        |body: &str, with: &str| (body == a_name && with == b_name) || (body == b_name && with == a_name);
+    let moved = |shape: &Shape| shape.motion.is_some() || shape.phase == Phase::Wall;
+    (moved(a) && moved(b)) || keys.joints.iter().any(|joint| joint.holds() && ties(&joint.body, &joint.with))
+}
+
+/// Two solids touch as no table says, although their own bodies rub.
+pub(super) fn unsaid(scene: &Scene, all: &mut Vec<String>) {
+    let friction = |k: usize| scene.solids[k].rigid().map_or(0.0, |keys| keys.contact.friction);
+    for contact in scene.contacts() {
+        let said = scene.pair_contacts.iter().any(|other| other.solids == contact.solids);
+        let [a, b] = contact.solids;
+        if !said && friction(a).max(friction(b)) > 0.0 {
+            let [a, b] = [a, b].map(|k| &scene.solids[k].name);
+            all.push(format!(
+                "`{a}` and `{b}` touch without friction: their own `contact` is about bodies of one solid ([[contact]] \
+                 with solids = [\"{a}\", \"{b}\"] says how the two touch)"
+            ));
+        }
+    }
+}

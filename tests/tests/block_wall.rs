@@ -1,0 +1,74 @@
+//! A wall of loose blocks stands by itself, and a dam break knocks it over.
+
+use halfstep_tests::run::{repository, scene_at};
+use halfstep_tests::scene;
+
+/// Two rows of particles a block.
+const COARSE: f64 = 0.02;
+
+/// The scene's text without its water.
+fn dry() -> String {
+    let text = std::fs::read_to_string(repository().join("scenes/block-wall.toml")).expect("a scene");
+    let section = |heading: &str| {
+        let from = text.find(heading).expect("a section");
+        let end = text[from + 1..].find("\n[").map_or(text.len(), |end| from + 1 + end + 1);
+        text[from..end].to_owned()
+    };
+    let water = section("[[shape]]\nname = \"water\"");
+    text.replace(&section("[fluid]"), "").replace(&water, "")
+}
+
+#[test]
+fn without_water_the_wall_stands() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("dry.toml");
+    std::fs::write(&path, dry()).expect("a scene");
+    let run = scene_at(&path).set("resolution", COARSE).set("time_step", 5e-4).until(0.25).run();
+    let (x, y, turn) =
+        (run.curve("top.x").at(0.25), run.curve("top.y").at(0.25), run.curve("turn.angle").at(0.25));
+    println!("top at {x}, {y}, turned by {turn:.1e}, {} steps", run.report.steps);
+    assert_eq!(run.report.steps, 500);
+    assert!((x - 0.62).abs() < 1e-6 && turn.abs() < 1e-6);
+    assert!((y - 0.18).abs() < 1e-5, "{y}");
+}
+
+#[test]
+fn a_dam_break_knocks_it_over() {
+    let run = scene("block-wall").set("resolution", COARSE).until(0.6).run();
+    let top = run.curve("top.x").at(0.15);
+    assert!((top - 0.62).abs() < 1e-6, "it stands until the wave is there: {top}");
+    let (foot, height) = (run.curve("foot.x").at(0.6), run.curve("top.y").at(0.6));
+    println!("foot at {foot:.3} m, top at a height of {height:.3} m, {:.1} s", run.report.wall_seconds);
+    assert!(foot > 0.7, "the wave takes the lowest block along: {foot}");
+    assert!(height < 0.12, "what lay on it comes down: {height}");
+    let balance = run.report.audit.action_reaction.expect("fluid and solid");
+    assert!(balance < 1e-12, "{balance}");
+}
+
+/// Ten blocks, each on the one before, for 1e5 steps.
+#[test]
+#[ignore = "1e5 steps: make validate"]
+fn a_stack_of_ten_stays_for_a_hundred_thousand_steps() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("stack.toml");
+    let block = |k: usize| {
+        let (from, to) = (0.04 * k as f64, 0.04 * (k + 1) as f64);
+        format!(
+            "[[shape]]\nname = \"b{k}\"\nphase = \"solid\"\nbody = \"b{k}\"\n\
+             box = {{ min = [0.0, {from}], max = [0.04, {to}] }}\n"
+        )
+    };
+    let text = format!(
+        "resolution = 0.02\nend_time = 10.0\ntime_step = 1e-4\n[solid]\nmodel = \"rigid\"\ndensity = 1500.0\n\
+         contact = {{ friction = 0.5 }}\n[[shape]]\nname = \"floor\"\nphase = \"wall\"\n\
+         box = {{ min = [-0.5, -0.1], max = [0.5, 0.0] }}\n{}[[probe]]\nname = \"top\"\n\
+         kind = \"body-position\"\nbody = \"b9\"\n",
+        (0..10).map(block).collect::<String>()
+    );
+    std::fs::write(&path, text).expect("a scene");
+    let run = scene_at(&path).set("output.probe_interval", 0.1).run();
+    let (x, y) = (run.curve("top.x").at(10.0), run.curve("top.y").at(10.0));
+    println!("top at {x}, {y}, {} steps, {:.1} s", run.report.steps, run.report.wall_seconds);
+    assert_eq!(run.report.steps, 100_000);
+    assert!((x - 0.02).abs() < 1e-6 && (y - 0.38).abs() < 4e-5, "{x} {y}");
+}
