@@ -44,7 +44,12 @@ pub(crate) fn advice(diverged: &Diverged, scene: &Scene, clock: &Clock, external
         }
         (TimeStep::Auto, _) => format!("lower numerics.cfl (now {})", scene.numerics.cfl),
     };
+    let breaks = scene.solids.iter().any(|solid| solid.name == name.as_str() && solid.fracture().is_some());
     match (diverged.quantity, phase) {
+        (Quantity::Density, Phase::Solid) if breaks => format!(
+            "it breaks ({section}.fracture): where debris is squeezed between others a smaller step seldom helps; look \
+             at the last frames, and raise {section}.fracture.energy or {section}.youngs_modulus; or {change}"
+        ),
         (Quantity::TimeStep, _) => {
             "the time steps that the phases allow became too small to reach end_time: \
             look at the last frames for what goes wrong before"
@@ -70,7 +75,7 @@ pub(crate) fn advice(diverged: &Diverged, scene: &Scene, clock: &Clock, external
 mod tests {
     use super::*;
     use halfstep_coupling::clock::Limit;
-    use halfstep_scene as scene;
+    use halfstep_scene::{self as scene, Fracture, ModelKeys};
     use halfstep_wire::half_step::Stage;
     use std::path::Path;
 
@@ -136,5 +141,9 @@ mod tests {
         assert!(advised(&scene, 1e-5, 1e-5, &hot).contains("fluid.artificial_viscosity.linear"));
         let dense = Diverged { quantity: Quantity::Density, ..DIVERGED };
         assert!(advised(&scene, 1e-5, 1e-5, &dense).contains("solid.youngs_modulus"));
+        let mut brittle = scene;
+        let ModelKeys::TotalLagrangian(keys) = &mut brittle.solids[0].model else { panic!("a plate") };
+        keys.fracture = Some(Fracture { strength: 1e5, energy: 10.0 });
+        assert!(advised(&brittle, 1e-5, 1e-5, &dense).contains("raise solid.fracture.energy"));
     }
 }

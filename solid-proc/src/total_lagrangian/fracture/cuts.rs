@@ -13,10 +13,20 @@ const STRETCHED: f64 = 0.5;
 /// Smallest determinant of the moment matrix with which a particle that was cut off from neighbours keeps a
 /// deformation gradient, over that of a corner of the lattice: there it is 1/4 of that inside, in space 1/8.
 const SMALLEST: f64 = 0.5;
+/// Largest volume of a damaged particle over its reference volume, and of the latter over the former: half of what ends
+/// a run. A crack that opens is cut at less than twice its volume.
+const VOLUME_CHANGE: f64 = 5.0;
 /// Longest pair over dx whose cells share a face.
 const STRAIGHT: f64 = 1.05;
 
 impl<const D: usize> TotalLagrangian<D> {
+    /// A particle is damaged, and its volume has changed more than any law means.
+    pub(super) fn is_crushed(&self, slot: usize) -> bool {
+        let Some(fracture) = self.fracture.as_ref().filter(|_| self.has_strain(slot)) else { return false };
+        let sensible = (1.0 / VOLUME_CHANGE..=VOLUME_CHANGE).contains(&self.volume_ratio[slot]);
+        fracture.strain[slot] > 0.0 && !sensible
+    }
+
     /// Pairs that are to be cut in the present state, by their slots, ascending.
     fn torn(&self, fracture: &Fracture<D>) -> Vec<[usize; 2]> {
         let mut torn = Vec::new();
@@ -38,7 +48,11 @@ impl<const D: usize> TotalLagrangian<D> {
                 }
             }
         }
+        for &i in &fracture.crushed {
+            torn.extend(self.pairs.neighbours(i).map(|(j, _)| [i.min(j), i.max(j)]));
+        }
         torn.sort_unstable();
+        torn.dedup();
         torn
     }
 
@@ -46,10 +60,19 @@ impl<const D: usize> TotalLagrangian<D> {
     pub(in crate::total_lagrangian) fn tear(&mut self) {
         let Some(fracture) = self.fracture.as_ref().filter(|fracture| fracture.accepted) else { return };
         let torn = self.torn(fracture);
+        self.forget_crushed();
         if torn.is_empty() {
             return;
         }
         self.sever(torn);
+        // What the state without these pairs crushes is found once more in the next sub-step.
+        self.forget_crushed();
+    }
+
+    fn forget_crushed(&mut self) {
+        if let Some(fracture) = &mut self.fracture {
+            fracture.crushed.clear();
+        }
     }
 
     /// Cuts these pairs in the present state, which has been evaluated, and evaluates what is left.

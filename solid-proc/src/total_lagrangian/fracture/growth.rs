@@ -43,6 +43,10 @@ impl<const D: usize> TotalLagrangian<D> {
 
     /// Damage grows in these particles, ascending, whose stresses are those of the state.
     pub(in crate::total_lagrangian) fn grow(&mut self, candidates: &[usize]) {
+        let crushed: Vec<usize> = candidates.iter().copied().filter(|&slot| self.is_crushed(slot)).collect();
+        if let Some(fracture) = &mut self.fracture {
+            fracture.crushed = crushed;
+        }
         let Some(fracture) = &self.fracture else { return };
         let mut grown = Vec::new();
         for &slot in candidates.iter().filter(|&&slot| self.has_strain(slot)) {

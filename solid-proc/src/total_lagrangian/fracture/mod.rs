@@ -12,6 +12,9 @@
 //! So force stays the derivative of an energy. What damage and cuts take of the energy of the present state is booked
 //! when they happen.
 //!
+//! A damaged particle that is squeezed to a fifth of its volume, or torn to five times of it, is crushed: it loses all
+//! its pairs, and goes on as a single particle before it ends the run.
+//!
 //! Both change only at the ends of sub-steps of a step's second stage, which is not taken back, one particle after the
 //! other: the first stage computes with what is damaged and cut at n.
 
@@ -64,6 +67,8 @@ pub(super) struct Fracture<const D: usize> {
     last: Vec<Matrix<D>>,
     /// Slots with damage, ascending.
     damaged: Vec<usize>,
+    /// Slots that are crushed in the present state, ascending: they lose all their pairs at the end of the sub-step.
+    crushed: Vec<usize>,
     /// Pairs that are cut, in the order of the cuts.
     faces: Vec<Face>,
     /// Energy taken, J (2D: J/m).
@@ -98,6 +103,7 @@ impl<const D: usize> Fracture<D> {
             damage: Vec::new(),
             last: Vec::new(),
             damaged: Vec::new(),
+            crushed: Vec::new(),
             faces: Vec::new(),
             taken: 0.0,
             bodies: body.iter().max().map_or(0, |last| last + 1),
@@ -110,6 +116,7 @@ impl<const D: usize> Fracture<D> {
     /// What happens now is not taken back, or may be.
     pub(super) fn accept(&mut self, accepted: bool) {
         self.accepted = accepted;
+        self.crushed.clear();
     }
 
     /// What happens now is not taken back.

@@ -419,3 +419,30 @@ fn a_crushed_root_gives_no_energy() {
     println!("{most} J taken, rest {}", run.rest());
     assert!(most > 1.0 && run.rest().abs() < 0.01 * (run.start + run.given.abs()), "{most} {}", run.rest());
 }
+
+#[test]
+fn debris_without_a_sensible_volume_becomes_a_single_particle() {
+    let mut run = Run::<2>::of(&halves(0.0));
+    let slot = run.model.slot_of[5] as usize;
+    let neighbours: Vec<usize> = run.model.pairs.neighbours(slot).map(|(j, _)| j).collect();
+    run.model.volume_ratio[slot] = 0.19;
+    assert!(!run.model.is_crushed(slot), "no debris: its own bound ends the run");
+    run.model.fracture.as_mut().unwrap().strain[slot] = 1e-3;
+    assert!(run.model.is_crushed(slot));
+    run.model.volume_ratio[slot] = 5.1;
+    assert!(run.model.is_crushed(slot));
+    run.model.volume_ratio[slot] = 1.9;
+    assert!(!run.model.is_crushed(slot), "a crack that opens");
+    let before = run.momentum();
+    let fracture = run.model.fracture.as_mut().unwrap();
+    fracture.accept(true);
+    fracture.crushed = vec![slot];
+    run.model.tear();
+    let fracture = run.model.fracture.as_ref().unwrap();
+    assert!(fracture.crushed.is_empty() && fracture.faces.len() == neighbours.len());
+    let summary = run.model.summary();
+    assert_eq!((summary.bodies, summary.loose), (2, 1));
+    run_on(&mut run, 100);
+    let after = run.momentum();
+    assert!((0..2).all(|d| (after[d] - before[d]).abs() < 1e-13), "{before:?} {after:?}");
+}
