@@ -21,6 +21,7 @@ price() {
 }
 
 all="oscillating-plate hydrostatic-tank taylor-green standing-wave dam-break hydrostatic-plate elastic-gate"
+all="$all breaking-wall"
 wanted=${*:-$all}
 price oscillating-plate --until 0.4 --set resolution=0.004 \
     --vary resolution=0.002,0.0028571428571428571,0.0066666666666666667 \
@@ -45,6 +46,8 @@ price elastic-gate --until 0.25 --set resolution=0.00166666666666666667 --vary r
     --vary numerics.cfl=0.2,0.6 \
     --vary numerics.kernel=wendland-c2 --vary fluid.density_diffusion=simple \
     --vary fluid.artificial_viscosity.linear=0.02
+price breaking-wall --until 0.2 --set resolution=0.004 --vary resolution=0.0024,0.003 --vary numerics.solid_cfl=0.3 \
+    --vary numerics.cfl=0.2
 
 {
     cat <<'HEAD'

@@ -23,6 +23,9 @@ pub enum Unmeasured {
     /// A value is NaN or infinite.
     #[error("meets a value that is no number")]
     NotFinite,
+    /// The curve never exceeds the level.
+    #[error("never exceeds its level")]
+    Below,
     /// The curve does not pass the level often enough.
     #[error("passes its level {0} times, a period needs two")]
     NoOscillation(usize),
@@ -88,12 +91,21 @@ fn number(metric: &Metric, curve: &Curve) -> Result<f64, Unmeasured> {
     match metric.kind {
         MetricKind::Peak => peak().map(|p| p[1]),
         MetricKind::PeakTime => peak().map(|p| p[0]),
+        MetricKind::FirstAbove { level } => first_above(&part, level),
         MetricKind::Mean => Ok(mean(&part)),
         MetricKind::Period { level } => period(&part, level),
         MetricKind::Decay { level } => decay(&part, level),
         // A period and a decay need more than a window; the callers compute them.
         MetricKind::Value { .. } | MetricKind::Rms => Err(Unmeasured::Empty),
     }
+}
+
+/// Linear between points; a curve that begins above the level does so at its first point.
+fn first_above(curve: &Curve, level: f64) -> Result<f64, Unmeasured> {
+    let later = curve.iter().position(|p| p[1] > level).ok_or(Unmeasured::Below)?;
+    let [t, v] = curve[later];
+    let Some([before, low]) = later.checked_sub(1).map(|k| curve[k]) else { return Ok(t) };
+    Ok(before + (t - before) * (level - low) / (v - low))
 }
 
 /// The points from `from` to `to`. A run's last row may lie a step before the time that is asked for.
@@ -241,6 +253,8 @@ mod tests {
     fn values_and_means_are_those_of_the_line_between_points() {
         let line = vec![[0.0, 1.0], [1.0, 3.0], [3.0, 3.0]];
         assert_eq!(number(&metric(MetricKind::Value { at: 0.25 }), &line), Ok(1.5));
+        let above = |level| number(&metric(MetricKind::FirstAbove { level }), &line);
+        assert_eq!([above(0.5), above(1.5), above(3.0)], [Ok(0.0), Ok(0.25), Err(Unmeasured::Below)]);
         let late = number(&metric(MetricKind::Value { at: 3.5 }), &line);
         assert_eq!(late, Err(Unmeasured::EndsEarly { needed: 3.5, end: 3.0 }));
         // (2 * 1 + 3 * 2) / 3

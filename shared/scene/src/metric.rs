@@ -43,6 +43,11 @@ pub enum MetricKind {
     },
     /// Mean over time.
     Mean,
+    /// Time at which it first exceeds a level, s.
+    FirstAbove {
+        /// The level.
+        level: f64,
+    },
     /// Rate of exponential decay toward a level, 1/s.
     Decay {
         /// The level.
@@ -73,7 +78,7 @@ impl MetricKind {
     pub fn unit<'u>(&self, of_curve: &'u str) -> &'u str {
         match self {
             Self::Peak | Self::Value { .. } | Self::Mean => of_curve,
-            Self::PeakTime | Self::Period { .. } => "s",
+            Self::PeakTime | Self::FirstAbove { .. } | Self::Period { .. } => "s",
             Self::Decay { .. } => "1/s",
             Self::Rms => "",
         }

@@ -9,6 +9,7 @@ use super::*;
 enum Kind {
     Peak,
     PeakTime,
+    FirstAbove,
     Rms,
     Value,
     Period,
@@ -16,9 +17,10 @@ enum Kind {
     Decay,
 }
 
-const KINDS: [(&str, Kind); 7] = [
+const KINDS: [(&str, Kind); 8] = [
     ("peak", Kind::Peak),
     ("peak-time", Kind::PeakTime),
+    ("first-above", Kind::FirstAbove),
     ("rms", Kind::Rms),
     ("value", Kind::Value),
     ("period", Kind::Period),
@@ -41,6 +43,7 @@ pub(super) fn metric(section: Section<'_>) -> Option<Metric> {
     let read = match kind {
         Kind::Peak => MetricKind::Peak,
         Kind::PeakTime => MetricKind::PeakTime,
+        Kind::FirstAbove => MetricKind::FirstAbove { level: level() },
         Kind::Rms => MetricKind::Rms,
         Kind::Value => MetricKind::Value { at: section.number("at", None, TIME) },
         Kind::Period => MetricKind::Period { level: level() },
