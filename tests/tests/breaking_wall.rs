@@ -1,5 +1,6 @@
-//! `scenes/breaking-wall.toml`: water breaks a brittle wall.
+//! `scenes/breaking-wall.toml`, `scenes/tsunami-wall.toml`: water breaks brittle walls.
 
+use halfstep_output::checkpoint::{FOLDERS, Manifest};
 use halfstep_output::run_json::RunStatus;
 use halfstep_tests::run::scene_at;
 use halfstep_tests::scene;
@@ -107,4 +108,37 @@ fn slowly_rising_water_breaks_a_wall_at_the_depth_of_beam_theory() {
     let broken = at(run.curve("opened.area").first_above(0.5 * thickness).unwrap());
     assert!((first - 1.0).abs() < 0.05, "first damage at {first} of the depth");
     assert!((broken - 1.0).abs() < 0.1, "broken at {broken} of the depth");
+}
+
+/// Until the first wall has broken and lies on the second.
+fn two_walls() -> halfstep_tests::RunBuilder {
+    scene("tsunami-wall").set("resolution", 0.01).set("output.probe_interval", 0.002)
+}
+
+#[test]
+fn the_first_of_two_walls_breaks_and_the_run_is_killed_and_goes_on() {
+    let whole = two_walls().until(0.3).in_process().run();
+    assert!(whole.curve("crack.energy").peak().1 > 0.0 && whole.curve("opened.area").peak().1 > 0.0);
+    let folder = tempfile::tempdir().unwrap();
+    let dir = folder.path().join("run");
+    let short =
+        two_walls().set("output.checkpoint_interval", 0.02).until(0.25).out(&dir).in_process().start();
+    let newest = || {
+        let read = |folder: &&str| Manifest::read(&dir.join(folder)).ok().flatten();
+        FOLDERS.iter().filter_map(read).map(|manifest| manifest.time).fold(0.0, f64::max)
+    };
+    // It has begun to crack.
+    let mut running = short;
+    while newest() < 0.23 {
+        assert!(running.is_alive(), "{:?}", running.wait());
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    // SAFETY: the launcher is a child of this process that has not been waited for.
+    unsafe { libc::kill(running.pid() as i32, libc::SIGKILL) };
+    running.wait();
+    let resumed = scene("tsunami-wall").resume(&dir).until(0.3).in_process().run();
+    assert!(resumed.report.resumed[0].time > 0.2, "{:?}", resumed.report.resumed);
+    assert_eq!(resumed.state_hash(), whole.state_hash());
+    let cracks = |run: &halfstep_tests::run::Finished| run.curve("opened.area").values.clone();
+    assert_eq!(cracks(&resumed), cracks(&whole));
 }

@@ -38,6 +38,7 @@ fn every_shipped_scene_is_explained_and_its_shares_are_the_whole() {
     let coarse: [(&str, &[&str]); 18] = [
         ("breaking-wall", &["resolution=0.004"]),
         ("colliding-rings", &["resolution=0.002"]),
+        ("crack-branching", &["resolution=0.0006666666666666667"]),
         ("dam-break-plate", &["resolution=0.004"]),
         ("dam-break", &["resolution=0.0028575"]),
         ("elastic-gate", &["resolution=0.0025"]),
@@ -46,12 +47,14 @@ fn every_shipped_scene_is_explained_and_its_shares_are_the_whole() {
         ("gate-lift", &["resolution=0.005", "shape.plate.box.max=[0.61, 0.09]"]),
         ("hydrostatic-plate", &["resolution=0.025"]),
         ("hydrostatic-tank", &[]),
+        ("kalthoff-winkler", &["resolution=0.0025"]),
         ("oscillating-plate", &["resolution=0.004"]),
         ("rolling-tank", &[]),
         ("solitary-wave-wall", &["resolution=0.02"]),
         ("spring-block", &[]),
         ("standing-wave", &["resolution=0.025"]),
         ("taylor-green", &["resolution=0.05"]),
+        ("tsunami-wall", &["resolution=0.01"]),
         ("two-plates", &[]),
         ("wave-paddle", &["resolution=0.02"]),
     ];
