@@ -9,7 +9,7 @@ const CRACKED: f64 = 0.95;
 
 /// Instants, s, and where particles were at the start that are part of a crack then, m.
 fn cracks(run: RunBuilder) -> Vec<(f64, Vec<[f64; 2]>)> {
-    let frames = run.run().frames("solid");
+    let frames = run.run().outcome.frames("solid");
     let mut start = vec![[0.0; 2]; frames[0].len()];
     for (id, point) in frames[0].id.iter().zip(&frames[0].points) {
         start[*id as usize] = [f64::from(point[0]), f64::from(point[1])];
