@@ -34,7 +34,8 @@ pub(super) fn waves(table: &Section<'_>, around: &Around<'_>) -> Option<(Vec<Par
         return None;
     };
     let g = -around.gravity[1];
-    if !(g > 0.0 && around.gravity[0] == 0.0) && !table.report.has("gravity") {
+    let down = g > 0.0 && around.gravity[0] == 0.0;
+    if !down && !table.report.has("gravity") {
         table.whole("needs a `gravity` straight down, along -y: it gives the waves their length");
     }
     let depth = table.number("depth", None, LENGTH.why("it is the depth of the water at rest, m"));

@@ -237,7 +237,7 @@ fn water_that_falls_too_fast_for_its_sound_speed() {
     assert_eq!(
         found,
         [
-            "the fluid can fall to 1.40 m/s, Mach 0.20: it is compressed by about 4 %; fluid.sound_speed = 15 keeps it \
+            "the fluid can come to 1.40 m/s, Mach 0.20: it is compressed by about 4 %; fluid.sound_speed = 15 keeps it \
           below 1 %"
         ]
     );
@@ -303,4 +303,71 @@ fn a_wall_thinner_than_the_support() {
     );
     let turned = weir.replace("max = [0.06, 0.08] }", "max = [0.06, 0.08] }\nrotate = { angle = 30.0 }");
     assert!(plain(&[TANK, &turned, WATER, PLATE]).iter().any(|text| text.contains("`weir` is about 2.0 dx")));
+}
+
+/// A paddle beside the water, and the tank open toward it.
+fn with_paddle(motion: &str, more: &str) -> Vec<String> {
+    let open = TANK.replace("[\"top\"]", "[\"left\", \"top\"]");
+    let paddle = format!(
+        "[[shape]]\nname = \"paddle\"\nphase = \"wall\"\nbox = {{ min = [-0.02, 0.0], max = [0.0, 0.2] }}\n\
+         motion = {motion}\n{more}"
+    );
+    plain(&[&open, WATER, PLATE, &paddle])
+}
+
+#[test]
+fn a_paddle_for_water_of_another_depth() {
+    let wave = |depth: f64| {
+        let motion = format!("{{ wave = \"regular\", height = 0.005, period = 0.5, depth = {depth} }}");
+        with_paddle(&motion, "")
+    };
+    assert_eq!(wave(0.1), [""; 0]);
+    assert_eq!(
+        wave(0.05),
+        [
+            "`paddle` makes waves for a depth of 0.05 m, and the water is 0.1 m deep: they have another height and length"
+        ]
+    );
+}
+
+#[test]
+fn a_run_that_ends_before_its_wave() {
+    // Goring's piston moves for 2 (5 + H / d) / (kappa c): kappa = sqrt(0.75 * 0.001 / 0.001), c = sqrt(9.81 * 0.101).
+    let found = with_paddle("{ wave = \"solitary\", height = 0.001, depth = 0.1, start = 0.1 }", "");
+    assert_eq!(found, ["`paddle` moves until 11.724 s for its wave, and the run ends at 1 s"]);
+}
+
+#[test]
+fn a_wall_that_goes_through_another_one() {
+    let stop =
+        "[[shape]]\nname = \"stop\"\nphase = \"wall\"\nbox = { min = [-0.12, 0.0], max = [-0.1, 0.2] }\n";
+    let found = with_paddle("{ velocity = [-0.1, 0.0] }", stop);
+    // More than half a spacing, 2.5 mm, after 80 mm: 0.825 s.
+    assert!(
+        found.iter().any(|r| r.starts_with("`paddle` goes through `stop` from about 0.826 s on")),
+        "{found:?}"
+    );
+    assert_eq!(with_paddle("{ velocity = [-0.1, 0.0], end = 0.5 }", stop), [""; 0]);
+    // What slides along a wall meets nothing.
+    assert_eq!(
+        with_paddle("{ velocity = [0.0, 0.1] }", &stop.replace("-0.12", "-0.04").replace("-0.1,", "-0.02,")),
+        [""; 0]
+    );
+}
+
+#[test]
+fn a_wall_that_slides_along_the_fluid_does_not_push_it() {
+    // A gate at the water's right side, inside the tank, faster than a seventh of the sound speed.
+    let text = |velocity: &str| {
+        let gate = format!(
+            "[[shape]]\nname = \"gate\"\nphase = \"wall\"\nbox = {{ min = [0.1, 0.0], max = [0.12, 0.3] }}\n\
+             motion = {{ velocity = {velocity} }}\n"
+        );
+        let water = "resolution = 0.005\nend_time = 1.0\n[fluid]\ndensity = 1000.0\nsound_speed = 14.0\n";
+        let text = format!("{water}{gate}{TANK}{WATER}");
+        remarks(&parse(&text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}")))
+    };
+    assert_eq!(text("[0.0, 4.0]"), [""; 0]);
+    let pushed = text("[-4.0, 0.0]");
+    assert!(pushed.iter().any(|r| r.contains("can come to 4.00 m/s")), "{pushed:?}");
 }

@@ -42,7 +42,7 @@ pub(super) fn expected_speed(scene: &Scene, all: &mut Vec<String>) {
     let mach = fastest / fluid.sound_speed;
     if mach > HIGHEST_MACH {
         all.push(format!(
-            "the fluid can fall to {fastest:.2} m/s, Mach {mach:.2}: it is compressed by about {:.0} %; \
+            "the fluid can come to {fastest:.2} m/s, Mach {mach:.2}: it is compressed by about {:.0} %; \
              fluid.sound_speed = {:.0} keeps it below 1 %",
             100.0 * mach * mach,
             (10.0 * fastest).ceil()
