@@ -53,6 +53,11 @@ pub trait FluidEffect<const D: usize>: Send + Sync + Sized + 'static {
     fn on_particle(&self, _position: &[f64; D], _velocity: &[f64; D]) -> [f64; D] {
         [0.0; D]
     }
+    /// Velocity of each slot beside its own, at which the effect moves particles from n to n + 1, m/s; after the
+    /// second stage's [`FluidEffect::prepare`].
+    fn drift(&self) -> Option<&[[f64; D]]> {
+        None
+    }
     /// Bytes allocated for its columns.
     fn bytes(&self) -> usize {
         0
@@ -76,8 +81,8 @@ pub struct Neighbourhood<'a, K, const D: usize> {
     pub fluid: &'a PairParticles<D>,
     /// The fluid around the fluid.
     pub list: &'a ClusterList,
-    /// What the walls show, and the walls around the fluid.
-    pub walls: Option<(&'a PairParticles<D>, &'a ClusterList)>,
+    /// The walls, with what they show, and the walls around the fluid.
+    pub walls: Option<(&'a Walls<D>, &'a ClusterList)>,
 }
 
 /// Pairs that a pass over a list evaluates.
@@ -108,6 +113,8 @@ pub trait Effects<const D: usize>: Send + Sync {
     }
     /// The shares of a pair of a fluid and a wall particle.
     fn at_walls(&self) -> Self::AtWalls<'_>;
+    /// See [`FluidEffect::drift`]; of the first effect that has one.
+    fn drift(&self) -> Option<&[[f64; D]]>;
     /// Adds name and seconds of the own pass, in the mean of both stages, of each effect with a share of a pair of
     /// fluid particles.
     fn measure<K: Kernel<D>>(&mut self, around: &Neighbourhood<'_, K, D>, own: &mut Vec<(&'static str, f64)>);
@@ -134,6 +141,9 @@ impl<const D: usize> Effects<D> for () {
     fn pairs_without(&self, _: &str) {}
     fn at_walls(&self) {}
     fn on_particles(&self, _: &mut dyn FnMut(&str, OnParticle<'_, D>)) {}
+    fn drift(&self) -> Option<&[[f64; D]]> {
+        None
+    }
     fn measure<K: Kernel<D>>(&mut self, _: &Neighbourhood<'_, K, D>, _: &mut Vec<(&'static str, f64)>) {}
     fn measure_pairs<K: Kernel<D>>(&self, _: &mut Measuring<'_, K, D>) {}
     fn measure_walls<K: Kernel<D>>(&self, _: &mut Measuring<'_, K, D>) {}
@@ -169,12 +179,17 @@ impl<const D: usize, E: FluidEffect<D>, R: Effects<D>> Effects<D> for (Option<E>
     fn at_walls(&self) -> Self::AtWalls<'_> {
         (self.0.as_ref().and_then(E::at_wall), self.1.at_walls())
     }
+    fn drift(&self) -> Option<&[[f64; D]]> {
+        self.0.as_ref().and_then(E::drift).or_else(|| self.1.drift())
+    }
     fn measure<K: Kernel<D>>(
         &mut self,
         around: &Neighbourhood<'_, K, D>,
         own: &mut Vec<(&'static str, f64)>,
     ) {
-        if let Some(effect) = self.0.as_mut().filter(|effect| effect.pair().is_some()) {
+        if let Some(effect) =
+            self.0.as_mut().filter(|effect| effect.pair().is_some() || effect.drift().is_some())
+        {
             let seconds =
                 [Stage::First, Stage::Second].map(|stage| fastest(|| _ = effect.prepare(stage, around)));
             own.push((E::NAME, 0.5 * (seconds[0] + seconds[1])));

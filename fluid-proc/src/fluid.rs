@@ -290,6 +290,9 @@ impl<const D: usize, X: FluidEffect<D>> Role for Fluid<D, X> {
         }
         if half_step.stage == Stage::Second {
             self.measure_cross_viscosity(forces);
+            if let Some(drift) = self.effects.drift() {
+                midpoint::shift(&mut self.columns, drift, half_step.dt);
+            }
         }
         self.stage = half_step.next().stage;
         let conditions = Conditions::new(half_step, self.gravity, &self.state, &self.bounds);

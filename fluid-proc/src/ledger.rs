@@ -167,6 +167,12 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
             };
             powers[EnergyPart::of_effect(name) as usize] += fluid.mass * real.map(power).sum::<f64>();
         });
+        if let Some(drift) = self.effects.drift() {
+            let real = drift.iter().zip(id).filter(|(_, id)| **id != PADDING);
+            let fall = |velocity: &[f64; D]| (0..D).map(|d| self.gravity[d] * velocity[d]).sum::<f64>();
+            powers[EnergyPart::ParticleShifting as usize] -=
+                fluid.mass * real.map(|(velocity, _)| fall(velocity)).sum::<f64>();
+        }
         let Some(walls) = &self.walls else { return };
         let (sources, list) = (&walls.shown, &self.wall_list);
         let walls = Some(&walls.own_velocity);

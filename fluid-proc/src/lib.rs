@@ -35,6 +35,10 @@ mod passes;
 mod probe_tests;
 mod probes;
 pub mod rates;
+#[cfg(test)]
+mod separation_tests;
+#[cfg(test)]
+mod shifting_tests;
 mod state;
 #[cfg(test)]
 mod term_tests;

@@ -84,6 +84,15 @@ pub fn advance<const D: usize>(
     walk(part, &conditions)
 }
 
+/// Moves the state at n by a drift, m/s, over a step of length `dt`, s: what is advanced from there is moved along.
+pub fn shift<const D: usize>(columns: &mut Columns<D>, drift: &[[f64; D]], dt: f64) {
+    for d in 0..D {
+        for (x, velocity) in columns.position_n[d].iter_mut().zip(drift) {
+            *x += dt * velocity[d];
+        }
+    }
+}
+
 /// The columns of consecutive slots.
 struct Part<'a, const D: usize> {
     id: &'a [u32],

@@ -35,7 +35,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         kernel: K,
         act: impl FnOnce(&mut List<D, X>, &Neighbourhood<'_, K, D>) -> T,
     ) -> T {
-        let walls = self.walls.as_ref().map(|walls| (&walls.shown, &self.wall_list));
+        let walls = self.walls.as_ref().map(|walls| (walls, &self.wall_list));
         let (fluid, list) = (&self.columns.now, &self.fluid_list);
         act(&mut self.effects, &Neighbourhood { kernel, isa: self.isa, fluid, list, walls })
     }

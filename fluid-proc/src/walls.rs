@@ -121,6 +121,22 @@ impl<const D: usize> Walls<D> {
         self.reverse_all[slot] > 0.0
     }
 
+    /// By how much the velocity that a slot shows is another than that of the water around it, m/s; `None` unless that
+    /// water leaves a wall that does not push.
+    pub fn shown_to_leaving(&self, slot: usize) -> Option<[f64; D]> {
+        let Source { velocity, pressure, .. } = self.shown.sources[slot];
+        // The wall shows v~ reversed, relative to its own velocity: along the normal, or as a whole.
+        let relative: [f64; D] = std::array::from_fn(|d| velocity[d] - self.own_velocity[d][slot]);
+        let along: f64 = (0..D).map(|d| relative[d] * self.normal[d][slot]).sum();
+        let leaves = pressure <= 0.0 && along < 0.0;
+        leaves.then(|| {
+            std::array::from_fn(|d| {
+                let reversed = if self.reverses_all(slot) { relative[d] } else { along * self.normal[d][slot] };
+                2.0 * reversed
+            })
+        })
+    }
+
     /// What the four wall particles at `slot..slot + 4` show, from the sums over the fluid.
     // Inlined, its scalar arithmetic would break up the vectors of the loop before it.
     #[inline(never)]

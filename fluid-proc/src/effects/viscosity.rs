@@ -175,7 +175,7 @@ impl<const D: usize> FluidEffect<D> for Viscosity<D> {
         let finish = |slot, sum: &VelocityGradient<D>| sum.stress(viscosity, fluid.densities(slot));
         let (out, _) = self.stress.0.as_chunks_mut();
         if let Some((walls, list)) = around.walls {
-            let at_walls = GradientLaw { kernel, targets: fluid, sources: walls };
+            let at_walls = GradientLaw { kernel, targets: fluid, sources: &walls.shown };
             pair::pass_both_into(around.isa, (&law, around.list), (&at_walls, list), finish, out);
             evaluations(around.list) + evaluations(list)
         } else {

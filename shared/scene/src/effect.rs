@@ -26,6 +26,10 @@ macro_rules! fluid_effects {
             ThinPlateScreen "thin-plate-screen" thin_plate_screen,
             /// Velocities decay where waves are to be absorbed.
             Beach "beach" beach,
+            /// Particles are moved from where they are close to where they are few.
+            ParticleShifting "particle-shifting" particle_shifting,
+            /// Water that leaves a wall is not thinned out by the velocity that the wall shows.
+            WallSeparation "wall-separation" wall_separation,
         }
     };
 }

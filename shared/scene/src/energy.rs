@@ -37,6 +37,8 @@ parts! {
     Viscosity "viscosity",
     /// Given by the density diffusion.
     DensityDiffusion "density-diffusion",
+    /// Given by the shifting of particles, against gravity.
+    ParticleShifting "particle-shifting",
     /// Given by an effect that is not on the program's list.
     FurtherEffect "further-effect",
     /// Given by the pressure of walls, beside the work of their motion: an error of the walls' extrapolation.
@@ -85,7 +87,7 @@ pub struct EnergyEntry {
 /// Number of parts that are held; they come first.
 pub(crate) const HELD: usize = 3;
 
-const FLUID: [EnergyPart; 15] = {
+const FLUID: [EnergyPart; 16] = {
     use EnergyPart::*;
     [
         Kinetic,
@@ -95,6 +97,7 @@ const FLUID: [EnergyPart; 15] = {
         WallGuard,
         Viscosity,
         DensityDiffusion,
+        ParticleShifting,
         FurtherEffect,
         WallPressure,
         MovingWalls,

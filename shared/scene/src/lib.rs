@@ -145,6 +145,8 @@ pub struct Scene {
 pub enum Preset {
     /// The values, geometry convention and interface of Kayaki's scheme.
     Kayaki,
+    /// What keeps waves and vortices: more neighbours, less artificial viscosity, particles in order.
+    Waves,
 }
 
 /// The choice of the time step.

@@ -50,6 +50,15 @@ impl Defaults {
         };
         match preset {
             None => own,
+            Some(Preset::Waves) => Self {
+                smoothing_ratio: 2.0,
+                fluid_viscosity: ArtificialViscosity { linear: 0.02, ..own.fluid_viscosity },
+                effects: &[
+                    (EffectName::ParticleShifting, Switch::On),
+                    (EffectName::WallSeparation, Switch::On),
+                ],
+                ..own
+            },
             // What is the same as the program's own today is repeated: a preset stays when the defaults move.
             Some(Preset::Kayaki) => Self {
                 dimension,

@@ -32,7 +32,8 @@ pub(crate) const COEFFICIENT: Range = Range::at_least(0.0).up_to(100.0);
 
 pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&str]) -> Draft {
     let top = Section::root(root, report);
-    let preset = top.node("preset").and_then(|n| top.as_choice("preset", n, &[("kayaki", Preset::Kayaki)]));
+    let presets = [("kayaki", Preset::Kayaki), ("waves", Preset::Waves)];
+    let preset = top.node("preset").and_then(|n| top.as_choice("preset", n, &presets));
     let dimension = dimension(&top);
     let defaults = Defaults::of(preset, dimension);
     let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
