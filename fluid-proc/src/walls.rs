@@ -131,7 +131,8 @@ impl<const D: usize> Walls<D> {
         let leaves = pressure <= 0.0 && along < 0.0;
         leaves.then(|| {
             std::array::from_fn(|d| {
-                let reversed = if self.reverses_all(slot) { relative[d] } else { along * self.normal[d][slot] };
+                let reversed =
+                    if self.reverses_all(slot) { relative[d] } else { along * self.normal[d][slot] };
                 2.0 * reversed
             })
         })
