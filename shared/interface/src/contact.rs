@@ -17,7 +17,7 @@
 //! omega² = K (1/m_a + 1/m_b) with the least mass behind a length of both outlines; steps of theta / omega resolve an
 //! impact ([`Contact::limit`]). Force and opposite force differ by rounding.
 //!
-//! Spring and slip with a law for leaving: Walton and Braun 1986; the spring along the surface: Cundall and Strack 1979.
+//! A law for leaving: Walton and Braun 1986; the spring along the surface: Cundall and Strack 1979.
 
 mod law;
 mod outline;

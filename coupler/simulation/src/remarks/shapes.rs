@@ -215,7 +215,7 @@ pub(super) fn nodal(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
         let share = (shape.particles + shape.lost) as f64 * dx.powi(shape.asked.len() as i32) / whole;
         if (share - 1.0).abs() >= NOTABLE {
             all.push(format!(
-                "`{}` has {:.0} % of the mass that its size asks for: in the nodal lattice it lacks half a spacing, {}, \
+                "`{}` has {:.0} % of the mass that its size asks for: in the nodal lattice it lacks half a spacing, {} m, \
                  at each side (numerics.lattice = \"centred\" fills it)",
                 shape.name,
                 100.0 * share,

@@ -86,8 +86,8 @@ impl Surface {
         }
     }
 
-    /// Calls `visit` with the number of a copy and the ends of a part of its outline in the plane, at most `spacing` (m)
-    /// apart: the geometry lies on its left. The ends of parts that meet agree bit by bit. A tank has none.
+    /// Calls `visit` with the number of a copy and the ends of a part of its outline in the plane, at most `spacing`
+    /// (m) long: the geometry lies on its left. The ends of parts that meet agree bit by bit. A tank has none.
     pub fn outline(&self, spacing: f64, visit: &mut impl FnMut(u32, [[f64; 2]; 2])) {
         for copy in self.copies.clone() {
             self.part.outline(spacing, &mut |ends| match &self.moved {
