@@ -343,10 +343,7 @@ fn a_wall_that_goes_through_another_one() {
         "[[shape]]\nname = \"stop\"\nphase = \"wall\"\nbox = { min = [-0.12, 0.0], max = [-0.1, 0.2] }\n";
     let found = with_paddle("{ velocity = [-0.1, 0.0] }", stop);
     // More than half a spacing, 2.5 mm, after 80 mm: 0.825 s.
-    assert!(
-        found.iter().any(|r| r.starts_with("`paddle` goes through `stop` from about 0.82")),
-        "{found:?}"
-    );
+    assert!(found.iter().any(|r| r.starts_with("`paddle` goes through `stop` from about 0.82")), "{found:?}");
     assert_eq!(with_paddle("{ velocity = [-0.1, 0.0], end = 0.5 }", stop), [""; 0]);
     // What slides along a wall meets nothing.
     assert_eq!(
