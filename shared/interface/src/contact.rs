@@ -1,6 +1,6 @@
 //! Contact between two solids, evaluated from the records that both published.
 //!
-//! The surfaces are the outlines of the shapes as the scene has them ([`outline`]). Their points are sums of particles'
+//! The surfaces are the outlines of the shapes as the scene has them (`outline`). Their points are sums of particles'
 //! positions with constant weights that keep any linear field: they go with the particles, turn and strain with them,
 //! and give their forces back to them with the same weights, so that force, moment and power are kept.
 //!
