@@ -17,7 +17,9 @@ use super::model::{FiniteElement, add_to_nodes};
 use crate::account;
 use crate::columns::{Vectors, vectors};
 use crate::total_lagrangian::material::Matrix;
+use halfstep_scene::bounds::Excess;
 use halfstep_scene::{EnergyPart, Motion};
+use halfstep_sph::quantity::Quantity;
 use nalgebra::{DMatrix, DVector};
 use nalgebra_sparse::factorization::CscCholesky;
 use nalgebra_sparse::{CooMatrix, CscMatrix};
@@ -143,6 +145,7 @@ impl<const D: usize> FiniteElement<D> {
 
     fn implicit_step(&mut self, equations: &mut Equations<D>, dt: f64, time: f64, halvings: u32) {
         let start = self.now.clone();
+        let given = self.account.as_ref().map(|account| account.given.clone());
         self.rub(0.5 * dt);
         let outer = self.outer(dt, time);
         let way = self.guess(dt, time + dt);
@@ -154,16 +157,23 @@ impl<const D: usize> FiniteElement<D> {
             }
             None if halvings < MOST_HALVINGS => {
                 self.now = start;
+                if let (Some(account), Some(given)) = (&mut self.account, given) {
+                    account.given = given;
+                }
                 self.implicit_step(equations, 0.5 * dt, time, halvings + 1);
                 self.evaluate();
                 self.implicit_step(equations, 0.5 * dt, time + 0.5 * dt, halvings + 1);
             }
-            // What follows from the velocities alone: the bounds refuse it, or the next step succeeds.
-            None => {
-                let way = self.guess(dt, time + dt);
-                self.go(&way, dt, time);
-            }
+            None => self.fail(dt),
         }
+    }
+
+    /// No step is short enough: blames the fastest particle.
+    fn fail(&mut self, dt: f64) {
+        let speed = |p: usize| self.mesh.mean(p, &self.now.velocity).iter().map(|v| v * v).sum::<f64>();
+        let fastest = (0..self.mesh.elements()).max_by(|&a, &b| speed(a).total_cmp(&speed(b)));
+        let excess = Excess { quantity: Quantity::TimeStep, value: dt, ratio: f64::INFINITY };
+        self.failure = self.failure.or(fastest.map(|p| (p as u32, excess)));
     }
 
     /// The nodes' way by their velocities; of those that clamps move, by the clamps.

@@ -71,7 +71,7 @@ pub struct FiniteElement<const D: usize> {
     pub(super) contact: Option<Contact<D>>,
     bounds: VolumeBounds,
     /// The particle whose volume left its bounds first, or of several the one farthest out.
-    failure: Option<(u32, Excess)>,
+    pub(super) failure: Option<(u32, Excess)>,
     pub(super) evaluations: u64,
     pub(super) account: Option<Account<D>>,
     /// Of implicit time integration.
