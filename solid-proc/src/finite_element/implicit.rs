@@ -144,6 +144,9 @@ impl<const D: usize> FiniteElement<D> {
     }
 
     fn implicit_step(&mut self, equations: &mut Equations<D>, dt: f64, time: f64, halvings: u32) {
+        if self.failure.is_some() {
+            return;
+        }
         let start = self.now.clone();
         let given = self.account.as_ref().map(|account| account.given.clone());
         self.rub(0.5 * dt);

@@ -298,7 +298,8 @@ pub fn interruption<const D: usize>(make: Make<D>) {
     let build = || (make.build)(&scene, Isa::detect()).expect("a solid");
     for sub_steps in [1, 4] {
         let mut model = build();
-        let limit = model.sub_step_limit();
+        // An implicit model takes steps in which these loads would throw it out of bounds.
+        let limit = model.sub_step_limit().min(1.5e-4);
         let mut load = Load::<D>::none(model.particles().len());
         // 1 m/s² more for each next of 300 particles; 30 m/s² down.
         let mass = 1000.0 * volume::<D>();

@@ -77,9 +77,16 @@ pub(super) fn wave_makers(scene: &Scene, all: &mut Vec<String>) {
     }
 }
 
-/// Walls that move into other walls.
+/// Walls that move through fluid into other walls: what is dry may overlap.
 pub(super) fn walls_that_meet(scene: &Scene, all: &mut Vec<String>) {
     let walls: Vec<_> = scene.shapes.iter().filter(|shape| shape.phase == Phase::Wall).collect();
+    let fluid = scene.shapes.iter().filter(|shape| shape.phase == Phase::Fluid);
+    let fluid: Vec<Block> = fluid.map(|shape| geometry::bounding_box(shape, scene)).collect();
+    let moved = |block: &Block, motion: &Motion, time: f64| {
+        let (way, mut now) = (motion.at(time).displacement, *block);
+        (0..3).for_each(|a| (now.min[a], now.max[a]) = (now.min[a] + way[a], now.max[a] + way[a]));
+        now
+    };
     for moving in &walls {
         let Some(motion) = &moving.motion else { continue };
         if motion.pivot().is_some() {
@@ -92,15 +99,16 @@ pub(super) fn walls_that_meet(scene: &Scene, all: &mut Vec<String>) {
             if other.motion == moving.motion || overlap(&block, fixed, scene) {
                 continue;
             }
-            let meets =
-                (0..=INSTANTS).map(|k| scene.end_time * f64::from(k) / f64::from(INSTANTS)).find(|&t| {
-                    let way = motion.at(t).displacement;
-                    let mut now = block;
-                    (0..3)
-                        .for_each(|a| (now.min[a], now.max[a]) = (now.min[a] + way[a], now.max[a] + way[a]));
-                    overlap(&now, fixed, scene)
-                });
-            if let (Some(time), None) = (meets, &other.motion) {
+            let instants = (0..=INSTANTS).map(|k| scene.end_time * f64::from(k) / f64::from(INSTANTS));
+            let mut until = instants.clone();
+            let meets = until.find(|&t| overlap(&moved(&block, motion, t), fixed, scene));
+            let wet = |end: f64| {
+                let on_the_way = instants.clone().take_while(|&t| t <= end).map(|t| moved(&block, motion, t));
+                on_the_way.into_iter().any(|now| fluid.iter().any(|fluid| overlap(&now, fluid, scene)))
+            };
+            if let (Some(time), None) = (meets, &other.motion)
+                && wet(time)
+            {
                 all.push(format!(
                     "`{}` goes through `{}` from about {time:.3} s on: walls do not stop each other, and fluid between \
                      them is crushed",
