@@ -228,10 +228,11 @@ impl<const D: usize> FiniteElement<D> {
                 self.factorise(equations, &way, dt)?;
             }
             let correction = equations.solve(&self.residual(equations, outer, &way, dt))?;
-            let largest = correction.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
-            if !largest.is_finite() {
+            // The larger of a number and NaN would be the number.
+            if !correction.iter().all(|c| c.is_finite()) {
                 return None;
             }
+            let largest = correction.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
             for (node, &first) in equations.first.iter().enumerate().filter(|(_, first)| **first != NONE) {
                 (0..D).for_each(|d| way[d][node] += correction[first + d]);
             }
