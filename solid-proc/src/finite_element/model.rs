@@ -382,11 +382,8 @@ impl<const D: usize> SolidModel<D> for FiniteElement<D> {
             .map_or((0.0, 0.0), |contact| contact.stiffness(self.kernel, &self.material));
         let part = self.courant.min(LARGEST_PART);
         if self.equations.is_some() {
-            let of_contacts = if springs + walls > 0.0 {
-                part * sub_step(springs.sqrt(), 0.5 * walls)
-            } else {
-                f64::INFINITY
-            };
+            let of_contacts =
+                if springs + walls > 0.0 { part * sub_step(springs.sqrt(), 0.5 * walls) } else { ANY_STEP };
             return if self.alone {
                 of_contacts.min(ALONE * part * self.explicit_step(0.0, 0.0))
             } else {
@@ -451,6 +448,9 @@ impl<const D: usize> SolidModel<D> for FiniteElement<D> {
         self.evaluations
     }
 }
+
+/// What an implicit solid without contacts asks of a step, s: messages carry no infinite one.
+const ANY_STEP: f64 = 1e9;
 
 /// Implicit steps of a solid without fluid over explicit ones.
 const ALONE: f64 = 10.0;
