@@ -12,6 +12,7 @@
 //! Newton's method, whose matrix a sparse Cholesky factorisation solves: 2 M / dt² makes it definite. Contacts act as
 //! they are in the middle of the step without stresses, and limit it.
 
+use super::equations::Equations;
 use super::mesh::Mesh;
 use super::model::{FiniteElement, add_to_nodes};
 use crate::account;
@@ -20,9 +21,7 @@ use crate::total_lagrangian::material::Matrix;
 use halfstep_scene::bounds::Excess;
 use halfstep_scene::{EnergyPart, Motion};
 use halfstep_sph::quantity::Quantity;
-use nalgebra::{DMatrix, DVector};
-use nalgebra_sparse::factorization::CscCholesky;
-use nalgebra_sparse::{CooMatrix, CscMatrix};
+use nalgebra::DVector;
 
 /// How far after the middle of a step strains are taken, in steps.
 const THETA: f64 = 0.05;
@@ -44,87 +43,6 @@ const MOST_HALVINGS: u32 = 8;
 
 /// Difference of a displacement's gradient by which the stiffness is measured.
 const DIFFERENCE: f64 = 1e-6;
-
-/// No equation: the node is clamped.
-const NONE: usize = usize::MAX;
-
-/// The equations of the free nodes.
-pub(super) struct Equations<const D: usize> {
-    /// Of each node the first of its D equations, or [`NONE`].
-    first: Vec<usize>,
-    /// Number of equations.
-    count: usize,
-    /// Entries of the matrix that may differ from zero.
-    matrix: CscMatrix<f64>,
-    /// Where the entries of an element's matrix are added, element by element, row by row.
-    places: Vec<u32>,
-    factor: Option<CscCholesky<f64>>,
-}
-
-impl<const D: usize> Equations<D> {
-    /// Of the nodes that are not clamped, numbered along the longest extent so that the matrix has a narrow band.
-    pub(super) fn new(mesh: &Mesh<D>, clamped: &[bool]) -> Self {
-        let mut order: Vec<usize> = (0..mesh.nodes()).filter(|&node| !clamped[node]).collect();
-        let extent = |d: usize| {
-            let along = order.iter().map(|&node| mesh.reference[node][d]);
-            let (low, high) =
-                along.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
-            high - low
-        };
-        let mut axes: Vec<usize> = (0..D).collect();
-        axes.sort_by(|&a, &b| extent(b).total_cmp(&extent(a)));
-        let place = |node: &usize| mesh.reference[*node];
-        order.sort_by(|a, b| {
-            let (a, b) = (place(a), place(b));
-            axes.iter()
-                .map(|&d| a[d].total_cmp(&b[d]))
-                .find(|o| o.is_ne())
-                .unwrap_or(std::cmp::Ordering::Equal)
-        });
-        let mut first = vec![NONE; mesh.nodes()];
-        for (k, node) in order.iter().enumerate() {
-            first[*node] = k * D;
-        }
-        let count = order.len() * D;
-        let equations = |element: usize| {
-            let of_node = |&node: &u32| (0..D).map(move |d| (node as usize, d));
-            let all = mesh.of(element).iter().flat_map(of_node);
-            all.map(|(node, d)| if first[node] == NONE { NONE } else { first[node] + d }).collect::<Vec<_>>()
-        };
-        let mut pattern = CooMatrix::new(count, count);
-        for k in 0..count {
-            pattern.push(k, k, 0.0);
-        }
-        for element in 0..mesh.elements() {
-            let all = equations(element);
-            for &i in all.iter().filter(|&&i| i != NONE) {
-                for &j in all.iter().filter(|&&j| j != NONE) {
-                    pattern.push(i, j, 0.0);
-                }
-            }
-        }
-        let matrix = CscMatrix::from(&pattern);
-        let place = |i: usize, j: usize| {
-            let (offsets, rows) = (matrix.col_offsets(), matrix.row_indices());
-            let column = &rows[offsets[j]..offsets[j + 1]];
-            column.binary_search(&i).map_or(0, |k| (offsets[j] + k) as u32)
-        };
-        let mut places = Vec::with_capacity(mesh.elements() * (D << D).pow(2));
-        for element in 0..mesh.elements() {
-            let all = equations(element);
-            for &i in &all {
-                places
-                    .extend(all.iter().map(|&j| if i == NONE || j == NONE { u32::MAX } else { place(i, j) }));
-            }
-        }
-        Self { first, count, matrix, places, factor: None }
-    }
-
-    /// Solves for the corrections.
-    fn solve(&self, right: &DVector<f64>) -> Option<DMatrix<f64>> {
-        Some(self.factor.as_ref()?.solve(right))
-    }
-}
 
 /// What acts on the nodes during a step, m/s²: all but stresses.
 struct Outer<const D: usize> {
@@ -198,8 +116,7 @@ impl<const D: usize> FiniteElement<D> {
         let start = self.now.displacement.clone();
         self.now.drift(0.5 * dt);
         for p in 0..self.mesh.elements() {
-            let there = self.stressed(p, &self.now.displacement, &self.now.velocity);
-            (self.gradient[p], self.volume_ratio[p]) = (there.gradient, there.volume_ratio);
+            (self.gradient[p], self.volume_ratio[p]) = self.strained(p, &self.now.displacement);
         }
         contact.set_time(time + 0.5 * dt);
         self.touch(&mut contact);
@@ -233,7 +150,7 @@ impl<const D: usize> FiniteElement<D> {
                 return None;
             }
             let largest = correction.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
-            for (node, &first) in equations.first.iter().enumerate().filter(|(_, first)| **first != NONE) {
+            for (node, first) in equations.free() {
                 (0..D).for_each(|d| way[d][node] += correction[first + d]);
             }
             if largest <= SMALL * self.spacing {
@@ -254,8 +171,8 @@ impl<const D: usize> FiniteElement<D> {
         dt: f64,
     ) -> DVector<f64> {
         let stresses = self.stresses(way, dt);
-        let mut missing = DVector::zeros(equations.count);
-        for (node, &first) in equations.first.iter().enumerate().filter(|(_, first)| **first != NONE) {
+        let mut missing = DVector::zeros(equations.count());
+        for (node, first) in equations.free() {
             let mass = self.mass_of(node);
             for d in 0..D {
                 let outside = self.load[d][node] + outer.contacts[d][node];
@@ -290,7 +207,7 @@ impl<const D: usize> FiniteElement<D> {
     /// F of an element before and after the way.
     fn gradients(&self, p: usize, way: &Vectors<D>) -> [Matrix<D>; 2] {
         let nodes = self.mesh.of(p);
-        let before = Matrix::identity() + self.element.gradient(nodes, &self.now.displacement);
+        let before = self.gradient_at(p, &self.now.displacement);
         [before, before + self.element.gradient(nodes, way)]
     }
 
@@ -301,32 +218,13 @@ impl<const D: usize> FiniteElement<D> {
 
     /// 2 M / dt² and what stresses change with the way.
     fn factorise(&mut self, equations: &mut Equations<D>, way: &Vectors<D>, dt: f64) -> Option<()> {
-        let side = D << D;
-        let mut values = vec![0.0; equations.matrix.nnz()];
-        for (p, places) in equations.places.chunks_exact(side * side).enumerate() {
-            let of_element = self.stiffness_of(p, way, dt);
-            for (place, value) in places.iter().zip(&of_element) {
-                if let Some(entry) = values.get_mut(*place as usize) {
-                    *entry += value;
-                }
-            }
+        let mut values = equations.zeros();
+        for p in 0..self.mesh.elements() {
+            equations.add_element(&mut values, p, &self.stiffness_of(p, way, dt));
         }
-        let (offsets, rows) = (equations.matrix.col_offsets(), equations.matrix.row_indices());
-        for (node, &first) in equations.first.iter().enumerate().filter(|(_, first)| **first != NONE) {
-            for k in first..first + D {
-                let diagonal = rows[offsets[k]..offsets[k + 1]].binary_search(&k).ok()?;
-                values[offsets[k] + diagonal] += 2.0 * self.mass_of(node) / (dt * dt);
-            }
-        }
+        equations.add_diagonal(&mut values, |node| 2.0 * self.mass_of(node) / (dt * dt));
         self.evaluations += (2 * D * D * self.mesh.elements()) as u64;
-        match &mut equations.factor {
-            Some(factor) => factor.refactor(&values).ok()?,
-            None => {
-                equations.matrix.values_mut().copy_from_slice(&values);
-                equations.factor = Some(CscCholesky::factor(&equations.matrix).ok()?);
-            }
-        }
-        Some(())
+        equations.factorise(&values)
     }
 
     /// How the forces on an element's nodes fall with their way, N/m (2D: N/m²), row by row, made symmetric: a step
@@ -440,10 +338,9 @@ impl<const D: usize> FiniteElement<D> {
         let none = || vectors(self.mesh.nodes());
         let outer = Outer { contacts: none(), walls: none(), moving_walls: 0.0 };
         self.factorise(equations, way, dt).expect("definite");
-        let matrix = DMatrix::from(&equations.matrix);
+        let matrix = equations.dense();
         let (step, mut worst) = (1e-6 * self.spacing, 0.0_f64);
-        let free: Vec<(usize, usize)> = equations.first.iter().copied().enumerate().collect();
-        for (node, first) in free.into_iter().filter(|(_, first)| *first != NONE) {
+        for (node, first) in equations.free() {
             for d in 0..D {
                 let mut at = |by: f64| {
                     let mut way = way.clone();

@@ -4,6 +4,7 @@
 mod account;
 mod decide;
 mod element;
+mod equations;
 mod implicit;
 mod mesh;
 mod model;

@@ -4,7 +4,7 @@
 //! explicit finite elements (Belytschko, Liu, Moran and Elkhodary 2014, section 6.2); or implicit steps.
 
 use super::element::Element;
-use super::implicit::Equations;
+use super::equations::Equations;
 use super::mesh::Mesh;
 use super::stress::Stressed;
 use crate::account::Account;
@@ -382,13 +382,10 @@ impl<const D: usize> SolidModel<D> for FiniteElement<D> {
             .map_or((0.0, 0.0), |contact| contact.stiffness(self.kernel, &self.material));
         let part = self.courant.min(LARGEST_PART);
         if self.equations.is_some() {
-            let of_contacts =
-                if springs + walls > 0.0 { part * sub_step(springs.sqrt(), 0.5 * walls) } else { ANY_STEP };
-            return if self.alone {
-                of_contacts.min(ALONE * part * self.explicit_step(0.0, 0.0))
-            } else {
-                of_contacts
-            };
+            let touched = springs + walls > 0.0;
+            let of_contacts = if touched { part * sub_step(springs.sqrt(), 0.5 * walls) } else { ANY_STEP };
+            let of_waves = if self.alone { ALONE * part * self.explicit_step(0.0, 0.0) } else { ANY_STEP };
+            return of_contacts.min(of_waves);
         }
         part * self.explicit_step(springs, walls)
     }

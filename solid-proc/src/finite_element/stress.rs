@@ -18,11 +18,21 @@ pub(super) struct Stressed<const D: usize> {
 }
 
 impl<const D: usize> FiniteElement<D> {
+    /// F of an element whose nodes have these displacements, m.
+    pub(super) fn gradient_at(&self, p: usize, displacement: &Vectors<D>) -> Matrix<D> {
+        Matrix::identity() + self.element.gradient(self.mesh.of(p), displacement)
+    }
+
+    /// F and J of such an element.
+    pub(super) fn strained(&self, p: usize, displacement: &Vectors<D>) -> (Matrix<D>, f64) {
+        let gradient = self.gradient_at(p, displacement);
+        (gradient, self.law.volume_ratio(&gradient))
+    }
+
     /// An element whose nodes have these displacements, m, and velocities, m/s.
     pub(super) fn stressed(&self, p: usize, displacement: &Vectors<D>, velocity: &Vectors<D>) -> Stressed<D> {
         let nodes = self.mesh.of(p);
-        let gradient = Matrix::identity() + self.element.gradient(nodes, displacement);
-        let volume_ratio = self.law.volume_ratio(&gradient);
+        let (gradient, volume_ratio) = self.strained(p, displacement);
         let mut stress = self.law.first_piola_kirchhoff(&gradient, volume_ratio);
         let patterns = self.element.patterns(nodes, displacement);
         let mut on_patterns = patterns.map(|q| q.map(|q| self.hourglass * q));
@@ -69,8 +79,8 @@ impl<const D: usize> FiniteElement<D> {
     /// Energy that all elements store at these displacements, m, J (2D: J/m).
     pub(super) fn stored(&self, displacement: &Vectors<D>) -> f64 {
         let of = |p: usize| {
-            let f = Matrix::identity() + self.element.gradient(self.mesh.of(p), displacement);
-            self.stored_by(p, &f, self.law.volume_ratio(&f), displacement)
+            let (f, j) = self.strained(p, displacement);
+            self.stored_by(p, &f, j, displacement)
         };
         (0..self.mesh.elements()).map(of).sum()
     }

@@ -1,7 +1,7 @@
 //! The model by hand: periods of plates, rotation, energy.
 
 use super::FiniteElement;
-use super::implicit::Equations;
+use super::equations::Equations;
 use crate::model::{Load, SolidModel};
 use halfstep_scene::{Scene, parse};
 use halfstep_sph::lane::Isa;

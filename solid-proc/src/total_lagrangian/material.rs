@@ -124,10 +124,7 @@ impl Law {
     /// First Piola-Kirchhoff stress, Pa; `j` is [`Self::volume_ratio`].
     pub(crate) fn first_piola_kirchhoff<const D: usize>(&self, f: &Matrix<D>, j: f64) -> Matrix<D> {
         match self.material {
-            Material::StVenantKirchhoff => {
-                let e = green(f);
-                f * (Matrix::identity() * (self.lambda_in_plane() * e.trace()) + e * (2.0 * self.mu))
-            }
+            Material::StVenantKirchhoff => f * self.second_piola_kirchhoff(&green(f)),
             Material::NeoHookean => {
                 let in_plane = match self.plane {
                     Plane::Strain => j,
