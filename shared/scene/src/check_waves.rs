@@ -33,8 +33,7 @@ impl Check<'_> {
         if self.report.has_any(&["resolution", "dimension", "shape"]) {
             return;
         }
-        let fluid = self.scene.shapes.iter().filter(|s| s.phase == Phase::Fluid);
-        let boxes: Vec<Block> = fluid.map(|s| geometry::bounding_box(s, self.scene)).collect();
+        let boxes = geometry::fluid_boxes(self.scene);
         let least = boxes.iter().map(|b| b.min[0]).fold(f64::INFINITY, f64::min);
         let largest = boxes.iter().map(|b| b.max[0]).fold(f64::NEG_INFINITY, f64::max);
         for (index, shape) in self.scene.shapes.iter().enumerate() {

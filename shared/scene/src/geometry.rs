@@ -151,8 +151,11 @@ pub fn layout<const D: usize>(scene: &Scene) -> Layout<D> {
     of_phases(scene, &[Phase::Solid, Phase::Wall, Phase::Fluid])
 }
 
-/// Places the solid particles of a scene.
-pub(crate) fn solids<const D: usize>(scene: &Scene) -> Layout<D> {
+/// Places the solid particles of a scene, which lose nothing to walls and fluid.
+///
+/// # Panics
+/// As [`layout`].
+pub fn solids<const D: usize>(scene: &Scene) -> Layout<D> {
     of_phases(scene, &[Phase::Solid])
 }
 
@@ -244,6 +247,12 @@ pub fn domain(scene: &Scene) -> Block {
         (block.min[axis], block.max[axis]) = (low - (high - low), high + (high - low));
     }
     block
+}
+
+/// The boxes around the shapes of fluid.
+pub fn fluid_boxes(scene: &Scene) -> Vec<Block> {
+    let fluid = scene.shapes.iter().filter(|shape| shape.phase == Phase::Fluid);
+    fluid.map(|shape| bounding_box(shape, scene)).collect()
 }
 
 /// The box around a shape; a tank's with its walls.

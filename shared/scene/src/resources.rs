@@ -157,8 +157,7 @@ pub fn expected_speed(scene: &Scene) -> f64 {
 
 /// The same without walls that sweep no place where fluid is at the start: they slide along it or leave it.
 pub fn expected_speed_of_fluid(scene: &Scene) -> f64 {
-    let fluid = scene.shapes.iter().filter(|shape| shape.phase == Phase::Fluid);
-    let fluid: Vec<Block> = fluid.map(|shape| geometry::bounding_box(shape, scene)).collect();
+    let fluid = geometry::fluid_boxes(scene);
     let slack = 1e-6 * scene.resolution;
     speed_with(scene, |shape| {
         let Some(motion) = &shape.motion else { return true };

@@ -55,8 +55,7 @@ const DEPTH: f64 = 0.05;
 
 /// Wave makers for water of another depth.
 pub(super) fn wave_makers(scene: &Scene, all: &mut Vec<String>) {
-    let fluid = scene.shapes.iter().filter(|shape| shape.phase == Phase::Fluid);
-    let boxes: Vec<_> = fluid.map(|shape| geometry::bounding_box(shape, scene)).collect();
+    let boxes = geometry::fluid_boxes(scene);
     let level = boxes.iter().map(|b| b.max[1]).fold(f64::NEG_INFINITY, f64::max);
     let lowest = boxes.iter().map(|b| b.min[1]).fold(f64::INFINITY, f64::min);
     for shape in &scene.shapes {
@@ -80,39 +79,34 @@ pub(super) fn wave_makers(scene: &Scene, all: &mut Vec<String>) {
 /// Walls that move through fluid into other walls: what is dry may overlap.
 pub(super) fn walls_that_meet(scene: &Scene, all: &mut Vec<String>) {
     let walls: Vec<_> = scene.shapes.iter().filter(|shape| shape.phase == Phase::Wall).collect();
-    let fluid = scene.shapes.iter().filter(|shape| shape.phase == Phase::Fluid);
-    let fluid: Vec<Block> = fluid.map(|shape| geometry::bounding_box(shape, scene)).collect();
-    let moved = |block: &Block, motion: &Motion, time: f64| {
-        let (way, mut now) = (motion.at(time).displacement, *block);
-        (0..3).for_each(|a| (now.min[a], now.max[a]) = (now.min[a] + way[a], now.max[a] + way[a]));
-        now
-    };
+    let fluid = geometry::fluid_boxes(scene);
     for moving in &walls {
         let Some(motion) = &moving.motion else { continue };
         if motion.pivot().is_some() {
             continue;
         }
         let block = geometry::bounding_box(moving, scene);
-        for other in walls.iter().filter(|other| !std::ptr::eq(**other, *moving)) {
-            // Where both are boxes that no motion shares: what slides along a wall meets nothing.
+        let time = |k: usize| scene.end_time * k as f64 / INSTANTS as f64;
+        let at = |k: usize| {
+            let (way, mut now) = (motion.at(time(k)).displacement, block);
+            (0..3).for_each(|a| (now.min[a], now.max[a]) = (now.min[a] + way[a], now.max[a] + way[a]));
+            now
+        };
+        let way: Vec<Block> = (0..=INSTANTS).map(at).collect();
+        // Boxes that do not move: what slides along one meets nothing.
+        for other in walls.iter().filter(|other| other.motion.is_none()) {
             let Geometry::Box(fixed) = &other.geometry else { continue };
-            if other.motion == moving.motion || overlap(&block, fixed, scene) {
+            if overlap(&block, fixed, scene) {
                 continue;
             }
-            let instants = (0..=INSTANTS).map(|k| scene.end_time * f64::from(k) / f64::from(INSTANTS));
-            let mut until = instants.clone();
-            let meets = until.find(|&t| overlap(&moved(&block, motion, t), fixed, scene));
-            let wet = |end: f64| {
-                let on_the_way = instants.clone().take_while(|&t| t <= end).map(|t| moved(&block, motion, t));
-                on_the_way.into_iter().any(|now| fluid.iter().any(|fluid| overlap(&now, fluid, scene)))
-            };
-            if let (Some(time), None) = (meets, &other.motion)
-                && wet(time)
-            {
+            let Some(meets) = way.iter().position(|now| overlap(now, fixed, scene)) else { continue };
+            if way[..=meets].iter().any(|now| fluid.iter().any(|fluid| overlap(now, fluid, scene))) {
                 all.push(format!(
-                    "`{}` goes through `{}` from about {time:.3} s on: walls do not stop each other, and fluid between \
+                    "`{}` goes through `{}` from about {:.3} s on: walls do not stop each other, and fluid between \
                      them is crushed",
-                    moving.name, other.name
+                    moving.name,
+                    other.name,
+                    time(meets)
                 ));
             }
         }
@@ -120,7 +114,7 @@ pub(super) fn walls_that_meet(scene: &Scene, all: &mut Vec<String>) {
 }
 
 /// Instants of a run at which walls are looked at.
-const INSTANTS: u32 = 1000;
+const INSTANTS: usize = 1000;
 
 /// Whether two boxes have more in common than a face: half a spacing in each direction.
 fn overlap(a: &Block, b: &Block, scene: &Scene) -> bool {
