@@ -118,9 +118,7 @@ impl Contact {
 
     fn build(&mut self) {
         let scene = &self.scene;
-        let of =
-            |(solid, (at, mass)): (usize, &(Vec<[f64; 2]>, Vec<f64>))| Outline::new(scene, solid, at, mass);
-        self.outlines = self.first.iter().enumerate().map(of).collect();
+        self.outlines = Outline::all(scene, &self.first);
         for pair in &mut self.pairs {
             let masses = pair.sides.each_ref().map(|side| self.outlines[side.solid].least_mass());
             pair.law.fit(scene, pair.sides.each_ref().map(|side| side.solid), masses);

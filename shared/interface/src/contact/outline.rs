@@ -1,6 +1,6 @@
 //! Outline of a solid: points that go with its particles, and straight parts between them.
 
-use halfstep_scene::geometry::{self, Cells, Surface};
+use halfstep_scene::geometry::{self, Cells, Layout, Surface};
 use halfstep_scene::{Phase, Scene};
 use halfstep_wire::protocol::StateRecord;
 use nalgebra::{Matrix2, Vector2};
@@ -76,8 +76,8 @@ fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 impl Particles {
-    fn new(scene: &Scene, solid: usize, at: &[[f64; 2]]) -> Self {
-        let layout = geometry::layout::<2>(scene).with_solid(scene, solid);
+    fn new(scene: &Scene, placed: &Layout<2>, solid: usize, at: &[[f64; 2]]) -> Self {
+        let layout = placed.clone().with_solid(scene, solid);
         let spacing = scene.solid_spacing(solid);
         let pieces = geometry::pieces(scene, &layout);
         let side = REACH * spacing;
@@ -163,9 +163,24 @@ impl Particles {
 }
 
 impl Outline {
-    /// Of the scene's solid of that index, whose records were here at first, m, and have these masses.
-    pub(super) fn new(scene: &Scene, solid: usize, at: &[[f64; 2]], mass: &[f64]) -> Self {
-        let particles = Particles::new(scene, solid, at);
+    /// Of all solids of a scene, whose records were here at first, m, and have these masses.
+    pub(super) fn all(scene: &Scene, first: &[(Vec<[f64; 2]>, Vec<f64>)]) -> Vec<Self> {
+        let placed = geometry::solids(scene);
+        let of = |(solid, (at, mass)): (usize, &(Vec<[f64; 2]>, Vec<f64>))| {
+            Self::new(scene, &placed, solid, at, mass)
+        };
+        first.iter().enumerate().map(of).collect()
+    }
+
+    /// Of the solid of that index among those whose particles are placed.
+    pub(super) fn new(
+        scene: &Scene,
+        placed: &Layout<2>,
+        solid: usize,
+        at: &[[f64; 2]],
+        mass: &[f64],
+    ) -> Self {
+        let particles = Particles::new(scene, placed, solid, at);
         let spacing = particles.spacing;
         // By piece: in the order in which their shapes stand in the file.
         let mut parts: BTreeMap<u32, Vec<ShapePart>> = BTreeMap::new();

@@ -236,9 +236,10 @@ fn outlines_follow_linear_maps() {
     );
     let scene = halfstep_scene::parse(&text, Path::new("x.toml"), &[]).expect("a right scene");
     for solid in 0..2 {
-        let points = geometry::layout::<2>(&scene).with_solid(&scene, solid).solid;
+        let placed = geometry::solids::<2>(&scene);
+        let points = placed.clone().with_solid(&scene, solid).solid;
         let at: Vec<[f64; 2]> = points.iter().map(|p| p.position).collect();
-        let outline = Outline::new(&scene, solid, &at, &vec![0.1; at.len()]);
+        let outline = Outline::new(&scene, &placed, solid, &at, &vec![0.1; at.len()]);
         let map = |x: [f64; 2]| [0.3 + 0.8 * x[0] - 0.7 * x[1], 0.1 + 0.6 * x[0] + 0.9 * x[1], 0.0];
         let moved = |map: &dyn Fn([f64; 2]) -> [f64; 3]| {
             let record = |x: &[f64; 2]| StateRecord { position: map(*x), ..StateRecord::default() };
