@@ -49,11 +49,7 @@ phase = "wall"
 box = { min = [-0.5, 0.0], max = [0.0, 1.0] }
 motion = { file = "curve.csv", columns = { time = "t", x = "x", angle = "x" }, pivot = [0.0, 0.0], scale = 0.5 }
 "#;
-    let folder = tempfile::tempdir().expect("a folder for temporary files");
-    std::fs::write(folder.path().join("curve.csv"), bytes).expect("the folder takes a file");
-    let path = folder.path().join("scene.toml");
-    judge(SCENE, &path, &[]);
-    judge(&(SCENE.to_owned() + MOTION), &path, &[]);
+    beside("curve.csv", bytes, &[SCENE.to_owned(), SCENE.to_owned() + MOTION]);
 }
 
 /// An outline of walls, of water and of a solid, as CSV.
@@ -77,13 +73,16 @@ outline = { file = "outline.csv", scale = 0.5 }
 rotate = { angle = 30 }
 "#;
     const SOLID: &str = "[solid]\nmodel = \"rigid\"\ndensity = 500.0\n";
+    let of = |phase: &str| SCENE.replace("PHASE", phase);
+    beside("outline.csv", bytes, &[of("wall"), of("fluid"), of("void"), of("solid") + SOLID]);
+}
+
+/// Judges scenes that stand beside a file of this name.
+fn beside(name: &str, bytes: &[u8], scenes: &[String]) {
     let folder = tempfile::tempdir().expect("a folder for temporary files");
-    std::fs::write(folder.path().join("outline.csv"), bytes).expect("the folder takes a file");
+    std::fs::write(folder.path().join(name), bytes).expect("the folder takes a file");
     let path = folder.path().join("scene.toml");
-    for phase in ["wall", "fluid", "void"] {
-        judge(&SCENE.replace("PHASE", phase), &path, &[]);
-    }
-    judge(&(SCENE.replace("PHASE", "solid") + SOLID), &path, &[]);
+    scenes.iter().for_each(|scene| judge(scene, &path, &[]));
 }
 
 fn judge(text: &str, path: &Path, overrides: &[String]) {
