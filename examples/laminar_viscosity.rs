@@ -6,7 +6,7 @@
 use halfstep_fluid::effects::FluidEffect;
 use halfstep_fluid::rates::{FluidPair, PairEffect, PairRates};
 use halfstep_scene::{Decision, Derived, Scene};
-use halfstep_sph::lane::{Arch, Lane};
+use halfstep_sph::lane::{Arch, Lanes};
 
 /// The effect's key in `[effects]`, and its name in reports.
 pub(crate) const NAME: &str = "laminar-viscosity";
@@ -35,15 +35,15 @@ impl<const D: usize> FluidEffect<D> for LaminarViscosity {
 }
 
 impl<const D: usize> PairEffect<D> for LaminarViscosity {
-    type Own = ();
+    type Own<L: Lanes> = ();
     const VECTOR: bool = true;
 
     #[inline(always)]
-    fn own(&self, _: usize) {}
+    fn own<L: Lanes>(&self, _: usize) {}
 
     #[inline(always)]
-    fn add<A: Arch>(&self, _: &(), _: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
-        let factor = Lane::splat(2.0 * self.viscosity) / (pair.density_i * pair.density_j);
+    fn add<A: Arch, L: Lanes>(&self, _: &(), _: usize, pair: &FluidPair<D, L>, rates: &mut PairRates<D, L>) {
+        let factor = L::splat(2.0 * self.viscosity) / (pair.density_i * pair.density_j);
         for d in 0..D {
             rates.vector[d] = A::mul_add(factor, pair.dv[d], rates.vector[d]);
         }

@@ -70,8 +70,8 @@ mod tests {
     use halfstep_fluid::rates::{FluidPair, PairEffect, PairRates};
     use halfstep_role::role::Role;
     use halfstep_scene::Decision;
-    use halfstep_sph::lane::Arch;
     use halfstep_sph::lane::Isa;
+    use halfstep_sph::lane::{Arch, Lanes};
     use std::collections::BTreeSet;
 
     #[test]
@@ -131,9 +131,9 @@ mod tests {
     }
 
     impl PairEffect<2> for Nothing {
-        type Own = ();
-        fn own(&self, _: usize) {}
-        fn add<A: Arch>(&self, _: &(), _: usize, _: &FluidPair<2>, _: &mut PairRates<2>) {}
+        type Own<L: Lanes> = ();
+        fn own<L: Lanes>(&self, _: usize) {}
+        fn add<A: Arch, L: Lanes>(&self, _: &(), _: usize, _: &FluidPair<2, L>, _: &mut PairRates<2, L>) {}
     }
 
     fn composition<X: FluidEffect<2>>(scene: &Scene, effect: X) -> String {

@@ -3,7 +3,7 @@
 use halfstep_scene::geometry::FluidPoint;
 use halfstep_sph::columns::copy;
 pub use halfstep_sph::columns::{Vectors, fit, vectors};
-use halfstep_sph::lane::{LANES, Lane};
+use halfstep_sph::lane::{LANES, Lanes};
 use halfstep_sph::neighbours::{PADDING, Rows};
 use halfstep_sph::state_equation::StateEquation;
 
@@ -88,34 +88,34 @@ impl<const D: usize> PairParticles<D> {
     }
 
     #[inline(always)]
-    fn four(&self, slot: usize, of: impl Fn(&Source<D>) -> f64) -> Lane {
-        four(&self.sources, slot, of)
+    fn each<L: Lanes>(&self, slot: usize, of: impl Fn(&Source<D>) -> f64) -> L {
+        each(&self.sources, slot, of)
     }
 
-    /// Velocities of four slots.
+    /// Velocities of consecutive slots.
     #[inline(always)]
-    pub fn velocities(&self, slot: usize) -> [Lane; D] {
-        std::array::from_fn(|d| self.four(slot, |s| s.velocity[d]))
+    pub fn velocities<L: Lanes>(&self, slot: usize) -> [L; D] {
+        std::array::from_fn(|d| self.each(slot, |s| s.velocity[d]))
     }
 
-    /// Densities of four slots.
+    /// Densities of consecutive slots.
     #[inline(always)]
-    pub fn densities(&self, slot: usize) -> Lane {
-        self.four(slot, |s| s.density)
+    pub fn densities<L: Lanes>(&self, slot: usize) -> L {
+        self.each(slot, |s| s.density)
     }
 
-    /// p / rho² of four slots.
+    /// p / rho² of consecutive slots.
     #[inline(always)]
-    pub fn pressure_terms(&self, slot: usize) -> Lane {
-        self.four(slot, |s| s.pressure_term)
+    pub fn pressure_terms<L: Lanes>(&self, slot: usize) -> L {
+        self.each(slot, |s| s.pressure_term)
     }
 }
 
-/// One number of each of four consecutive records.
+/// One number of each of consecutive records.
 #[inline(always)]
-pub(crate) fn four<T>(records: &[T], slot: usize, of: impl Fn(&T) -> f64) -> Lane {
-    let four: &[T; LANES] = records[slot..slot + LANES].try_into().expect("a slice of four");
-    Lane(std::array::from_fn(|k| of(&four[k])))
+pub(crate) fn each<T, L: Lanes>(records: &[T], slot: usize, of: impl Fn(&T) -> f64) -> L {
+    let records = &records[slot..slot + L::TARGETS];
+    L::each(|k| of(&records[k]))
 }
 
 /// The fluid particles. State at the present stage, and the state at n while a step is under way.

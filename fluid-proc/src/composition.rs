@@ -4,7 +4,7 @@
 //! each effect whether it is there.
 
 use crate::rates::{FluidPair, PairEffect, PairRates};
-use halfstep_sph::lane::Arch;
+use halfstep_sph::lane::{Arch, Lanes};
 
 /// A pass over whatever composition it is given.
 pub trait Pass<const D: usize> {
@@ -89,11 +89,11 @@ impl<const D: usize> Pass<D> for Name<'_> {
 pub enum NoShare {}
 
 impl<const D: usize> PairEffect<D> for NoShare {
-    type Own = ();
-    fn own(&self, _: usize) {
+    type Own<L: Lanes> = ();
+    fn own<L: Lanes>(&self, _: usize) {
         match *self {}
     }
-    fn add<A: Arch>(&self, _: &(), _: usize, _: &FluidPair<D>, _: &mut PairRates<D>) {
+    fn add<A: Arch, L: Lanes>(&self, _: &(), _: usize, _: &FluidPair<D, L>, _: &mut PairRates<D, L>) {
         match *self {}
     }
     fn enter<C: Composition<D>>(self, _: C) {

@@ -12,7 +12,7 @@ use crate::walls::Walls;
 use halfstep_role::role::fastest;
 use halfstep_scene::{Decision, EnergyPart, Scene};
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Isa, LANES};
+use halfstep_sph::lane::Isa;
 use halfstep_sph::neighbours::ClusterList;
 use halfstep_wire::half_step::Stage;
 
@@ -87,7 +87,7 @@ pub struct Neighbourhood<'a, K, const D: usize> {
 
 /// Pairs that a pass over a list evaluates.
 pub fn evaluations(list: &ClusterList) -> u64 {
-    (list.entries() * LANES) as u64
+    list.pairs() as u64
 }
 
 /// Effects of a list that take part, `(Option<A>, (Option<B>, ()))`; `None`: absent.

@@ -122,9 +122,9 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
                 effects,
                 stage: Stage::First,
                 domain: (std::array::from_fn(|d| domain.min[d]), std::array::from_fn(|d| domain.max[d])),
-                fluid_list: ClusterList::default(),
-                wall_list: ClusterList::default(),
-                list_of_walls: ClusterList::default(),
+                fluid_list: ClusterList::new(isa),
+                wall_list: ClusterList::new(isa),
+                list_of_walls: ClusterList::new(isa),
                 sums: Vec::new(),
                 displacement: 0.0,
                 largest_speed: 0.0,
@@ -169,7 +169,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
             walls.sort();
         }
         self.list();
-        fit(&mut self.sums, self.fluid_list.clusters(), RateSum::default());
+        fit(&mut self.sums, self.fluid_list.fours(), RateSum::default());
         self.effects.resize(self.columns.slots(), self.walls.as_ref());
         self.displacement = 0.0;
         self.sorted = true;

@@ -14,9 +14,9 @@ use crate::rates::{FluidPair, PairEffect, PairRates, Target};
 use halfstep_role::ledger::Ledger;
 use halfstep_scene::{EnergyPart, Phase};
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Arch, Isa, LANES, Lane};
+use halfstep_sph::lane::{Arch, Isa, LANES, Lane, Lanes};
 use halfstep_sph::neighbours::{ClusterList, PADDING};
-use halfstep_sph::pair::{self, PairLaw, distance};
+use halfstep_sph::pair::{self, PairLaw, distance, pair_sum};
 use halfstep_wire::half_step::Stage;
 use halfstep_wire::protocol::{ForceRecord, StateRecord};
 
@@ -29,18 +29,20 @@ pub(crate) struct FluidLedger<const D: usize> {
     sums: Vec<Power>,
 }
 
-/// Power of an effect on four particles, per mass, W/kg.
+/// Power of an effect on several particles, per mass, W/kg.
 #[derive(Clone, Copy, Debug)]
-struct Power {
+struct Power<L = Lane> {
     /// By the accelerations, relative to walls, and by the density rates.
-    given: Lane,
+    given: L,
     /// By the walls' motion.
-    walls: Lane,
+    walls: L,
 }
 
-impl Default for Power {
+pair_sum!(Power {} { given, walls });
+
+impl<L: Lanes> Default for Power<L> {
     fn default() -> Self {
-        Self { given: Lane::ZERO, walls: Lane::ZERO }
+        Self { given: L::ZERO, walls: L::ZERO }
     }
 }
 
@@ -49,11 +51,11 @@ impl Default for Power {
 struct Pressure;
 
 impl<const D: usize> PairEffect<D> for Pressure {
-    type Own = ();
+    type Own<L: Lanes> = ();
     #[inline(always)]
-    fn own(&self, _: usize) {}
+    fn own<L: Lanes>(&self, _: usize) {}
     #[inline(always)]
-    fn add<A: Arch>(&self, _: &(), _: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
+    fn add<A: Arch, L: Lanes>(&self, _: &(), _: usize, pair: &FluidPair<D, L>, rates: &mut PairRates<D, L>) {
         let own = pressure_and_continuity(pair);
         rates.bracket += own.bracket;
         rates.density += own.density;
@@ -71,15 +73,15 @@ struct PowerLaw<'a, K, E, const D: usize> {
 }
 
 impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for PowerLaw<'_, K, E, D> {
-    type Target = Target<E::Own, D>;
-    type Sum = Power;
+    type Target<L: Lanes> = Target<E::Own<L>, L, D>;
+    type Sum<L: Lanes> = Power<L>;
 
     #[inline(always)]
     fn target_positions(&self) -> &[Vec<f64>; D] {
         &self.targets.position
     }
     #[inline(always)]
-    fn target(&self, slot: usize) -> Self::Target {
+    fn target<L: Lanes>(&self, slot: usize) -> Self::Target<L> {
         Target::load(self.targets, slot, self.effect.own(slot))
     }
     #[inline(always)]
@@ -87,20 +89,20 @@ impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for PowerLaw<'_,
         self.sources.sources[j].position
     }
     #[inline(always)]
-    fn add<A: Arch>(&self, i: &Self::Target, j: usize, dx: [Lane; D], r2: Lane, sum: &mut Power) {
+    fn add<A: Arch, L: Lanes>(&self, i: &Self::Target<L>, j: usize, dx: [L; D], r2: L, sum: &mut Power<L>) {
         let s = &self.sources.sources[j];
-        let f = self.kernel.gradient_over_r::<A>(distance(r2, self.kernel.smoothing_length()));
+        let f = self.kernel.gradient_over_r::<A, L>(distance(r2, self.kernel.smoothing_length()));
         let pair = i.with::<A>(s, dx, r2);
-        let mut rates = PairRates { bracket: Lane::ZERO, density: Lane::ZERO, vector: [Lane::ZERO; D] };
-        self.effect.add::<A>(&i.own, j, &pair, &mut rates);
-        let mf = Lane::splat(self.sources.mass) * f;
-        let a: [Lane; D] = std::array::from_fn(|d| mf * (rates.bracket * dx[d] + rates.vector[d]));
-        let wall = |d: usize| Lane::splat(self.walls.map_or(0.0, |walls| walls[d][j]));
+        let mut rates = PairRates { bracket: L::ZERO, density: L::ZERO, vector: [L::ZERO; D] };
+        self.effect.add::<A, L>(&i.own, j, &pair, &mut rates);
+        let mf = L::splat(self.sources.mass) * f;
+        let a: [L; D] = std::array::from_fn(|d| mf * (rates.bracket * dx[d] + rates.vector[d]));
+        let wall = |d: usize| L::splat(self.walls.map_or(0.0, |walls| walls[d][j]));
         for d in 0..D {
             sum.given += a[d] * (i.velocity[d] - wall(d));
             sum.walls += a[d] * wall(d);
         }
-        sum.given += i.pressure_term * Lane::splat(s.volume) * f * rates.density;
+        sum.given += i.pressure_term * L::splat(s.volume) * f * rates.density;
     }
 }
 
@@ -122,7 +124,7 @@ impl<K: Kernel<D>, const D: usize> Measuring<'_, K, D> {
     pub(crate) fn add<E: PairEffect<D>>(&mut self, part: EnergyPart, effect: E) {
         let Self { kernel, fluid, sources, walls, .. } = *self;
         let law = PowerLaw { kernel, effect, targets: fluid, sources, walls };
-        self.sums.resize(self.list.clusters(), Power::default());
+        self.sums.resize(self.list.fours(), Power::default());
         pair::pass(self.isa, &law, self.list, self.sums);
         let (mut given, mut moving) = (0.0, 0.0);
         for slot in (0..self.id.len()).filter(|&slot| self.id[slot] != PADDING) {

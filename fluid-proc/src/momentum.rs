@@ -5,13 +5,14 @@
 //! Both stand at the head of every pass; the other effects add to the same bracket.
 
 use crate::rates::{FluidPair, PairRates};
+use halfstep_sph::lane::Lanes;
 
 /// The bracket of the momentum equation and the density's rate before any other effect.
 #[inline(always)]
-pub fn pressure_and_continuity<const D: usize>(pair: &FluidPair<D>) -> PairRates<D> {
+pub fn pressure_and_continuity<L: Lanes, const D: usize>(pair: &FluidPair<D, L>) -> PairRates<D, L> {
     PairRates {
         bracket: -(pair.pressure_term_i + pair.pressure_term_j),
         density: pair.density_i * pair.approach,
-        vector: [halfstep_sph::lane::Lane::ZERO; D],
+        vector: [L::ZERO; D],
     }
 }

@@ -6,61 +6,67 @@ use crate::composition::Composition;
 use crate::momentum::pressure_and_continuity;
 use halfstep_sph::artificial_viscosity::damping;
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Arch, Lane};
-use halfstep_sph::pair::{PairLaw, distance, dot};
+use halfstep_sph::lane::{Arch, Lane, Lanes};
+use halfstep_sph::pair::{PairLaw, distance, dot, pair_sum};
 
-/// One particle with one of its neighbours, four times.
+/// Several particles with one of their neighbours.
 #[derive(Clone, Copy, Debug)]
-pub struct FluidPair<const D: usize> {
+pub struct FluidPair<const D: usize, L = Lane> {
     /// x_i - x_j, m.
-    pub dx: [Lane; D],
+    pub dx: [L; D],
     /// |x_ij|², m².
-    pub r2: Lane,
+    pub r2: L,
     /// v_i - v_j, m/s.
-    pub dv: [Lane; D],
+    pub dv: [L; D],
     /// v_ij . x_ij, m²/s.
-    pub approach: Lane,
+    pub approach: L,
     /// rho_i, kg/m³.
-    pub density_i: Lane,
+    pub density_i: L,
     /// rho_j, kg/m³.
-    pub density_j: Lane,
+    pub density_j: L,
     /// p_i / rho_i².
-    pub pressure_term_i: Lane,
+    pub pressure_term_i: L,
     /// p_j / rho_j².
-    pub pressure_term_j: Lane,
+    pub pressure_term_j: L,
 }
 
-impl<const D: usize> FluidPair<D> {
+impl<L: Lanes, const D: usize> FluidPair<D, L> {
     /// Pi_ij of the artificial viscosity; `linear` is A c0, `quadratic` B.
     #[inline(always)]
-    pub fn damping<A: Arch>(&self, h: f64, linear: Lane, quadratic: f64) -> Lane {
+    pub fn damping<A: Arch>(&self, h: f64, linear: L, quadratic: f64) -> L {
         let density_sum = self.density_i + self.density_j;
-        damping::<A>(h, linear, Lane::splat(quadratic), self.approach, self.r2, density_sum)
+        damping::<A, L>(h, linear, L::splat(quadratic), self.approach, self.r2, density_sum)
     }
 }
 
 /// What a pair adds: `bracket` times m_j F x_ij and `vector` times m_j F to the acceleration, `density` times
 /// m_j / rho_j F to the density's rate.
 #[derive(Clone, Copy, Debug)]
-pub struct PairRates<const D: usize> {
+pub struct PairRates<const D: usize, L = Lane> {
     /// Scalar bracket of the momentum equation.
-    pub bracket: Lane,
+    pub bracket: L,
     /// Density's rate.
-    pub density: Lane,
+    pub density: L,
     /// Vector part of the acceleration; left out where no effect has one.
-    pub vector: [Lane; D],
+    pub vector: [L; D],
 }
 
 /// An effect in the pair pass. An absent effect is `()`; several are nested pairs.
 pub trait PairEffect<const D: usize>: Copy + Send + Sync {
-    /// What the effect loads of four targets before their neighbours are visited.
-    type Own: Copy;
+    /// What the effect loads of the targets before their neighbours are visited.
+    type Own<L: Lanes>: Copy;
     /// The effect adds to [`PairRates::vector`].
     const VECTOR: bool = false;
-    /// Loads the targets at `slot..slot + 4`.
-    fn own(&self, slot: usize) -> Self::Own;
+    /// Loads the targets from `slot` on.
+    fn own<L: Lanes>(&self, slot: usize) -> Self::Own<L>;
     /// Adds the share of source `j`.
-    fn add<A: Arch>(&self, own: &Self::Own, j: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>);
+    fn add<A: Arch, L: Lanes>(
+        &self,
+        own: &Self::Own<L>,
+        j: usize,
+        pair: &FluidPair<D, L>,
+        rates: &mut PairRates<D, L>,
+    );
     /// Enters a composition. A share that calls [`Composition::with`] has passes compiled for it: it doubles their
     /// number.
     fn enter<C: Composition<D>>(self, composition: C) {
@@ -71,24 +77,30 @@ pub trait PairEffect<const D: usize>: Copy + Send + Sync {
 }
 
 impl<const D: usize> PairEffect<D> for () {
-    type Own = ();
+    type Own<L: Lanes> = ();
     #[inline(always)]
-    fn own(&self, _: usize) {}
+    fn own<L: Lanes>(&self, _: usize) {}
     #[inline(always)]
-    fn add<A: Arch>(&self, _: &(), _: usize, _: &FluidPair<D>, _: &mut PairRates<D>) {}
+    fn add<A: Arch, L: Lanes>(&self, _: &(), _: usize, _: &FluidPair<D, L>, _: &mut PairRates<D, L>) {}
 }
 
 impl<const D: usize, E: PairEffect<D>, F: PairEffect<D>> PairEffect<D> for (E, F) {
-    type Own = (E::Own, F::Own);
+    type Own<L: Lanes> = (E::Own<L>, F::Own<L>);
     const VECTOR: bool = E::VECTOR || F::VECTOR;
     #[inline(always)]
-    fn own(&self, slot: usize) -> Self::Own {
+    fn own<L: Lanes>(&self, slot: usize) -> Self::Own<L> {
         (self.0.own(slot), self.1.own(slot))
     }
     #[inline(always)]
-    fn add<A: Arch>(&self, own: &Self::Own, j: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
-        self.0.add::<A>(&own.0, j, pair, rates);
-        self.1.add::<A>(&own.1, j, pair, rates);
+    fn add<A: Arch, L: Lanes>(
+        &self,
+        own: &Self::Own<L>,
+        j: usize,
+        pair: &FluidPair<D, L>,
+        rates: &mut PairRates<D, L>,
+    ) {
+        self.0.add::<A, L>(&own.0, j, pair, rates);
+        self.1.add::<A, L>(&own.1, j, pair, rates);
     }
     fn labels(labels: &mut Vec<&'static str>) {
         E::labels(labels);
@@ -98,16 +110,22 @@ impl<const D: usize, E: PairEffect<D>, F: PairEffect<D>> PairEffect<D> for (E, F
 
 /// An effect of which only the run knows whether it takes part.
 impl<const D: usize, E: PairEffect<D>> PairEffect<D> for Option<E> {
-    type Own = Option<E::Own>;
+    type Own<L: Lanes> = Option<E::Own<L>>;
     const VECTOR: bool = E::VECTOR;
     #[inline(always)]
-    fn own(&self, slot: usize) -> Self::Own {
+    fn own<L: Lanes>(&self, slot: usize) -> Self::Own<L> {
         self.as_ref().map(|effect| effect.own(slot))
     }
     #[inline(always)]
-    fn add<A: Arch>(&self, own: &Self::Own, j: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
+    fn add<A: Arch, L: Lanes>(
+        &self,
+        own: &Self::Own<L>,
+        j: usize,
+        pair: &FluidPair<D, L>,
+        rates: &mut PairRates<D, L>,
+    ) {
         if let (Some(effect), Some(own)) = (self, own) {
-            effect.add::<A>(own, j, pair, rates);
+            effect.add::<A, L>(own, j, pair, rates);
         }
     }
     fn labels(labels: &mut Vec<&'static str>) {
@@ -115,20 +133,22 @@ impl<const D: usize, E: PairEffect<D>> PairEffect<D> for Option<E> {
     }
 }
 
-/// Sums of the pass for four particles.
+/// Sums of the pass for several particles: four where they are stored.
 #[derive(Clone, Copy, Debug)]
-pub struct RateSum<const D: usize> {
+pub struct RateSum<const D: usize, L = Lane> {
     /// Acceleration, m/s².
-    pub acceleration: [Lane; D],
+    pub acceleration: [L; D],
     /// Rate of density, kg/(m³ s).
-    pub density_rate: Lane,
+    pub density_rate: L,
 }
 
-impl<const D: usize> Default for RateSum<D> {
+impl<L: Lanes, const D: usize> Default for RateSum<D, L> {
     fn default() -> Self {
-        Self { acceleration: [Lane::ZERO; D], density_rate: Lane::ZERO }
+        Self { acceleration: [L::ZERO; D], density_rate: L::ZERO }
     }
 }
+
+pair_sum!(RateSum { D } { acceleration, density_rate });
 
 impl<const D: usize> RateSum<D> {
     /// Adds to the k-th particle's rates.
@@ -152,16 +172,16 @@ pub struct RateLaw<'a, K, E, const D: usize> {
     pub sources: &'a PairParticles<D>,
 }
 
-/// What a law loads of four targets.
+/// What a law loads of its targets.
 #[derive(Clone, Copy)]
-pub struct Target<O, const D: usize> {
-    pub(crate) velocity: [Lane; D],
-    density: Lane,
-    pub(crate) pressure_term: Lane,
+pub struct Target<O, L, const D: usize> {
+    pub(crate) velocity: [L; D],
+    density: L,
+    pub(crate) pressure_term: L,
     pub(crate) own: O,
 }
 
-impl<O, const D: usize> Target<O, D> {
+impl<O, L: Lanes, const D: usize> Target<O, L, D> {
     #[inline(always)]
     pub(crate) fn load(targets: &PairParticles<D>, slot: usize, own: O) -> Self {
         Self {
@@ -174,31 +194,31 @@ impl<O, const D: usize> Target<O, D> {
 
     /// The targets with one neighbour.
     #[inline(always)]
-    pub(crate) fn with<A: Arch>(&self, s: &Source<D>, dx: [Lane; D], r2: Lane) -> FluidPair<D> {
-        let dv = std::array::from_fn(|d| self.velocity[d] - Lane::splat(s.velocity[d]));
+    pub(crate) fn with<A: Arch>(&self, s: &Source<D>, dx: [L; D], r2: L) -> FluidPair<D, L> {
+        let dv = std::array::from_fn(|d| self.velocity[d] - L::splat(s.velocity[d]));
         FluidPair {
             dx,
             r2,
             dv,
-            approach: dot::<D, A>(dv, dx),
+            approach: dot::<D, A, L>(dv, dx),
             density_i: self.density,
-            density_j: Lane::splat(s.density),
+            density_j: L::splat(s.density),
             pressure_term_i: self.pressure_term,
-            pressure_term_j: Lane::splat(s.pressure_term),
+            pressure_term_j: L::splat(s.pressure_term),
         }
     }
 }
 
 impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for RateLaw<'_, K, E, D> {
-    type Target = Target<E::Own, D>;
-    type Sum = RateSum<D>;
+    type Target<L: Lanes> = Target<E::Own<L>, L, D>;
+    type Sum<L: Lanes> = RateSum<D, L>;
 
     #[inline(always)]
     fn target_positions(&self) -> &[Vec<f64>; D] {
         &self.targets.position
     }
     #[inline(always)]
-    fn target(&self, slot: usize) -> Self::Target {
+    fn target<L: Lanes>(&self, slot: usize) -> Self::Target<L> {
         Target::load(self.targets, slot, self.effects.own(slot))
     }
 
@@ -208,13 +228,20 @@ impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for RateLaw<'_, 
     }
 
     #[inline(always)]
-    fn add<A: Arch>(&self, i: &Self::Target, j: usize, dx: [Lane; D], r2: Lane, sum: &mut RateSum<D>) {
+    fn add<A: Arch, L: Lanes>(
+        &self,
+        i: &Self::Target<L>,
+        j: usize,
+        dx: [L; D],
+        r2: L,
+        sum: &mut RateSum<D, L>,
+    ) {
         let s = &self.sources.sources[j];
-        let f = self.kernel.gradient_over_r::<A>(distance(r2, self.kernel.smoothing_length()));
+        let f = self.kernel.gradient_over_r::<A, L>(distance(r2, self.kernel.smoothing_length()));
         let pair = i.with::<A>(s, dx, r2);
         let mut rates = pressure_and_continuity(&pair);
-        self.effects.add::<A>(&i.own, j, &pair, &mut rates);
-        let mf = Lane::splat(self.sources.mass) * f;
+        self.effects.add::<A, L>(&i.own, j, &pair, &mut rates);
+        let mf = L::splat(self.sources.mass) * f;
         let bracket = mf * rates.bracket;
         for d in 0..D {
             sum.acceleration[d] = A::mul_add(bracket, dx[d], sum.acceleration[d]);
@@ -222,6 +249,6 @@ impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for RateLaw<'_, 
                 sum.acceleration[d] = A::mul_add(mf, rates.vector[d], sum.acceleration[d]);
             }
         }
-        sum.density_rate = A::mul_add(Lane::splat(s.volume) * f, rates.density, sum.density_rate);
+        sum.density_rate = A::mul_add(L::splat(s.volume) * f, rates.density, sum.density_rate);
     }
 }

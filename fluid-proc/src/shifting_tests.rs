@@ -6,7 +6,7 @@ use crate::effects::particle_shifting::STRENGTH;
 use halfstep_role::role::Role;
 use halfstep_scene as scene;
 use halfstep_sph::kernel::{Kernel, WendlandC2};
-use halfstep_sph::lane::{Isa, Lane, Unfused};
+use halfstep_sph::lane::{Isa, Lane, Lanes, Unfused};
 use halfstep_sph::neighbours::PADDING;
 use halfstep_wire::half_step::{HalfStep, Stage};
 use std::path::Path;
@@ -75,7 +75,7 @@ fn a_displaced_particle_is_driven_back() {
     for (_, x, _) in all.iter().filter(|(other, ..)| *other != id) {
         let apart = [at[0] - x[0], at[1] - x[1]];
         let r = apart[0].hypot(apart[1]);
-        let slope = kernel.gradient_over_r::<Unfused>(Lane::splat(r)).0[0];
+        let slope = kernel.gradient_over_r::<Unfused, Lane>(Lane::splat(r)).0[0];
         let pairing = 1.0 + 0.2 * (kernel.at(r) / kernel.at(DX)).powi(4);
         (0..2).for_each(|d| exact[d] -= STRENGTH * H * SOUND_SPEED * DX * DX * pairing * slope * apart[d]);
     }

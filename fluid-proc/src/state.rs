@@ -47,7 +47,7 @@ impl<const D: usize, X: FluidEffect<D>> State for Fluid<D, X> {
             coupling.restored()?;
             coupling.check_slots(&self.columns)?;
         }
-        fit(&mut self.sums, self.fluid_list.clusters(), RateSum::default());
+        fit(&mut self.sums, self.fluid_list.fours(), RateSum::default());
         self.effects.resize(self.columns.slots(), self.walls.as_ref());
         self.stage = Stage::First;
         self.sorted = false;

@@ -9,7 +9,7 @@ use crate::effects::viscosity::{self, StressTerm, VelocityGradient, ViscousStres
 use crate::rates::{PairEffect, RateLaw, RateSum};
 use halfstep_scene::ArtificialViscosity as Coefficients;
 use halfstep_sph::kernel::{CubicSpline, Kernel};
-use halfstep_sph::lane::{Fused, Isa, LANES, Lane};
+use halfstep_sph::lane::{Fused, Isa, LANES, Lane, Lanes};
 use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_sph::pair;
 use proptest::prelude::*;
@@ -49,7 +49,7 @@ fn cloud<const D: usize>(points: &[P<D>], mass: f64) -> Cloud<D> {
     rows.permute(&mut pressure);
     rows.permute_ids(&mut id);
     (0..id.len()).for_each(|slot| shown.show(slot, pressure[slot]));
-    let mut list = ClusterList::default();
+    let mut list = ClusterList::new(Isa::detect());
     list.build(&shown.position, &shown.position, &rows, 2.0 * H);
     let slot = (0..n as u32).map(|i| id.iter().position(|&j| j == i).unwrap()).collect();
     assert!(id.iter().filter(|&&i| i != PADDING).count() == n);
@@ -61,7 +61,7 @@ impl<const D: usize> Cloud<D> {
     fn rates<E: PairEffect<D>>(&self, effects: E) -> Vec<([f64; D], f64)> {
         let law =
             RateLaw { kernel: CubicSpline::<D>::new(H), effects, targets: &self.shown, sources: &self.shown };
-        let mut sums = vec![RateSum::default(); self.list.clusters()];
+        let mut sums = vec![RateSum::default(); self.list.fours()];
         pair::pass(Isa::detect(), &law, &self.list, &mut sums);
         self.slot
             .iter()
@@ -74,7 +74,7 @@ impl<const D: usize> Cloud<D> {
 
     fn gradients(&self) -> Vec<[f64; D]> {
         let law = GradientLaw { kernel: CubicSpline::<D>::new(H), fluid: &self.shown };
-        let mut gradient = vec![[[0.0; D]; LANES]; self.list.clusters()];
+        let mut gradient = vec![[[0.0; D]; LANES]; self.list.fours()];
         let solve = |_, sum: &GradientSum<D>| sum.solve();
         pair::pass_into(Isa::detect(), &law, &self.list, solve, &mut gradient);
         gradient.as_flattened().to_vec()
@@ -84,7 +84,7 @@ impl<const D: usize> Cloud<D> {
 /// F(r) of the kernel used here, with the pass's softened distance.
 fn slope<const D: usize>(r: f64) -> f64 {
     let softened = pair::distance(Lane::splat(r * r), H);
-    CubicSpline::<D>::new(H).gradient_over_r::<Fused>(softened).0[0]
+    CubicSpline::<D>::new(H).gradient_over_r::<Fused, Lane>(softened).0[0]
 }
 
 fn close(a: f64, b: f64) {
@@ -184,7 +184,7 @@ fn shear_flow_has_the_stress_of_its_rate<const D: usize>() {
     let c = cloud(&points, 1.0);
     let law =
         viscosity::GradientLaw { kernel: CubicSpline::<D>::new(H), targets: &c.shown, sources: &c.shown };
-    let mut stress = StressTerm(vec![[[0.0; D]; D]; LANES * c.list.clusters()]);
+    let mut stress = StressTerm(vec![[[0.0; D]; D]; LANES * c.list.fours()]);
     let finish = |slot, sum: &VelocityGradient<D>| sum.stress(0.5, c.shown.densities(slot));
     pair::pass_into(Isa::detect(), &law, &c.list, finish, stress.0.as_chunks_mut().0);
     let middle = points.len() / 2;

@@ -16,9 +16,9 @@ use halfstep_scene::geometry::WallPoint;
 use halfstep_sph::columns::bounds;
 use halfstep_sph::extrapolation::ExtrapolationSum;
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Arch, LANES, Lane};
+use halfstep_sph::lane::{Arch, LANES, Lane, Lanes};
 use halfstep_sph::neighbours::Rows;
-use halfstep_sph::pair::PairLaw;
+use halfstep_sph::pair::{PairLaw, pair_sum};
 use halfstep_sph::state_equation::StateEquation;
 use moving::{Moving, Seen};
 
@@ -183,18 +183,20 @@ impl<const D: usize> Walls<D> {
     }
 }
 
-/// Sums over the fluid for four wall particles.
+/// Sums over the fluid for several wall particles.
 #[derive(Clone, Copy, Debug)]
-pub struct WallSum<const D: usize> {
-    extrapolated: ExtrapolationSum,
-    velocity: [Lane; D],
+pub struct WallSum<const D: usize, L = Lane> {
+    extrapolated: ExtrapolationSum<L>,
+    velocity: [L; D],
     /// sum rho_f (x_w - x_f) W; only where walls move.
-    lever: [Lane; D],
+    lever: [L; D],
 }
 
-impl<const D: usize> Default for WallSum<D> {
+pair_sum!(WallSum { D } { extrapolated, velocity, lever });
+
+impl<L: Lanes, const D: usize> Default for WallSum<D, L> {
     fn default() -> Self {
-        Self { extrapolated: ExtrapolationSum::default(), velocity: [Lane::ZERO; D], lever: [Lane::ZERO; D] }
+        Self { extrapolated: ExtrapolationSum::default(), velocity: [L::ZERO; D], lever: [L::ZERO; D] }
     }
 }
 
@@ -217,8 +219,8 @@ impl<'a, K: Kernel<D>, const D: usize> WallLaw<'a, K, D> {
 }
 
 impl<K: Kernel<D>, const D: usize> PairLaw<D> for WallLaw<'_, K, D> {
-    type Target = ();
-    type Sum = WallSum<D>;
+    type Target<L: Lanes> = ();
+    type Sum<L: Lanes> = WallSum<D, L>;
 
     #[inline(always)]
     fn target_positions(&self) -> &[Vec<f64>; D] {
@@ -229,9 +231,9 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for WallLaw<'_, K, D> {
         self.sources[j].position
     }
     #[inline(always)]
-    fn target(&self, _: usize) {}
+    fn target<L: Lanes>(&self, _: usize) {}
     #[inline(always)]
-    fn add<A: Arch>(&self, _: &(), j: usize, dx: [Lane; D], r2: Lane, sum: &mut WallSum<D>) {
+    fn add<A: Arch, L: Lanes>(&self, _: &(), j: usize, dx: [L; D], r2: L, sum: &mut WallSum<D, L>) {
         let fluid = &self.sources[j];
         let (extrapolated, pair) = (&mut sum.extrapolated, (dx, r2));
         let w = extrapolated.add_particle::<K, D, A>(
@@ -242,10 +244,10 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for WallLaw<'_, K, D> {
             fluid.pressure,
         );
         for d in 0..D {
-            sum.velocity[d] = A::mul_add(Lane::splat(fluid.velocity[d]), w, sum.velocity[d]);
+            sum.velocity[d] = A::mul_add(L::splat(fluid.velocity[d]), w, sum.velocity[d]);
         }
         if self.moving {
-            let weight = Lane::splat(fluid.density) * w;
+            let weight = L::splat(fluid.density) * w;
             for d in 0..D {
                 sum.lever[d] = A::mul_add(weight, dx[d], sum.lever[d]);
             }

@@ -13,9 +13,9 @@ use halfstep_sph::artificial_viscosity::damping;
 use halfstep_sph::columns::{bounds, fit};
 use halfstep_sph::extrapolation::{Extrapolation, ExtrapolationSum};
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Arch, Isa, LANES, Lane, Unfused};
+use halfstep_sph::lane::{Arch, Isa, LANES, Lane, Lanes, Unfused};
 use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
-use halfstep_sph::pair::{self, PairLaw, distance, dot};
+use halfstep_sph::pair::{self, PairLaw, distance, dot, pair_sum};
 
 /// Wall particles that the solid may touch.
 pub(crate) struct Walls<const D: usize> {
@@ -89,7 +89,7 @@ impl<const D: usize> Moving<D> {
 
 impl<const D: usize> Walls<D> {
     /// `None` where the solid may touch no wall.
-    pub(crate) fn new(scene: &Scene, points: &[WallPoint<D>], height: f64) -> Option<Self> {
+    pub(crate) fn new(scene: &Scene, points: &[WallPoint<D>], height: f64, isa: Isa) -> Option<Self> {
         let points: Vec<_> = points.iter().filter(|p| p.contact).collect();
         if points.is_empty() {
             return None;
@@ -104,8 +104,8 @@ impl<const D: usize> Walls<D> {
             rows: Rows::default(),
             height,
             moving: Moving::new(&points, scene),
-            sources: ClusterList::default(),
-            neighbours: ClusterList::default(),
+            sources: ClusterList::new(isa),
+            neighbours: ClusterList::new(isa),
             sums: Vec::new(),
             forces: Vec::new(),
         };
@@ -181,13 +181,13 @@ impl<const D: usize> Walls<D> {
         }
         self.neighbours.build(solid, &self.position, &self.rows, reach);
         self.sources.build(&self.position, solid, rows, reach);
-        fit(&mut self.sums, self.sources.clusters(), ExtrapolationSum::default());
-        fit(&mut self.forces, self.neighbours.clusters(), WallForce::default());
+        fit(&mut self.sums, self.sources.fours(), ExtrapolationSum::default());
+        fit(&mut self.forces, self.neighbours.fours(), WallForce::default());
     }
 
-    /// Pairs listed between walls and solid, four targets each.
+    /// Pairs that the passes between walls and solid evaluate.
     pub(crate) fn pairs(&self) -> usize {
-        LANES * (self.sources.entries() + self.neighbours.entries())
+        self.sources.pairs() + self.neighbours.pairs()
     }
 
     /// Evaluates the push on every solid particle.
@@ -242,7 +242,7 @@ impl<const D: usize> Walls<D> {
             if r2 < solid.spacing * solid.spacing {
                 spring += solid.repulsion;
             }
-            let slope = kernel.gradient_over_r::<Unfused>(distance(Lane::splat(r2), h)).0[0];
+            let slope = kernel.gradient_over_r::<Unfused, Lane>(distance(Lane::splat(r2), h)).0[0];
             let viscosity = 2.0 * solid.linear * h / (solid.density[slot] + self.density[j]);
             damping -= solid.wall_mass * slope * viscosity * r2 / (r2 + 0.01 * h * h);
         }
@@ -256,7 +256,7 @@ impl<const D: usize> Walls<D> {
             return 0.0;
         }
         let law = PushPower(self.push(kernel, solid));
-        let mut sums = vec![Power::default(); self.neighbours.clusters()];
+        let mut sums = vec![Power::default(); self.neighbours.fours()];
         pair::pass(isa, &law, &self.neighbours, &mut sums);
         let real = (0..id.len()).filter(|&slot| id[slot] != PADDING);
         real.map(|slot| sums[slot / LANES].0.0[slot % LANES]).sum()
@@ -311,13 +311,14 @@ pub(crate) fn repulsion(pressure_wave_speed: f64, spacing: f64) -> f64 {
     0.5 * (pressure_wave_speed / spacing).powi(2)
 }
 
-/// Acceleration of four solid particles by the walls.
+/// Acceleration of several solid particles by the walls.
 #[derive(Clone, Copy)]
-struct WallForce<const D: usize>([Lane; D]);
+struct WallForce<const D: usize, L = Lane>([L; D]);
+pair_sum!(WallForce { D } { 0 });
 
-impl<const D: usize> Default for WallForce<D> {
+impl<L: Lanes, const D: usize> Default for WallForce<D, L> {
     fn default() -> Self {
-        Self([Lane::ZERO; D])
+        Self([L::ZERO; D])
     }
 }
 
@@ -336,25 +337,25 @@ struct Push<'a, K, const D: usize> {
 }
 
 #[derive(Clone, Copy)]
-struct Target<const D: usize> {
-    velocity: [Lane; D],
-    density: Lane,
-    pressure_term: Lane,
+struct Target<L, const D: usize> {
+    velocity: [L; D],
+    density: L,
+    pressure_term: L,
 }
 
 impl<K: Kernel<D>, const D: usize> PairLaw<D> for Push<'_, K, D> {
-    type Target = Target<D>;
-    type Sum = WallForce<D>;
+    type Target<L: Lanes> = Target<L, D>;
+    type Sum<L: Lanes> = WallForce<D, L>;
     #[inline(always)]
     fn target_positions(&self) -> &[Vec<f64>; D] {
         self.solid.position
     }
     #[inline(always)]
-    fn target(&self, slot: usize) -> Target<D> {
-        let density = Lane::load(self.solid.density, slot);
-        let pressure = Lane::load(self.solid.pressure, slot).max(Lane::ZERO);
+    fn target<L: Lanes>(&self, slot: usize) -> Target<L, D> {
+        let density = L::load(self.solid.density, slot);
+        let pressure = L::load(self.solid.pressure, slot).max(L::ZERO);
         Target {
-            velocity: std::array::from_fn(|d| Lane::load(&self.solid.velocity[d], slot)),
+            velocity: std::array::from_fn(|d| L::load(&self.solid.velocity[d], slot)),
             density,
             pressure_term: pressure / (density * density),
         }
@@ -364,38 +365,46 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for Push<'_, K, D> {
         std::array::from_fn(|d| self.position[d][j])
     }
     #[inline(always)]
-    fn add<A: Arch>(&self, i: &Target<D>, j: usize, dx: [Lane; D], r2: Lane, sum: &mut WallForce<D>) {
+    fn add<A: Arch, L: Lanes>(
+        &self,
+        i: &Target<L, D>,
+        j: usize,
+        dx: [L; D],
+        r2: L,
+        sum: &mut WallForce<D, L>,
+    ) {
         let h = self.kernel.smoothing_length();
-        let f = self.kernel.gradient_over_r::<A>(distance(r2, h));
-        let dv = std::array::from_fn(|d| i.velocity[d] - Lane::splat(self.velocity[d][j]));
-        let approach = dot::<D, A>(dv, dx);
+        let f = self.kernel.gradient_over_r::<A, L>(distance(r2, h));
+        let dv = std::array::from_fn(|d| i.velocity[d] - L::splat(self.velocity[d][j]));
+        let approach = dot::<D, A, L>(dv, dx);
         let rho = self.density[j];
-        let pi = damping::<A>(
+        let pi = damping::<A, L>(
             h,
-            Lane::splat(self.solid.linear),
-            Lane::splat(self.solid.quadratic),
+            L::splat(self.solid.linear),
+            L::splat(self.solid.quadratic),
             approach,
             r2,
-            i.density + Lane::splat(rho),
+            i.density + L::splat(rho),
         );
-        let term = i.pressure_term + Lane::splat(self.pressure[j] / (rho * rho)) + pi;
+        let term = i.pressure_term + L::splat(self.pressure[j] / (rho * rho)) + pi;
         let r = distance(r2, self.solid.spacing);
-        let overlap = (Lane::splat(self.solid.spacing) - r).max(Lane::ZERO);
+        let overlap = (L::splat(self.solid.spacing) - r).max(L::ZERO);
         let coefficient =
-            Lane::splat(-self.solid.wall_mass) * f * term + Lane::splat(self.solid.repulsion) * overlap / r;
+            L::splat(-self.solid.wall_mass) * f * term + L::splat(self.solid.repulsion) * overlap / r;
         for d in 0..D {
             sum.0[d] = A::mul_add(coefficient, dx[d], sum.0[d]);
         }
     }
 }
 
-/// Power of four pushes by the walls' own velocities, over a particle's mass.
+/// Power of several pushes by the walls' own velocities, over a particle's mass.
 #[derive(Clone, Copy)]
-struct Power(Lane);
+struct Power<L = Lane>(L);
+pair_sum!(Power {} { 0 });
 
-impl Default for Power {
+impl<L: Lanes> Default for Power<L> {
     fn default() -> Self {
-        Self(Lane::ZERO)
+        Self(L::ZERO)
     }
 }
 
@@ -403,14 +412,14 @@ impl Default for Power {
 struct PushPower<'a, K, const D: usize>(Push<'a, K, D>);
 
 impl<K: Kernel<D>, const D: usize> PairLaw<D> for PushPower<'_, K, D> {
-    type Target = Target<D>;
-    type Sum = Power;
+    type Target<L: Lanes> = Target<L, D>;
+    type Sum<L: Lanes> = Power<L>;
     #[inline(always)]
     fn target_positions(&self) -> &[Vec<f64>; D] {
         self.0.target_positions()
     }
     #[inline(always)]
-    fn target(&self, slot: usize) -> Target<D> {
+    fn target<L: Lanes>(&self, slot: usize) -> Target<L, D> {
         self.0.target(slot)
     }
     #[inline(always)]
@@ -418,11 +427,11 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for PushPower<'_, K, D> {
         self.0.source_position(j)
     }
     #[inline(always)]
-    fn add<A: Arch>(&self, i: &Target<D>, j: usize, dx: [Lane; D], r2: Lane, sum: &mut Power) {
+    fn add<A: Arch, L: Lanes>(&self, i: &Target<L, D>, j: usize, dx: [L; D], r2: L, sum: &mut Power<L>) {
         let mut push = WallForce::default();
-        self.0.add::<A>(i, j, dx, r2, &mut push);
+        self.0.add::<A, L>(i, j, dx, r2, &mut push);
         for d in 0..D {
-            sum.0 = A::mul_add(push.0[d], Lane::splat(self.0.velocity[d][j]), sum.0);
+            sum.0 = A::mul_add(push.0[d], L::splat(self.0.velocity[d][j]), sum.0);
         }
     }
 }

@@ -11,9 +11,9 @@ use support::{Patch, Running, tank};
 fn passes(c: &mut Criterion) {
     let mut group = c.benchmark_group("pass");
     group.throughput(Throughput::Elements(14_000));
-    let mut patch = Patch::new();
+    let mut patch = Patch::new(Isa::detect());
     group.bench_function("engine", |b| b.iter(|| Patch::effects().run(&mut patch)));
-    let patch = Patch::new();
+    let patch = Patch::new(Isa::detect());
     group.bench_function("naive", |b| b.iter(|| patch.pass.run(&patch.naive, &patch.grid)));
     group.finish();
 }
@@ -27,7 +27,7 @@ fn lists(c: &mut Criterion) {
     group.throughput(Throughput::Elements(n as u64));
     group.bench_function("sort and list", |b| {
         b.iter_batched(
-            || ([x.clone(), y.clone()], Rows::<2>::default(), ClusterList::default()),
+            || ([x.clone(), y.clone()], Rows::<2>::default(), ClusterList::new(Isa::detect())),
             |(mut x, mut rows, mut list)| {
                 rows.sort(&x, &id, 2.0, [-1.0; 2], [1e3; 2]);
                 x.iter_mut().for_each(|column| rows.permute(column));

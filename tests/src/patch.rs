@@ -31,13 +31,15 @@ pub struct Patch {
     pub shown: PairParticles<2>,
     /// Neighbours of the particles.
     pub list: ClusterList,
+    /// Instruction set of the list and of the passes over it.
+    pub isa: Isa,
     /// Number of the particle in each slot, or padding.
     pub id: Vec<u32>,
 }
 
 impl Patch {
     /// Sorts particles and lists all pairs within `reach`.
-    pub fn new(particles: &[Particle], reach: f64) -> Self {
+    pub fn new(particles: &[Particle], reach: f64, isa: Isa) -> Self {
         let mut shown = PairParticles::<2>::new(particles.len(), 1.0);
         let mut pressure: Vec<f64> = particles.iter().map(|p| p.pressure).collect();
         for (k, p) in particles.iter().enumerate() {
@@ -53,9 +55,9 @@ impl Patch {
         rows.permute(&mut pressure);
         rows.permute_ids(&mut id);
         (0..id.len()).for_each(|slot| shown.show(slot, pressure[slot]));
-        let mut list = ClusterList::default();
+        let mut list = ClusterList::new(isa);
         list.build(&shown.position, &shown.position, &rows, reach);
-        Self { shown, list, id }
+        Self { shown, list, id, isa }
     }
 }
 
@@ -68,6 +70,6 @@ impl Pass<2> for RatePass<'_> {
         let shown = &self.0.shown;
         let kernel = CubicSpline::<2>::new(SMOOTHING_LENGTH);
         let law = RateLaw { kernel, effects, targets: shown, sources: shown };
-        pair::pass(Isa::detect(), &law, &self.0.list, self.1);
+        pair::pass(self.0.isa, &law, &self.0.list, self.1);
     }
 }

@@ -16,8 +16,8 @@ use std::path::Path;
 
 /// Acceleration and density rate of each particle, with artificial viscosity and density diffusion.
 fn rates(particles: &[Particle]) -> Vec<[f64; 3]> {
-    let patch = Patch::new(particles, 2.3 * H);
-    let mut sums = vec![RateSum::default(); patch.list.clusters()];
+    let patch = Patch::new(particles, 2.3 * H, Isa::detect());
+    let mut sums = vec![RateSum::default(); patch.list.fours()];
     let coefficients = Coefficients { linear: 1.0, quadratic: 2.0 };
     let damping = ArtificialViscosity::<2>::new(coefficients, 10.0, H);
     let diffusion = Diffusion::<2>::Simple(Simple(Strength(1.0)));

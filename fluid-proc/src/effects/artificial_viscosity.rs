@@ -6,7 +6,7 @@ use super::{FluidEffect, Listed};
 use crate::composition::Composition;
 use crate::rates::{FluidPair, PairEffect, PairRates};
 use halfstep_scene::{ArtificialViscosity as Coefficients, Decision, Derived, EffectName, Fluid, Scene};
-use halfstep_sph::lane::{Arch, Lane};
+use halfstep_sph::lane::{Arch, Lanes};
 
 /// The effect, and its share of a pair.
 #[derive(Clone, Copy, Debug)]
@@ -72,13 +72,13 @@ impl<const D: usize> FluidEffect<D> for ArtificialViscosity<D> {
 }
 
 impl<const D: usize> PairEffect<D> for ArtificialViscosity<D> {
-    type Own = ();
+    type Own<L: Lanes> = ();
     #[inline(always)]
-    fn own(&self, _: usize) {}
+    fn own<L: Lanes>(&self, _: usize) {}
 
     #[inline(always)]
-    fn add<A: Arch>(&self, _: &(), _: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
-        let linear = Lane::splat(self.linear);
+    fn add<A: Arch, L: Lanes>(&self, _: &(), _: usize, pair: &FluidPair<D, L>, rates: &mut PairRates<D, L>) {
+        let linear = L::splat(self.linear);
         rates.bracket = rates.bracket - pair.damping::<A>(self.smoothing_length, linear, self.quadratic);
     }
     fn enter<C: Composition<D>>(self, composition: C) {

@@ -12,14 +12,14 @@ pub mod gradient;
 
 use super::frozen_diffusion::FrozenDiffusion;
 use super::{FluidEffect, Listed, Neighbourhood, evaluations};
-use crate::columns::{fit, four};
+use crate::columns::{each, fit};
 use crate::composition::{Composition, NoShare};
 use crate::rates::{FluidPair, PairEffect, PairRates};
 use crate::walls::Walls;
 use gradient::{GradientLaw, GradientSum};
 use halfstep_scene::{Decision, DensityDiffusion as Variant, Derived, EffectName, Scene};
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Arch, LANES, Lane};
+use halfstep_sph::lane::{Arch, LANES, Lanes};
 use halfstep_sph::pair::{self, dot};
 use halfstep_wire::half_step::Stage;
 
@@ -153,20 +153,26 @@ impl<const D: usize> FluidEffect<D> for DensityDiffusion<D> {
 }
 
 impl<const D: usize> PairEffect<D> for Diffusion<'_, D> {
-    type Own = [Lane; D];
+    type Own<L: Lanes> = [L; D];
     #[inline(always)]
-    fn own(&self, slot: usize) -> [Lane; D] {
+    fn own<L: Lanes>(&self, slot: usize) -> [L; D] {
         match self {
             Self::DeltaSph(d) => d.own(slot),
-            Self::Simple(_) | Self::Hydrostatic(_) => [Lane::ZERO; D],
+            Self::Simple(_) | Self::Hydrostatic(_) => [L::ZERO; D],
         }
     }
     #[inline(always)]
-    fn add<A: Arch>(&self, own: &[Lane; D], j: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
+    fn add<A: Arch, L: Lanes>(
+        &self,
+        own: &[L; D],
+        j: usize,
+        pair: &FluidPair<D, L>,
+        rates: &mut PairRates<D, L>,
+    ) {
         match self {
-            Self::Simple(d) => d.add::<A>(&(), j, pair, rates),
-            Self::Hydrostatic(d) => d.add::<A>(&(), j, pair, rates),
-            Self::DeltaSph(d) => d.add::<A>(own, j, pair, rates),
+            Self::Simple(d) => d.add::<A, L>(&(), j, pair, rates),
+            Self::Hydrostatic(d) => d.add::<A, L>(&(), j, pair, rates),
+            Self::DeltaSph(d) => d.add::<A, L>(own, j, pair, rates),
         }
     }
     fn enter<C: Composition<D>>(self, composition: C) {
@@ -179,22 +185,22 @@ impl<const D: usize> PairEffect<D> for Diffusion<'_, D> {
 }
 
 #[inline(always)]
-fn diffuse<const D: usize, A: Arch>(strength: Strength, psi: Lane, rates: &mut PairRates<D>) {
-    rates.density = A::mul_add(Lane::splat(strength.0), psi, rates.density);
+fn diffuse<const D: usize, A: Arch, L: Lanes>(strength: Strength, psi: L, rates: &mut PairRates<D, L>) {
+    rates.density = A::mul_add(L::splat(strength.0), psi, rates.density);
 }
 
 #[inline(always)]
-fn twice_difference<const D: usize>(pair: &FluidPair<D>) -> Lane {
-    Lane::splat(2.0) * (pair.density_i - pair.density_j)
+fn twice_difference<const D: usize, L: Lanes>(pair: &FluidPair<D, L>) -> L {
+    L::splat(2.0) * (pair.density_i - pair.density_j)
 }
 
 impl<const D: usize> PairEffect<D> for Simple {
-    type Own = ();
+    type Own<L: Lanes> = ();
     #[inline(always)]
-    fn own(&self, _: usize) {}
+    fn own<L: Lanes>(&self, _: usize) {}
     #[inline(always)]
-    fn add<A: Arch>(&self, _: &(), _: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
-        diffuse::<D, A>(self.0, twice_difference(pair), rates);
+    fn add<A: Arch, L: Lanes>(&self, _: &(), _: usize, pair: &FluidPair<D, L>, rates: &mut PairRates<D, L>) {
+        diffuse::<D, A, L>(self.0, twice_difference(pair), rates);
     }
     fn labels(labels: &mut Vec<&'static str>) {
         labels.push("simple diffusion");
@@ -202,13 +208,13 @@ impl<const D: usize> PairEffect<D> for Simple {
 }
 
 impl<const D: usize> PairEffect<D> for Hydrostatic<D> {
-    type Own = ();
+    type Own<L: Lanes> = ();
     #[inline(always)]
-    fn own(&self, _: usize) {}
+    fn own<L: Lanes>(&self, _: usize) {}
     #[inline(always)]
-    fn add<A: Arch>(&self, _: &(), _: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
-        let rest = dot::<D, A>(self.gradient.map(|g| Lane::splat(2.0 * g)), pair.dx);
-        diffuse::<D, A>(self.strength, twice_difference(pair) - rest, rates);
+    fn add<A: Arch, L: Lanes>(&self, _: &(), _: usize, pair: &FluidPair<D, L>, rates: &mut PairRates<D, L>) {
+        let rest = dot::<D, A, L>(self.gradient.map(|g| L::splat(2.0 * g)), pair.dx);
+        diffuse::<D, A, L>(self.strength, twice_difference(pair) - rest, rates);
     }
     fn labels(labels: &mut Vec<&'static str>) {
         labels.push("hydrostatic diffusion");
@@ -216,16 +222,22 @@ impl<const D: usize> PairEffect<D> for Hydrostatic<D> {
 }
 
 impl<const D: usize> PairEffect<D> for DeltaSph<'_, D> {
-    type Own = [Lane; D];
+    type Own<L: Lanes> = [L; D];
     #[inline(always)]
-    fn own(&self, slot: usize) -> [Lane; D] {
-        std::array::from_fn(|d| four(self.gradient, slot, |g| g[d]))
+    fn own<L: Lanes>(&self, slot: usize) -> [L; D] {
+        std::array::from_fn(|d| each(self.gradient, slot, |g| g[d]))
     }
     #[inline(always)]
-    fn add<A: Arch>(&self, own: &[Lane; D], j: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
+    fn add<A: Arch, L: Lanes>(
+        &self,
+        own: &[L; D],
+        j: usize,
+        pair: &FluidPair<D, L>,
+        rates: &mut PairRates<D, L>,
+    ) {
         let gradient = &self.gradient[j];
-        let sum: [Lane; D] = std::array::from_fn(|d| own[d] + Lane::splat(gradient[d]));
-        diffuse::<D, A>(self.strength, twice_difference(pair) - dot::<D, A>(sum, pair.dx), rates);
+        let sum: [L; D] = std::array::from_fn(|d| own[d] + L::splat(gradient[d]));
+        diffuse::<D, A, L>(self.strength, twice_difference(pair) - dot::<D, A, L>(sum, pair.dx), rates);
     }
     fn labels(labels: &mut Vec<&'static str>) {
         labels.push("delta-SPH diffusion");

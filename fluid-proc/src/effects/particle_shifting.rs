@@ -14,8 +14,8 @@ use crate::composition::NoShare;
 use crate::walls::Walls;
 use halfstep_scene::{Decision, Derived, EffectName, Scene};
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Arch, LANES, Lane};
-use halfstep_sph::pair::{self, PairLaw, distance};
+use halfstep_sph::lane::{Arch, LANES, Lane, Lanes};
+use halfstep_sph::pair::{self, PairLaw, distance, pair_sum};
 use halfstep_sph::tensor::determinant;
 use halfstep_wire::half_step::Stage;
 use nalgebra::SMatrix;
@@ -127,17 +127,19 @@ impl<const D: usize> Order<D> {
     }
 }
 
-/// The same of four, as sums.
+/// The same of several, as sums.
 #[derive(Clone, Copy, Debug)]
-struct OrderSum<const D: usize> {
-    crowd: [Lane; D],
+struct OrderSum<const D: usize, L = Lane> {
+    crowd: [L; D],
     /// M; only its upper half.
-    moment: [[Lane; D]; D],
+    moment: [[L; D]; D],
 }
 
-impl<const D: usize> Default for OrderSum<D> {
+pair_sum!(OrderSum { D } { crowd, moment });
+
+impl<L: Lanes, const D: usize> Default for OrderSum<D, L> {
     fn default() -> Self {
-        Self { crowd: [Lane::ZERO; D], moment: [[Lane::ZERO; D]; D] }
+        Self { crowd: [L::ZERO; D], moment: [[L::ZERO; D]; D] }
     }
 }
 
@@ -162,26 +164,26 @@ struct OrderLaw<'a, K, const D: usize> {
 }
 
 impl<K: Kernel<D>, const D: usize> PairLaw<D> for OrderLaw<'_, K, D> {
-    type Target = ();
-    type Sum = OrderSum<D>;
+    type Target<L: Lanes> = ();
+    type Sum<L: Lanes> = OrderSum<D, L>;
 
     #[inline(always)]
     fn target_positions(&self) -> &[Vec<f64>; D] {
         &self.targets.position
     }
     #[inline(always)]
-    fn target(&self, _: usize) {}
+    fn target<L: Lanes>(&self, _: usize) {}
     #[inline(always)]
     fn source_position(&self, j: usize) -> [f64; D] {
         self.sources.sources[j].position
     }
     #[inline(always)]
-    fn add<A: Arch>(&self, _: &(), j: usize, dx: [Lane; D], r2: Lane, sum: &mut OrderSum<D>) {
+    fn add<A: Arch, L: Lanes>(&self, _: &(), j: usize, dx: [L; D], r2: L, sum: &mut OrderSum<D, L>) {
         let r = distance(r2, self.kernel.smoothing_length());
-        let vf = Lane::splat(self.sources.sources[j].volume) * self.kernel.gradient_over_r::<A>(r);
-        let near = self.kernel.value::<A>(r) * Lane::splat(self.at_spacing);
+        let vf = L::splat(self.sources.sources[j].volume) * self.kernel.gradient_over_r::<A, L>(r);
+        let near = self.kernel.value::<A, L>(r) * L::splat(self.at_spacing);
         let near2 = near * near;
-        let crowd = A::mul_add(vf * Lane::splat(PAIRING), near2 * near2, vf);
+        let crowd = A::mul_add(vf * L::splat(PAIRING), near2 * near2, vf);
         for a in 0..D {
             sum.crowd[a] = A::mul_add(crowd, dx[a], sum.crowd[a]);
             let row = -(vf * dx[a]);
@@ -192,13 +194,14 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for OrderLaw<'_, K, D> {
     }
 }
 
-/// Least det M within the kernel's support of four particles.
+/// Least det M within the kernel's support of several particles.
 #[derive(Clone, Copy, Debug)]
-struct LeastSum(Lane);
+struct LeastSum<L = Lane>(L);
+pair_sum!(LeastSum {} { 0 });
 
-impl Default for LeastSum {
+impl<L: Lanes> Default for LeastSum<L> {
     fn default() -> Self {
-        Self(Lane::splat(FAR))
+        Self(L::splat(FAR))
     }
 }
 
@@ -210,24 +213,24 @@ struct LeastLaw<'a, K, const D: usize> {
 }
 
 impl<K: Kernel<D>, const D: usize> PairLaw<D> for LeastLaw<'_, K, D> {
-    type Target = ();
-    type Sum = LeastSum;
+    type Target<L: Lanes> = ();
+    type Sum<L: Lanes> = LeastSum<L>;
 
     #[inline(always)]
     fn target_positions(&self) -> &[Vec<f64>; D] {
         &self.fluid.position
     }
     #[inline(always)]
-    fn target(&self, _: usize) {}
+    fn target<L: Lanes>(&self, _: usize) {}
     #[inline(always)]
     fn source_position(&self, j: usize) -> [f64; D] {
         self.fluid.sources[j].position
     }
     #[inline(always)]
-    fn add<A: Arch>(&self, _: &(), j: usize, _: [Lane; D], r2: Lane, sum: &mut LeastSum) {
+    fn add<A: Arch, L: Lanes>(&self, _: &(), j: usize, _: [L; D], r2: L, sum: &mut LeastSum<L>) {
         let reach = 2.0 * self.kernel.smoothing_length();
         // Far more than any determinant beyond the support.
-        let beyond = (r2 - Lane::splat(reach * reach)).max(Lane::ZERO) * Lane::splat(f64::MAX.sqrt());
-        sum.0 = sum.0.min(Lane::splat(self.order[j].determinant) + beyond);
+        let beyond = (r2 - L::splat(reach * reach)).max(L::ZERO) * L::splat(f64::MAX.sqrt());
+        sum.0 = sum.0.min(L::splat(self.order[j].determinant) + beyond);
     }
 }

@@ -5,27 +5,28 @@
 
 use super::artificial_viscosity::ArtificialViscosity;
 use super::{FluidEffect, Listed, Neighbourhood, evaluations};
-use crate::columns::{PairParticles, fit, four};
+use crate::columns::{PairParticles, each, fit};
 use crate::composition::Composition;
 use crate::rates::{FluidPair, PairEffect, PairRates};
 use crate::walls::Walls;
 use halfstep_scene::{Decision, Derived, EffectName, Scene, dispatch};
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Arch, LANES, Lane};
-use halfstep_sph::pair::{self, PairLaw, distance};
+use halfstep_sph::lane::{Arch, LANES, Lane, Lanes};
+use halfstep_sph::pair::{self, PairLaw, distance, pair_sum};
 use halfstep_wire::half_step::Stage;
 
 /// tau_ab / rho² of each slot.
 #[derive(Clone, Debug, Default)]
 pub struct StressTerm<const D: usize>(pub Vec<[[f64; D]; D]>);
 
-/// dv_a / dx_b of four particles.
+/// dv_a / dx_b of several particles.
 #[derive(Clone, Copy, Debug)]
-pub struct VelocityGradient<const D: usize>(pub [[Lane; D]; D]);
+pub struct VelocityGradient<const D: usize, L = Lane>(pub [[L; D]; D]);
+pair_sum!(VelocityGradient { D } { 0 });
 
-impl<const D: usize> Default for VelocityGradient<D> {
+impl<L: Lanes, const D: usize> Default for VelocityGradient<D, L> {
     fn default() -> Self {
-        Self([[Lane::ZERO; D]; D])
+        Self([[L::ZERO; D]; D])
     }
 }
 
@@ -41,15 +42,15 @@ pub struct GradientLaw<'a, K, const D: usize> {
 
 impl<K: Kernel<D>, const D: usize> PairLaw<D> for GradientLaw<'_, K, D> {
     /// Velocity.
-    type Target = [Lane; D];
-    type Sum = VelocityGradient<D>;
+    type Target<L: Lanes> = [L; D];
+    type Sum<L: Lanes> = VelocityGradient<D, L>;
 
     #[inline(always)]
     fn target_positions(&self) -> &[Vec<f64>; D] {
         &self.targets.position
     }
     #[inline(always)]
-    fn target(&self, slot: usize) -> Self::Target {
+    fn target<L: Lanes>(&self, slot: usize) -> Self::Target<L> {
         self.targets.velocities(slot)
     }
     #[inline(always)]
@@ -57,19 +58,19 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for GradientLaw<'_, K, D> {
         self.sources.sources[j].position
     }
     #[inline(always)]
-    fn add<A: Arch>(
+    fn add<A: Arch, L: Lanes>(
         &self,
-        i: &Self::Target,
+        i: &Self::Target<L>,
         j: usize,
-        dx: [Lane; D],
-        r2: Lane,
-        sum: &mut VelocityGradient<D>,
+        dx: [L; D],
+        r2: L,
+        sum: &mut VelocityGradient<D, L>,
     ) {
-        let f = self.kernel.gradient_over_r::<A>(distance(r2, self.kernel.smoothing_length()));
+        let f = self.kernel.gradient_over_r::<A, L>(distance(r2, self.kernel.smoothing_length()));
         let source = &self.sources.sources[j];
-        let vf = Lane::splat(source.volume) * f;
+        let vf = L::splat(source.volume) * f;
         for a in 0..D {
-            let row = vf * (Lane::splat(source.velocity[a]) - i[a]);
+            let row = vf * (L::splat(source.velocity[a]) - i[a]);
             for b in 0..D {
                 sum.0[a][b] = A::mul_add(row, dx[b], sum.0[a][b]);
             }
@@ -97,16 +98,16 @@ impl<const D: usize> VelocityGradient<D> {
 
 impl<const D: usize> StressTerm<D> {
     #[inline(always)]
-    fn load(&self, slot: usize) -> [[Lane; D]; D] {
-        std::array::from_fn(|a| std::array::from_fn(|b| four(&self.0, slot, |stress| stress[a][b])))
+    fn load<L: Lanes>(&self, slot: usize) -> [[L; D]; D] {
+        std::array::from_fn(|a| std::array::from_fn(|b| each(&self.0, slot, |stress| stress[a][b])))
     }
 }
 
 #[inline(always)]
-fn add_stress<const D: usize, A: Arch>(
-    sum: impl Fn(usize, usize) -> Lane,
-    dx: &[Lane; D],
-    rates: &mut PairRates<D>,
+fn add_stress<const D: usize, A: Arch, L: Lanes>(
+    sum: impl Fn(usize, usize) -> L,
+    dx: &[L; D],
+    rates: &mut PairRates<D, L>,
 ) {
     for a in 0..D {
         for b in 0..D {
@@ -199,16 +200,22 @@ impl<const D: usize> FluidEffect<D> for Viscosity<D> {
 pub struct ViscousStress<'a, const D: usize>(pub &'a StressTerm<D>);
 
 impl<const D: usize> PairEffect<D> for ViscousStress<'_, D> {
-    type Own = [[Lane; D]; D];
+    type Own<L: Lanes> = [[L; D]; D];
     const VECTOR: bool = true;
     #[inline(always)]
-    fn own(&self, slot: usize) -> Self::Own {
+    fn own<L: Lanes>(&self, slot: usize) -> Self::Own<L> {
         self.0.load(slot)
     }
     #[inline(always)]
-    fn add<A: Arch>(&self, own: &Self::Own, j: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
+    fn add<A: Arch, L: Lanes>(
+        &self,
+        own: &Self::Own<L>,
+        j: usize,
+        pair: &FluidPair<D, L>,
+        rates: &mut PairRates<D, L>,
+    ) {
         let other = &self.0.0[j];
-        add_stress::<D, A>(|a, b| own[a][b] + Lane::splat(other[a.min(b)][a.max(b)]), &pair.dx, rates);
+        add_stress::<D, A, L>(|a, b| own[a][b] + L::splat(other[a.min(b)][a.max(b)]), &pair.dx, rates);
     }
     fn enter<C: Composition<D>>(self, composition: C) {
         composition.with(self);
@@ -223,15 +230,21 @@ impl<const D: usize> PairEffect<D> for ViscousStress<'_, D> {
 pub struct ViscosityAtWall<'a, const D: usize>(pub &'a StressTerm<D>);
 
 impl<const D: usize> PairEffect<D> for ViscosityAtWall<'_, D> {
-    type Own = [[Lane; D]; D];
+    type Own<L: Lanes> = [[L; D]; D];
     const VECTOR: bool = true;
     #[inline(always)]
-    fn own(&self, slot: usize) -> Self::Own {
+    fn own<L: Lanes>(&self, slot: usize) -> Self::Own<L> {
         self.0.load(slot)
     }
     #[inline(always)]
-    fn add<A: Arch>(&self, own: &Self::Own, _: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
-        add_stress::<D, A>(|a, b| own[a][b] + own[a][b], &pair.dx, rates);
+    fn add<A: Arch, L: Lanes>(
+        &self,
+        own: &Self::Own<L>,
+        _: usize,
+        pair: &FluidPair<D, L>,
+        rates: &mut PairRates<D, L>,
+    ) {
+        add_stress::<D, A, L>(|a, b| own[a][b] + own[a][b], &pair.dx, rates);
     }
     fn enter<C: Composition<D>>(self, composition: C) {
         composition.with(self);

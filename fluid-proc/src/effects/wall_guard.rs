@@ -18,7 +18,7 @@ use crate::rates::{FluidPair, PairEffect, PairRates};
 use crate::walls::Walls;
 use halfstep_scene::{Decision, Derived, EffectName, Phase, Scene};
 use halfstep_sph::fade::Fade;
-use halfstep_sph::lane::{Arch, Lane};
+use halfstep_sph::lane::{Arch, Lanes};
 
 /// A of the guard.
 pub const GUARD: f64 = 1.0;
@@ -110,14 +110,14 @@ pub struct GuardedViscosity<'a> {
 }
 
 impl<const D: usize> PairEffect<D> for GuardedViscosity<'_> {
-    type Own = ();
+    type Own<L: Lanes> = ();
     #[inline(always)]
-    fn own(&self, _: usize) {}
+    fn own<L: Lanes>(&self, _: usize) {}
 
     #[inline(always)]
-    fn add<A: Arch>(&self, _: &(), j: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
+    fn add<A: Arch, L: Lanes>(&self, _: &(), j: usize, pair: &FluidPair<D, L>, rates: &mut PairRates<D, L>) {
         let near = self.fade.at(pair.r2.sqrt());
-        let linear = A::mul_add(Lane::splat(self.added[j]), near, Lane::splat(self.plain));
+        let linear = A::mul_add(L::splat(self.added[j]), near, L::splat(self.plain));
         rates.bracket = rates.bracket - pair.damping::<A>(self.smoothing_length, linear, self.quadratic);
     }
     fn enter<C: Composition<D>>(self, composition: C) {

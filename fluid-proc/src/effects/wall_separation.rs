@@ -14,7 +14,7 @@ use crate::rates::{FluidPair, PairEffect, PairRates};
 use crate::walls::Walls;
 use halfstep_scene::{Decision, Derived, EffectName, Phase, Scene};
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Arch, Lane};
+use halfstep_sph::lane::{Arch, Lanes};
 use halfstep_sph::pair::dot;
 use halfstep_wire::half_step::Stage;
 
@@ -67,12 +67,12 @@ impl<const D: usize> FluidEffect<D> for WallSeparation<D> {
 pub struct Separating<'a, const D: usize>(pub &'a [[f64; D]]);
 
 impl<const D: usize> PairEffect<D> for Separating<'_, D> {
-    type Own = ();
+    type Own<L: Lanes> = ();
     #[inline(always)]
-    fn own(&self, _: usize) {}
+    fn own<L: Lanes>(&self, _: usize) {}
     #[inline(always)]
-    fn add<A: Arch>(&self, _: &(), j: usize, pair: &FluidPair<D>, rates: &mut PairRates<D>) {
-        let excess = self.0[j].map(Lane::splat);
-        rates.density = A::mul_add(pair.density_i, dot::<D, A>(excess, pair.dx), rates.density);
+    fn add<A: Arch, L: Lanes>(&self, _: &(), j: usize, pair: &FluidPair<D, L>, rates: &mut PairRates<D, L>) {
+        let excess = self.0[j].map(L::splat);
+        rates.density = A::mul_add(pair.density_i, dot::<D, A, L>(excess, pair.dx), rates.density);
     }
 }

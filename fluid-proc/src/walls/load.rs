@@ -5,7 +5,7 @@ use crate::effects::{Effects, FluidEffect};
 use crate::fluid::Fluid;
 use crate::rates::{RateLaw, RateSum};
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{LANES, Lane, Unfused};
+use halfstep_sph::lane::{LANES, Lane, Lanes, Unfused};
 use halfstep_sph::neighbours::PADDING;
 use halfstep_sph::pair::PairLaw;
 use halfstep_sph::with_kernel;
@@ -22,18 +22,17 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         let mut loads = vec![[0.0; D]; walls.slots()];
         let (fluid, mass) = (&self.columns.now, self.columns.now.mass);
         let law = RateLaw { kernel, effects: self.effects.at_walls(), targets: fluid, sources: &walls.shown };
-        for cluster in 0..self.wall_list.clusters() {
-            let slot = cluster * LANES;
+        for slot in (0..self.columns.slots()).step_by(LANES) {
             let target = law.target(slot);
             let real: [bool; LANES] = std::array::from_fn(|k| self.columns.id[slot + k] != PADDING);
-            for &j in self.wall_list.of(cluster) {
+            for &j in self.wall_list.of(slot) {
                 let wall = law.source_position(j as usize);
                 let dx: [Lane; D] = std::array::from_fn(|d| {
                     Lane(std::array::from_fn(|k| fluid.position[d][slot + k] - wall[d]))
                 });
                 let r2 = dx.iter().fold(Lane::ZERO, |sum, &dx| sum + dx * dx);
                 let mut rates = RateSum::default();
-                law.add::<Unfused>(&target, j as usize, dx, r2, &mut rates);
+                law.add::<Unfused, Lane>(&target, j as usize, dx, r2, &mut rates);
                 for k in (0..LANES).filter(|&k| real[k]) {
                     (0..D).for_each(|d| loads[j as usize][d] -= mass * rates.acceleration[d].0[k]);
                 }

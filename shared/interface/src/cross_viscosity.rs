@@ -12,9 +12,9 @@ use halfstep_scene::Treatment;
 use halfstep_sph::artificial_viscosity::damping;
 use halfstep_sph::fade::Fade;
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Arch, LANES, Lane};
+use halfstep_sph::lane::{Arch, LANES, Lane, Lanes};
 use halfstep_sph::neighbours::ClusterList;
-use halfstep_sph::pair::{self, PairLaw, distance, dot};
+use halfstep_sph::pair::{self, PairLaw, distance, dot, pair_sum};
 use halfstep_sph::with_kernel;
 
 /// Up to where C is whole, over the spacing.
@@ -34,34 +34,35 @@ struct Law<'a, K, const D: usize> {
 }
 
 #[derive(Clone, Copy)]
-struct Target<const D: usize> {
-    velocity: [Lane; D],
-    density: Lane,
+struct Target<L, const D: usize> {
+    velocity: [L; D],
+    density: L,
 }
 
-/// Sum of m_j Pi_ij grad W for four targets.
+/// Sum of m_j Pi_ij grad W.
 #[derive(Clone, Copy)]
-struct Sum<const D: usize>([Lane; D]);
+struct Sum<const D: usize, L = Lane>([L; D]);
+pair_sum!(Sum { D } { 0 });
 
-impl<const D: usize> Default for Sum<D> {
+impl<L: Lanes, const D: usize> Default for Sum<D, L> {
     fn default() -> Self {
-        Self([Lane::ZERO; D])
+        Self([L::ZERO; D])
     }
 }
 
 impl<K: Kernel<D>, const D: usize> PairLaw<D> for Law<'_, K, D> {
-    type Target = Target<D>;
-    type Sum = Sum<D>;
+    type Target<L: Lanes> = Target<L, D>;
+    type Sum<L: Lanes> = Sum<D, L>;
 
     #[inline(always)]
     fn target_positions(&self) -> &[Vec<f64>; D] {
         &self.targets.position
     }
     #[inline(always)]
-    fn target(&self, slot: usize) -> Target<D> {
+    fn target<L: Lanes>(&self, slot: usize) -> Target<L, D> {
         Target {
-            velocity: std::array::from_fn(|d| Lane::load(&self.targets.velocity[d], slot)),
-            density: Lane::load(&self.targets.density, slot),
+            velocity: std::array::from_fn(|d| L::load(&self.targets.velocity[d], slot)),
+            density: L::load(&self.targets.density, slot),
         }
     }
     #[inline(always)]
@@ -69,16 +70,16 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for Law<'_, K, D> {
         std::array::from_fn(|d| self.sources.position[d][j])
     }
     #[inline(always)]
-    fn add<A: Arch>(&self, i: &Target<D>, j: usize, dx: [Lane; D], r2: Lane, sum: &mut Sum<D>) {
+    fn add<A: Arch, L: Lanes>(&self, i: &Target<L, D>, j: usize, dx: [L; D], r2: L, sum: &mut Sum<D, L>) {
         let h = self.kernel.smoothing_length();
         let r = distance(r2, h);
-        let f = self.kernel.gradient_over_r::<A>(r);
-        let dv = std::array::from_fn(|d| i.velocity[d] - Lane::splat(self.sources.velocity[d][j]));
-        let density_sum = i.density + Lane::splat(self.sources.density[j]);
+        let f = self.kernel.gradient_over_r::<A, L>(r);
+        let dv = std::array::from_fn(|d| i.velocity[d] - L::splat(self.sources.velocity[d][j]));
+        let density_sum = i.density + L::splat(self.sources.density[j]);
         // A function of r alone: the same for both sides of a pair.
-        let strength = A::mul_add(Lane::splat(self.added), self.near.at(r), Lane::splat(self.far));
-        let pi = damping::<A>(h, strength, Lane::ZERO, dot::<D, A>(dv, dx), r2, density_sum);
-        let coefficient = Lane::splat(-self.sources.mass[j]) * pi * f;
+        let strength = A::mul_add(L::splat(self.added), self.near.at(r), L::splat(self.far));
+        let pi = damping::<A, L>(h, strength, L::ZERO, dot::<D, A, L>(dv, dx), r2, density_sum);
+        let coefficient = L::splat(-self.sources.mass[j]) * pi * f;
         for d in 0..D {
             sum.0[d] = A::mul_add(coefficient, dx[d], sum.0[d]);
         }
@@ -135,7 +136,7 @@ impl<const D: usize> CrossViscosity<D> {
         let far = p.cross_viscosity_far * sound_speed;
         let added = (p.cross_viscosity - p.cross_viscosity_far) * sound_speed;
         let near = Fade::new(FULL * p.resolution, GONE * p.resolution);
-        self.sums.resize(list.clusters(), Sum::default());
+        self.sums.resize(list.fours(), Sum::default());
         with_kernel!(p.kernel, p.smoothing_length, D, |kernel| {
             let law = Law { kernel, targets, sources, far, added, near };
             pair::pass(p.isa, &law, list, &mut self.sums);

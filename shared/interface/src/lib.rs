@@ -46,8 +46,9 @@ pub use thin_plate::thin_plate_screen;
 use halfstep_scene::geometry::Plate;
 use halfstep_scene::{Decision, Derived, EffectName, KernelName, Phase, Scene, Treatment};
 use halfstep_sph::extrapolation::ExtrapolationSum;
-use halfstep_sph::lane::{Isa, LANES, Lane};
-use halfstep_sph::neighbours::{ClusterList, PADDING};
+use halfstep_sph::lane::{Isa, LANES, Lane, Lanes};
+use halfstep_sph::neighbours::ClusterList;
+use halfstep_sph::pair::pair_sum;
 use halfstep_sph::state_equation::StateEquation;
 use halfstep_wire::protocol::StateRecord;
 use screen::Screen;
@@ -121,23 +122,24 @@ impl<const D: usize> Parameters<D> {
     }
 }
 
-/// What the solid does to a cluster of four fluid particles.
+/// What the solid does to several fluid particles.
 #[derive(Clone, Copy, Debug)]
-pub struct FluidSum<const D: usize> {
+pub struct FluidSum<const D: usize, L = Lane> {
     /// Acceleration, m/s².
-    pub acceleration: [Lane; D],
+    pub acceleration: [L; D],
     /// Rate of density, kg/(m³ s).
-    pub density_rate: Lane,
+    pub density_rate: L,
 }
+pair_sum!(FluidSum { D } { acceleration, density_rate });
 
-impl<const D: usize> Default for FluidSum<D> {
+impl<L: Lanes, const D: usize> Default for FluidSum<D, L> {
     fn default() -> Self {
-        Self { acceleration: [Lane::ZERO; D], density_rate: Lane::ZERO }
+        Self { acceleration: [L::ZERO; D], density_rate: L::ZERO }
     }
 }
 
-/// Force of the fluid on a cluster of four solid particles, N (2D: N/m).
-pub type SolidForce<const D: usize> = crate::phase_blind::Vector<D>;
+/// Force of the fluid on several solid particles, N (2D: N/m).
+pub type SolidForce<const D: usize, L = Lane> = crate::phase_blind::Vector<D, L>;
 
 /// Both records, sorted, with the lists between them.
 pub struct Interface<const D: usize> {
@@ -162,12 +164,13 @@ pub struct Interface<const D: usize> {
 impl<const D: usize> Interface<D> {
     /// An interface without particles.
     pub fn new(parameters: Parameters<D>) -> Self {
+        let list = ClusterList::new(parameters.isa);
         Self {
             parameters,
             fluid: InterfaceParticles::default(),
             solid: InterfaceParticles::default(),
-            fluid_list: ClusterList::default(),
-            solid_list: ClusterList::default(),
+            fluid_list: list.clone(),
+            solid_list: list,
             epoch: None,
             fluid_sums: Vec::new(),
             solid_forces: Vec::new(),
@@ -177,9 +180,9 @@ impl<const D: usize> Interface<D> {
         }
     }
 
-    /// Pairs listed between the phases, four targets each.
+    /// Pairs that the passes between the phases evaluate.
     pub fn pairs(&self) -> usize {
-        LANES * (self.fluid_list.entries() + self.solid_list.entries())
+        self.fluid_list.pairs() + self.solid_list.pairs()
     }
 
     fn skin(&self) -> f64 {
@@ -219,7 +222,7 @@ impl<const D: usize> Interface<D> {
     /// What the solid does to the fluid. `visit(record, acceleration, density_rate)` for each fluid record that has
     /// solid neighbours in its cluster.
     pub fn act_on_fluid(&mut self, mut visit: impl FnMut(usize, [f64; D], f64)) {
-        self.fluid_sums.resize(self.fluid_list.clusters(), FluidSum::default());
+        self.fluid_sums.resize(self.fluid_list.fours(), FluidSum::default());
         let mut sums = std::mem::take(&mut self.fluid_sums);
         match self.parameters.treatment {
             Treatment::MovingWall => match &self.screen {
@@ -237,7 +240,7 @@ impl<const D: usize> Interface<D> {
 
     /// Force of the fluid on the solid: `visit(record, force)`.
     pub fn act_on_solid(&mut self, mut visit: impl FnMut(usize, [f64; D])) {
-        self.solid_forces.resize(self.solid_list.clusters(), SolidForce::default());
+        self.solid_forces.resize(self.solid_list.fours(), SolidForce::default());
         let mut sums = std::mem::take(&mut self.solid_forces);
         match self.parameters.treatment {
             Treatment::MovingWall => match &self.screen {
@@ -258,7 +261,7 @@ impl<const D: usize> Interface<D> {
         if self.parameters.treatment == Treatment::MovingWall {
             return;
         }
-        self.solid_rates.resize(self.solid_list.clusters(), SolidRates::default());
+        self.solid_rates.resize(self.solid_list.fours(), SolidRates::default());
         let mut sums = std::mem::take(&mut self.solid_rates);
         phase_blind::rates_of_solid(self, &mut sums);
         for (slot, record) in self.solid.slots() {
@@ -269,22 +272,18 @@ impl<const D: usize> Interface<D> {
         self.solid_rates = sums;
     }
 
-    /// Smallest distance between a fluid and a solid particle, m; infinite where none is near.
+    /// Smallest distance between a fluid and a solid particle, m; infinite where none is within the kernel's support.
     pub fn smallest_distance(&self) -> f64 {
         let mut least = f64::INFINITY;
-        for cluster in 0..self.fluid_list.clusters() {
-            for &j in self.fluid_list.of(cluster) {
-                for k in 0..LANES {
-                    let i = cluster * LANES + k;
-                    if self.fluid.record_of(i) != PADDING {
-                        let r2: f64 = (0..D)
-                            .map(|d| (self.fluid.position[d][i] - self.solid.position[d][j as usize]).powi(2))
-                            .sum();
-                        least = least.min(r2);
-                    }
-                }
+        for (i, _) in self.fluid.slots() {
+            for &j in self.fluid_list.of(i) {
+                let apart = |d: usize| self.fluid.position[d][i] - self.solid.position[d][j as usize];
+                let r2: f64 = (0..D).map(|d| apart(d).powi(2)).sum();
+                least = least.min(r2);
             }
         }
-        least.sqrt()
+        // What else a list holds hangs on how many particles share it.
+        let distance = least.sqrt();
+        if distance < 2.0 * self.parameters.smoothing_length { distance } else { f64::INFINITY }
     }
 }

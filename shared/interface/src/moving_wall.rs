@@ -11,13 +11,13 @@
 use super::{FluidSum, Interface, InterfaceParticles, Parameters, SolidForce};
 use halfstep_sph::extrapolation::{Extrapolation, ExtrapolationSum};
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Arch, LANES, Lane};
+use halfstep_sph::lane::{Arch, LANES, Lanes};
 use halfstep_sph::pair::{self, PairLaw, distance, dot};
 use halfstep_sph::with_kernel;
 
 pub(super) fn show_pressure<const D: usize>(interface: &mut Interface<D>) {
     let mut sums = std::mem::take(&mut interface.wall_sums);
-    sums.resize(interface.solid_list.clusters(), ExtrapolationSum::default());
+    sums.resize(interface.solid_list.fours(), ExtrapolationSum::default());
     let p = &interface.parameters;
     with_kernel!(p.kernel, p.smoothing_length, D, |kernel| {
         let law = extrapolation(interface, kernel);
@@ -58,14 +58,14 @@ pub(super) fn extrapolated<const D: usize>(p: &Parameters<D>, sum: &Extrapolatio
 
 /// Pressure of a solid particle toward the fluid, which for a particle of a thin plate depends on where the fluid is.
 pub(super) trait WallPressure<const D: usize>: Copy + Send + Sync {
-    /// What is loaded of four solid particles.
-    type Own: Copy;
-    /// Loads the solid particles at `slot..slot + 4`.
-    fn own(&self, slot: usize) -> Self::Own;
-    /// p / rho² of four solid particles, toward fluid at `to_fluid` = x_f - x_s.
-    fn of<A: Arch>(&self, own: &Self::Own, to_fluid: [Lane; D]) -> Lane;
-    /// p / rho² and m / rho of the solid particle `j`, toward four fluid particles.
-    fn to<A: Arch>(&self, j: usize, to_fluid: [Lane; D]) -> (Lane, Lane);
+    /// What is loaded of solid particles.
+    type Own<L: Lanes>: Copy;
+    /// Loads the solid particles from `slot` on.
+    fn own<L: Lanes>(&self, slot: usize) -> Self::Own<L>;
+    /// p / rho² of solid particles, toward fluid at `to_fluid` = x_f - x_s.
+    fn of<A: Arch, L: Lanes>(&self, own: &Self::Own<L>, to_fluid: [L; D]) -> L;
+    /// p / rho² and m / rho of the solid particle `j`, toward fluid particles.
+    fn to<A: Arch, L: Lanes>(&self, j: usize, to_fluid: [L; D]) -> (L, L);
 }
 
 /// One pressure whatever the fluid's place is: the columns of the solid.
@@ -73,31 +73,31 @@ pub(super) trait WallPressure<const D: usize>: Copy + Send + Sync {
 struct OneFace<'a, const D: usize>(&'a InterfaceParticles<D>);
 
 impl<const D: usize> WallPressure<D> for OneFace<'_, D> {
-    type Own = Lane;
+    type Own<L: Lanes> = L;
 
     #[inline(always)]
-    fn own(&self, slot: usize) -> Lane {
-        let density = Lane::load(&self.0.density, slot);
-        Lane::load(&self.0.pressure, slot) / (density * density)
+    fn own<L: Lanes>(&self, slot: usize) -> L {
+        let density = L::load(&self.0.density, slot);
+        L::load(&self.0.pressure, slot) / (density * density)
     }
     #[inline(always)]
-    fn of<A: Arch>(&self, own: &Lane, _: [Lane; D]) -> Lane {
+    fn of<A: Arch, L: Lanes>(&self, own: &L, _: [L; D]) -> L {
         *own
     }
     #[inline(always)]
-    fn to<A: Arch>(&self, j: usize, _: [Lane; D]) -> (Lane, Lane) {
+    fn to<A: Arch, L: Lanes>(&self, j: usize, _: [L; D]) -> (L, L) {
         let (side, rho) = (self.0, self.0.density[j]);
-        (Lane::splat(side.pressure[j] / (rho * rho)), Lane::splat(side.mass[j] / rho))
+        (L::splat(side.pressure[j] / (rho * rho)), L::splat(side.mass[j] / rho))
     }
 }
 
-/// Four fluid particles.
+/// Several fluid particles.
 #[derive(Clone, Copy)]
-struct OfFluid<const D: usize> {
-    velocity: [Lane; D],
-    density: Lane,
+struct OfFluid<L, const D: usize> {
+    velocity: [L; D],
+    density: L,
     /// p / rho².
-    pressure_term: Lane,
+    pressure_term: L,
 }
 
 struct OnFluid<'a, K, S, const D: usize> {
@@ -108,21 +108,21 @@ struct OnFluid<'a, K, S, const D: usize> {
 }
 
 impl<K: Kernel<D>, S: WallPressure<D>, const D: usize> PairLaw<D> for OnFluid<'_, K, S, D> {
-    type Target = OfFluid<D>;
-    type Sum = FluidSum<D>;
+    type Target<L: Lanes> = OfFluid<L, D>;
+    type Sum<L: Lanes> = FluidSum<D, L>;
 
     #[inline(always)]
     fn target_positions(&self) -> &[Vec<f64>; D] {
         &self.targets.position
     }
     #[inline(always)]
-    fn target(&self, slot: usize) -> OfFluid<D> {
+    fn target<L: Lanes>(&self, slot: usize) -> OfFluid<L, D> {
         let side = self.targets;
-        let density = Lane::load(&side.density, slot);
+        let density = L::load(&side.density, slot);
         OfFluid {
-            velocity: std::array::from_fn(|d| Lane::load(&side.velocity[d], slot)),
+            velocity: std::array::from_fn(|d| L::load(&side.velocity[d], slot)),
             density,
-            pressure_term: Lane::load(&side.pressure, slot) / (density * density),
+            pressure_term: L::load(&side.pressure, slot) / (density * density),
         }
     }
     #[inline(always)]
@@ -130,16 +130,23 @@ impl<K: Kernel<D>, S: WallPressure<D>, const D: usize> PairLaw<D> for OnFluid<'_
         std::array::from_fn(|d| self.sources.position[d][j])
     }
     #[inline(always)]
-    fn add<A: Arch>(&self, i: &OfFluid<D>, j: usize, dx: [Lane; D], r2: Lane, sum: &mut FluidSum<D>) {
-        let f = self.kernel.gradient_over_r::<A>(distance(r2, self.kernel.smoothing_length()));
-        let (term, volume) = self.wall.to::<A>(j, dx);
+    fn add<A: Arch, L: Lanes>(
+        &self,
+        i: &OfFluid<L, D>,
+        j: usize,
+        dx: [L; D],
+        r2: L,
+        sum: &mut FluidSum<D, L>,
+    ) {
+        let f = self.kernel.gradient_over_r::<A, L>(distance(r2, self.kernel.smoothing_length()));
+        let (term, volume) = self.wall.to::<A, L>(j, dx);
         let s = self.sources;
-        let coefficient = Lane::splat(s.mass[j]) * (i.pressure_term + term) * f;
-        let dv = std::array::from_fn(|d| i.velocity[d] - Lane::splat(s.velocity[d][j]));
+        let coefficient = L::splat(s.mass[j]) * (i.pressure_term + term) * f;
+        let dv = std::array::from_fn(|d| i.velocity[d] - L::splat(s.velocity[d][j]));
         for d in 0..D {
             sum.acceleration[d] = A::mul_add(-coefficient, dx[d], sum.acceleration[d]);
         }
-        sum.density_rate = A::mul_add(i.density * volume * f, dot::<D, A>(dv, dx), sum.density_rate);
+        sum.density_rate = A::mul_add(i.density * volume * f, dot::<D, A, L>(dv, dx), sum.density_rate);
     }
 }
 
@@ -152,29 +159,36 @@ struct OnSolid<'a, K, S, const D: usize> {
 
 impl<K: Kernel<D>, S: WallPressure<D>, const D: usize> PairLaw<D> for OnSolid<'_, K, S, D> {
     /// Mass, and what it shows.
-    type Target = (Lane, S::Own);
-    type Sum = SolidForce<D>;
+    type Target<L: Lanes> = (L, S::Own<L>);
+    type Sum<L: Lanes> = SolidForce<D, L>;
 
     #[inline(always)]
     fn target_positions(&self) -> &[Vec<f64>; D] {
         &self.targets.position
     }
     #[inline(always)]
-    fn target(&self, slot: usize) -> Self::Target {
-        (Lane::load(&self.targets.mass, slot), self.wall.own(slot))
+    fn target<L: Lanes>(&self, slot: usize) -> Self::Target<L> {
+        (L::load(&self.targets.mass, slot), self.wall.own(slot))
     }
     #[inline(always)]
     fn source_position(&self, j: usize) -> [f64; D] {
         std::array::from_fn(|d| self.sources.position[d][j])
     }
     #[inline(always)]
-    fn add<A: Arch>(&self, i: &Self::Target, j: usize, dx: [Lane; D], r2: Lane, sum: &mut SolidForce<D>) {
-        let f = self.kernel.gradient_over_r::<A>(distance(r2, self.kernel.smoothing_length()));
+    fn add<A: Arch, L: Lanes>(
+        &self,
+        i: &Self::Target<L>,
+        j: usize,
+        dx: [L; D],
+        r2: L,
+        sum: &mut SolidForce<D, L>,
+    ) {
+        let f = self.kernel.gradient_over_r::<A, L>(distance(r2, self.kernel.smoothing_length()));
         let (mass, own) = i;
         let (s, rho) = (self.sources, self.sources.density[j]);
-        let term = Lane::splat(s.pressure[j] / (rho * rho));
-        let own_term = self.wall.of::<A>(own, dx.map(|x| -x));
-        let coefficient = *mass * (Lane::splat(s.mass[j]) * (own_term + term) * f);
+        let term = L::splat(s.pressure[j] / (rho * rho));
+        let own_term = self.wall.of::<A, L>(own, dx.map(|x| -x));
+        let coefficient = *mass * (L::splat(s.mass[j]) * (own_term + term) * f);
         for d in 0..D {
             sum.0[d] = A::mul_add(-coefficient, dx[d], sum.0[d]);
         }

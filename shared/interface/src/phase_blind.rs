@@ -9,32 +9,35 @@
 
 use super::{FluidSum, Interface, InterfaceParticles};
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Arch, Lane};
-use halfstep_sph::pair::{self, PairLaw, distance, dot};
+use halfstep_sph::lane::{Arch, Lane, Lanes};
+use halfstep_sph::pair::{self, PairLaw, distance, dot, pair_sum};
 use halfstep_sph::with_kernel;
 
-/// A vector for each of four particles.
+/// A vector for each of several particles.
 #[derive(Clone, Copy, Debug)]
-pub struct Vector<const D: usize>(pub [Lane; D]);
+pub struct Vector<const D: usize, L = Lane>(pub [L; D]);
+pair_sum!(Vector { D } { 0 });
 
-impl<const D: usize> Default for Vector<D> {
+impl<L: Lanes, const D: usize> Default for Vector<D, L> {
     fn default() -> Self {
-        Self([Lane::ZERO; D])
+        Self([L::ZERO; D])
     }
 }
 
-/// What the fluid adds to the rates of four solid particles.
+/// What the fluid adds to the rates of several solid particles.
 #[derive(Clone, Copy, Debug)]
-pub struct SolidRates<const D: usize> {
+pub struct SolidRates<const D: usize, L = Lane> {
     /// Rate of density, kg/(m³ s).
-    pub density_rate: Lane,
+    pub density_rate: L,
     /// dv_a / dx_b, 1/s.
-    pub gradient: [[Lane; D]; D],
+    pub gradient: [[L; D]; D],
 }
 
-impl<const D: usize> Default for SolidRates<D> {
+pair_sum!(SolidRates { D } { density_rate, gradient });
+
+impl<L: Lanes, const D: usize> Default for SolidRates<D, L> {
     fn default() -> Self {
-        Self { density_rate: Lane::ZERO, gradient: [[Lane::ZERO; D]; D] }
+        Self { density_rate: L::ZERO, gradient: [[L::ZERO; D]; D] }
     }
 }
 
@@ -42,11 +45,11 @@ impl<const D: usize> Default for SolidRates<D> {
 pub(super) fn show_stress<const D: usize>(_: &mut Interface<D>) {}
 
 #[derive(Clone, Copy)]
-struct Target<const D: usize> {
-    velocity: [Lane; D],
-    density: Lane,
-    mass: Lane,
-    stress_term: [[Lane; D]; D],
+struct Target<L, const D: usize> {
+    velocity: [L; D],
+    density: L,
+    mass: L,
+    stress_term: [[L; D]; D],
 }
 
 struct Blind<'a, K, const D: usize> {
@@ -57,31 +60,31 @@ struct Blind<'a, K, const D: usize> {
 
 impl<K: Kernel<D>, const D: usize> Blind<'_, K, D> {
     #[inline(always)]
-    fn load(&self, slot: usize) -> Target<D> {
+    fn load<L: Lanes>(&self, slot: usize) -> Target<L, D> {
         let t = self.targets;
         Target {
-            velocity: std::array::from_fn(|d| Lane::load(&t.velocity[d], slot)),
-            density: Lane::load(&t.density, slot),
-            mass: Lane::load(&t.mass, slot),
+            velocity: std::array::from_fn(|d| L::load(&t.velocity[d], slot)),
+            density: L::load(&t.density, slot),
+            mass: L::load(&t.mass, slot),
             stress_term: std::array::from_fn(|a| {
-                std::array::from_fn(|b| Lane::load(&t.stress_term[a.min(b)][a.max(b)], slot))
+                std::array::from_fn(|b| L::load(&t.stress_term[a.min(b)][a.max(b)], slot))
             }),
         }
     }
 
     #[inline(always)]
-    fn slope<A: Arch>(&self, r2: Lane) -> Lane {
-        self.kernel.gradient_over_r::<A>(distance(r2, self.kernel.smoothing_length()))
+    fn slope<A: Arch, L: Lanes>(&self, r2: L) -> L {
+        self.kernel.gradient_over_r::<A, L>(distance(r2, self.kernel.smoothing_length()))
     }
 
     /// Acceleration of i by j.
     #[inline(always)]
-    fn acceleration<A: Arch>(&self, i: &Target<D>, j: usize, dx: [Lane; D], f: Lane) -> [Lane; D] {
-        let mf = Lane::splat(self.sources.mass[j]) * f;
+    fn acceleration<A: Arch, L: Lanes>(&self, i: &Target<L, D>, j: usize, dx: [L; D], f: L) -> [L; D] {
+        let mf = L::splat(self.sources.mass[j]) * f;
         std::array::from_fn(|a| {
-            let mut sum = Lane::ZERO;
+            let mut sum = L::ZERO;
             for b in 0..D {
-                let sj = Lane::splat(self.sources.stress_term[a.min(b)][a.max(b)][j]);
+                let sj = L::splat(self.sources.stress_term[a.min(b)][a.max(b)][j]);
                 sum = A::mul_add(i.stress_term[a][b] + sj, dx[b], sum);
             }
             mf * sum
@@ -89,28 +92,28 @@ impl<K: Kernel<D>, const D: usize> Blind<'_, K, D> {
     }
 
     #[inline(always)]
-    fn velocity_difference(&self, i: &Target<D>, j: usize) -> [Lane; D] {
-        std::array::from_fn(|d| i.velocity[d] - Lane::splat(self.sources.velocity[d][j]))
+    fn velocity_difference<L: Lanes>(&self, i: &Target<L, D>, j: usize) -> [L; D] {
+        std::array::from_fn(|d| i.velocity[d] - L::splat(self.sources.velocity[d][j]))
     }
 
     #[inline(always)]
-    fn volume(&self, j: usize) -> Lane {
-        Lane::splat(self.sources.mass[j] / self.sources.density[j])
+    fn volume<L: Lanes>(&self, j: usize) -> L {
+        L::splat(self.sources.mass[j] / self.sources.density[j])
     }
 }
 
 macro_rules! pair_law {
-    ($law:ident, $sum:ty, |$s:ident, $arch:ident, $i:ident, $j:ident, $dx:ident, $r2:ident, $out:ident| $body:block) => {
+    ($law:ident, $sum:ident, |$s:ident, $arch:ident, $i:ident, $j:ident, $dx:ident, $r2:ident, $out:ident| $body:block) => {
         struct $law<'a, K, const D: usize>(Blind<'a, K, D>);
         impl<K: Kernel<D>, const D: usize> PairLaw<D> for $law<'_, K, D> {
-            type Target = Target<D>;
-            type Sum = $sum;
+            type Target<L: Lanes> = Target<L, D>;
+            type Sum<L: Lanes> = $sum<D, L>;
             #[inline(always)]
             fn target_positions(&self) -> &[Vec<f64>; D] {
                 &self.0.targets.position
             }
             #[inline(always)]
-            fn target(&self, slot: usize) -> Target<D> {
+            fn target<L: Lanes>(&self, slot: usize) -> Target<L, D> {
                 self.0.load(slot)
             }
             #[inline(always)]
@@ -118,13 +121,13 @@ macro_rules! pair_law {
                 std::array::from_fn(|d| self.0.sources.position[d][j])
             }
             #[inline(always)]
-            fn add<$arch: Arch>(
+            fn add<$arch: Arch, L: Lanes>(
                 &self,
-                $i: &Target<D>,
+                $i: &Target<L, D>,
                 $j: usize,
-                $dx: [Lane; D],
-                $r2: Lane,
-                $out: &mut $sum,
+                $dx: [L; D],
+                $r2: L,
+                $out: &mut $sum<D, L>,
             ) {
                 let $s = &self.0;
                 $body
@@ -133,28 +136,29 @@ macro_rules! pair_law {
     };
 }
 
-pair_law!(OnFluid, FluidSum<D>, |s, A, i, j, dx, r2, sum| {
-    let f = s.slope::<A>(r2);
-    let a = s.acceleration::<A>(i, j, dx, f);
+pair_law!(OnFluid, FluidSum, |s, A, i, j, dx, r2, sum| {
+    let f = s.slope::<A, _>(r2);
+    let a = s.acceleration::<A, _>(i, j, dx, f);
     for d in 0..D {
         sum.acceleration[d] += a[d];
     }
-    let vx = dot::<D, A>(s.velocity_difference(i, j), dx);
+    let vx = dot::<D, A, _>(s.velocity_difference(i, j), dx);
     sum.density_rate = A::mul_add(i.density * s.volume(j) * f, vx, sum.density_rate);
 });
 
-pair_law!(OnSolid, Vector<D>, |s, A, i, j, dx, r2, sum| {
-    let f = s.slope::<A>(r2);
-    let a = s.acceleration::<A>(i, j, dx, f);
+pair_law!(OnSolid, Vector, |s, A, i, j, dx, r2, sum| {
+    let f = s.slope::<A, _>(r2);
+    let a = s.acceleration::<A, _>(i, j, dx, f);
     for d in 0..D {
         sum.0[d] = A::mul_add(i.mass, a[d], sum.0[d]);
     }
 });
 
-pair_law!(RatesOfSolid, SolidRates<D>, |s, A, i, j, dx, r2, sum| {
-    let vf = s.volume(j) * s.slope::<A>(r2);
+pair_law!(RatesOfSolid, SolidRates, |s, A, i, j, dx, r2, sum| {
+    let f = s.slope::<A, _>(r2);
+    let vf = f * s.volume(j);
     let dv = s.velocity_difference(i, j);
-    sum.density_rate = A::mul_add(i.density * vf, dot::<D, A>(dv, dx), sum.density_rate);
+    sum.density_rate = A::mul_add(i.density * vf, dot::<D, A, _>(dv, dx), sum.density_rate);
     for a in 0..D {
         for b in 0..D {
             sum.gradient[a][b] = A::mul_add(-(vf * dv[a]), dx[b], sum.gradient[a][b]);

@@ -18,7 +18,7 @@ use super::moving_wall::{WallPressure, extrapolated, extrapolation};
 use super::{Interface, InterfaceParticles, Parameters};
 use halfstep_sph::extrapolation::{Extrapolation, ExtrapolationSum};
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Arch, LANES, Lane};
+use halfstep_sph::lane::{Arch, LANES, Lanes};
 use halfstep_sph::neighbours::PADDING;
 use halfstep_sph::pair::{self, PairLaw, dot};
 use halfstep_sph::tensor;
@@ -162,15 +162,15 @@ fn widest_axis<const D: usize>(x: &[[f64; D]]) -> usize {
 
 /// chi: the share of the normal's side that fluid has.
 #[inline(always)]
-fn share<const D: usize, A: Arch>(
-    normal: [Lane; D],
-    before: Lane,
-    to_fluid: [Lane; D],
+fn share<const D: usize, A: Arch, L: Lanes>(
+    normal: [L; D],
+    before: L,
+    to_fluid: [L; D],
     sharpness: f64,
-) -> Lane {
-    let height = before + dot::<D, A>(normal, to_fluid);
-    let share = A::mul_add(height, Lane::splat(sharpness), Lane::splat(0.5));
-    share.max(Lane::ZERO).min(Lane::splat(1.0))
+) -> L {
+    let height = before + dot::<D, A, L>(normal, to_fluid);
+    let share = A::mul_add(height, L::splat(sharpness), L::splat(0.5));
+    share.max(L::ZERO).min(L::splat(1.0))
 }
 
 /// A state on each side.
@@ -183,39 +183,39 @@ pub(super) struct TwoFaces<'a, const D: usize> {
     sharpness: f64,
 }
 
-/// Of four solid particles.
+/// Of several solid particles.
 #[derive(Clone, Copy)]
-pub(super) struct Own<const D: usize> {
-    normal: [Lane; D],
-    before: Lane,
-    pressure_term: [Lane; 2],
+pub(super) struct Own<L, const D: usize> {
+    normal: [L; D],
+    before: L,
+    pressure_term: [L; 2],
 }
 
-fn between<A: Arch>([against, along]: [Lane; 2], share: Lane) -> Lane {
+fn between<A: Arch, L: Lanes>([against, along]: [L; 2], share: L) -> L {
     A::mul_add(share, along - against, against)
 }
 
 impl<const D: usize> WallPressure<D> for TwoFaces<'_, D> {
-    type Own = Own<D>;
+    type Own<L: Lanes> = Own<L, D>;
 
     #[inline(always)]
-    fn own(&self, slot: usize) -> Own<D> {
+    fn own<L: Lanes>(&self, slot: usize) -> Own<L, D> {
         Own {
-            normal: std::array::from_fn(|d| Lane::load(&self.normal[d], slot)),
-            before: Lane::load(self.before, slot),
-            pressure_term: std::array::from_fn(|k| Lane::load(&self.faces[k].pressure_term, slot)),
+            normal: std::array::from_fn(|d| L::load(&self.normal[d], slot)),
+            before: L::load(self.before, slot),
+            pressure_term: std::array::from_fn(|k| L::load(&self.faces[k].pressure_term, slot)),
         }
     }
     #[inline(always)]
-    fn of<A: Arch>(&self, own: &Own<D>, to_fluid: [Lane; D]) -> Lane {
-        between::<A>(own.pressure_term, share::<D, A>(own.normal, own.before, to_fluid, self.sharpness))
+    fn of<A: Arch, L: Lanes>(&self, own: &Own<L, D>, to_fluid: [L; D]) -> L {
+        between::<A, L>(own.pressure_term, share::<D, A, L>(own.normal, own.before, to_fluid, self.sharpness))
     }
     #[inline(always)]
-    fn to<A: Arch>(&self, j: usize, to_fluid: [Lane; D]) -> (Lane, Lane) {
-        let normal = std::array::from_fn(|d| Lane::splat(self.normal[d][j]));
-        let share = share::<D, A>(normal, Lane::splat(self.before[j]), to_fluid, self.sharpness);
+    fn to<A: Arch, L: Lanes>(&self, j: usize, to_fluid: [L; D]) -> (L, L) {
+        let normal = std::array::from_fn(|d| L::splat(self.normal[d][j]));
+        let share = share::<D, A, L>(normal, L::splat(self.before[j]), to_fluid, self.sharpness);
         let [against, along] = self.faces;
-        let both = |a: &[f64], b: &[f64]| between::<A>([Lane::splat(a[j]), Lane::splat(b[j])], share);
+        let both = |a: &[f64], b: &[f64]| between::<A, L>([L::splat(a[j]), L::splat(b[j])], share);
         (both(&against.pressure_term, &along.pressure_term), both(&against.volume, &along.volume))
     }
 }
@@ -227,8 +227,8 @@ struct FromTwoFaces<'a, K, const D: usize> {
 }
 
 impl<K: Kernel<D>, const D: usize> PairLaw<D> for FromTwoFaces<'_, K, D> {
-    type Target = ([Lane; D], Lane);
-    type Sum = [ExtrapolationSum; 2];
+    type Target<L: Lanes> = ([L; D], L);
+    type Sum<L: Lanes> = [ExtrapolationSum<L>; 2];
 
     #[inline(always)]
     fn target_positions(&self) -> &[Vec<f64>; D] {
@@ -239,14 +239,21 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for FromTwoFaces<'_, K, D> {
         std::array::from_fn(|d| self.extrapolation.sources[d][j])
     }
     #[inline(always)]
-    fn target(&self, slot: usize) -> Self::Target {
-        let normal = std::array::from_fn(|d| Lane::load(&self.wall.normal[d], slot));
-        (normal, Lane::load(self.wall.before, slot))
+    fn target<L: Lanes>(&self, slot: usize) -> Self::Target<L> {
+        let normal = std::array::from_fn(|d| L::load(&self.wall.normal[d], slot));
+        (normal, L::load(self.wall.before, slot))
     }
     #[inline(always)]
-    fn add<A: Arch>(&self, i: &Self::Target, j: usize, dx: [Lane; D], r2: Lane, sum: &mut Self::Sum) {
-        let (w, p) = self.extrapolation.source::<A>(j, dx, r2);
-        let along = w * share::<D, A>(i.0, i.1, dx.map(|x| -x), self.wall.sharpness);
+    fn add<A: Arch, L: Lanes>(
+        &self,
+        i: &Self::Target<L>,
+        j: usize,
+        dx: [L; D],
+        r2: L,
+        sum: &mut Self::Sum<L>,
+    ) {
+        let (w, p) = self.extrapolation.source::<A, L>(j, dx, r2);
+        let along = w * share::<D, A, L>(i.0, i.1, dx.map(|x| -x), self.wall.sharpness);
         sum[0].add::<A>(w - along, p);
         sum[1].add::<A>(along, p);
     }
@@ -260,7 +267,7 @@ pub(super) fn show_pressures<const D: usize>(interface: &mut Interface<D>, recor
         interface.screen.take().unwrap_or_else(|| Screen::new(&interface.parameters, &positions()));
     screen.carry(&interface.solid, records);
     let mut sums = std::mem::take(&mut screen.sums);
-    sums.resize(interface.solid_list.clusters(), Default::default());
+    sums.resize(interface.solid_list.fours(), Default::default());
     let p = &interface.parameters;
     with_kernel!(p.kernel, p.smoothing_length, D, |kernel| {
         let law =

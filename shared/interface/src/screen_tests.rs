@@ -233,5 +233,5 @@ fn particles_outside_thin_plates_have_one_pressure() {
         }
     }
     assert_eq!(normal(&screened, solid.len() - 1), [0.0, 0.0]);
-    assert!(screened.solid_list.clusters() * LANES >= solid.len());
+    assert!(screened.solid_list.fours() * LANES >= solid.len());
 }

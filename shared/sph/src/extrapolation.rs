@@ -2,8 +2,8 @@
 //!   p_w = sum_j [ p_j + rho_j g . (x_w - x_j) ] W_wj / sum_j W_wj.
 
 use crate::kernel::Kernel;
-use crate::lane::{Arch, Lane};
-use crate::pair::{PairLaw, distance, dot};
+use crate::lane::{Arch, Lane, Lanes};
+use crate::pair::{PairLaw, distance, dot, pair_sum};
 
 /// The law of the pass over boundary particles.
 pub struct Extrapolation<'a, K, const D: usize> {
@@ -21,12 +21,13 @@ pub struct Extrapolation<'a, K, const D: usize> {
     pub pressure: &'a [f64],
 }
 
-/// Sums for four boundary particles.
+/// Sums for several boundary particles: four where they are stored.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct ExtrapolationSum {
-    weight: Lane,
-    pressure: Lane,
+pub struct ExtrapolationSum<L = Lane> {
+    weight: L,
+    pressure: L,
 }
+pair_sum!(ExtrapolationSum {} { weight, pressure });
 
 impl ExtrapolationSum {
     /// Pressure of the k-th, Pa; `None` where nothing is around.
@@ -34,16 +35,18 @@ impl ExtrapolationSum {
         (self.weight.0[k] > 0.0).then(|| self.pressure.0[k] / self.weight.0[k])
     }
 
-    /// Adds a pressure with a weight.
-    #[inline(always)]
-    pub fn add<A: Arch>(&mut self, weight: Lane, pressure: Lane) {
-        self.weight += weight;
-        self.pressure = A::mul_add(pressure, weight, self.pressure);
-    }
-
     /// sum W of the k-th.
     pub fn weight(&self, k: usize) -> f64 {
         self.weight.0[k]
+    }
+}
+
+impl<L: Lanes> ExtrapolationSum<L> {
+    /// Adds a pressure with a weight.
+    #[inline(always)]
+    pub fn add<A: Arch>(&mut self, weight: L, pressure: L) {
+        self.weight += weight;
+        self.pressure = A::mul_add(pressure, weight, self.pressure);
     }
 
     /// Adds a particle of this density and pressure; returns its weight W.
@@ -52,11 +55,11 @@ impl ExtrapolationSum {
         &mut self,
         kernel: &K,
         gravity: [f64; D],
-        pair: ([Lane; D], Lane),
+        pair: ([L; D], L),
         density: f64,
         pressure: f64,
-    ) -> Lane {
-        let (w, p) = weighted::<K, D, A>(kernel, gravity, pair, density, pressure);
+    ) -> L {
+        let (w, p) = weighted::<K, D, A, L>(kernel, gravity, pair, density, pressure);
         self.add::<A>(w, p);
         w
     }
@@ -64,29 +67,29 @@ impl ExtrapolationSum {
 
 /// W of a particle, and its pressure brought to the target's height.
 #[inline(always)]
-fn weighted<K: Kernel<D>, const D: usize, A: Arch>(
+fn weighted<K: Kernel<D>, const D: usize, A: Arch, L: Lanes>(
     kernel: &K,
     gravity: [f64; D],
-    (dx, r2): ([Lane; D], Lane),
+    (dx, r2): ([L; D], L),
     density: f64,
     pressure: f64,
-) -> (Lane, Lane) {
-    let w = kernel.value::<A>(distance(r2, kernel.smoothing_length()));
-    let head = dot::<D, A>(gravity.map(Lane::splat), dx);
-    (w, A::mul_add(Lane::splat(density), head, Lane::splat(pressure)))
+) -> (L, L) {
+    let w = kernel.value::<A, L>(distance(r2, kernel.smoothing_length()));
+    let head = dot::<D, A, L>(gravity.map(L::splat), dx);
+    (w, A::mul_add(L::splat(density), head, L::splat(pressure)))
 }
 
 impl<K: Kernel<D>, const D: usize> Extrapolation<'_, K, D> {
     /// W of source `j`, and its pressure brought to the target's height.
     #[inline(always)]
-    pub fn source<A: Arch>(&self, j: usize, dx: [Lane; D], r2: Lane) -> (Lane, Lane) {
-        weighted::<K, D, A>(&self.kernel, self.gravity, (dx, r2), self.density[j], self.pressure[j])
+    pub fn source<A: Arch, L: Lanes>(&self, j: usize, dx: [L; D], r2: L) -> (L, L) {
+        weighted::<K, D, A, L>(&self.kernel, self.gravity, (dx, r2), self.density[j], self.pressure[j])
     }
 }
 
 impl<K: Kernel<D>, const D: usize> PairLaw<D> for Extrapolation<'_, K, D> {
-    type Target = ();
-    type Sum = ExtrapolationSum;
+    type Target<L: Lanes> = ();
+    type Sum<L: Lanes> = ExtrapolationSum<L>;
 
     #[inline(always)]
     fn target_positions(&self) -> &[Vec<f64>; D] {
@@ -97,10 +100,10 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for Extrapolation<'_, K, D> {
         std::array::from_fn(|d| self.sources[d][j])
     }
     #[inline(always)]
-    fn target(&self, _: usize) {}
+    fn target<L: Lanes>(&self, _: usize) {}
     #[inline(always)]
-    fn add<A: Arch>(&self, _: &(), j: usize, dx: [Lane; D], r2: Lane, sum: &mut ExtrapolationSum) {
-        let (w, p) = self.source::<A>(j, dx, r2);
+    fn add<A: Arch, L: Lanes>(&self, _: &(), j: usize, dx: [L; D], r2: L, sum: &mut ExtrapolationSum<L>) {
+        let (w, p) = self.source::<A, L>(j, dx, r2);
         sum.add::<A>(w, p);
     }
 }

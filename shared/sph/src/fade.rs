@@ -1,6 +1,6 @@
 //! A weight that fades with the distance of a pair: for terms that shall act between close neighbours only.
 
-use crate::lane::Lane;
+use crate::lane::Lanes;
 
 /// 1 up to a distance, 0 beyond a second one, a straight line between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,20 +17,21 @@ impl Fade {
 
     /// Weight at these distances, m.
     #[inline(always)]
-    pub fn at(&self, r: Lane) -> Lane {
-        let ramp = (Lane::splat(self.end) - r) * Lane::splat(self.slope);
-        ramp.min(Lane::splat(1.0)).max(Lane::ZERO)
+    pub fn at<L: Lanes>(&self, r: L) -> L {
+        let ramp = (L::splat(self.end) - r) * L::splat(self.slope);
+        ramp.min(L::splat(1.0)).max(L::ZERO)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lane::Lane;
 
     #[test]
     fn full_then_a_line_then_nothing() {
         let fade = Fade::new(2.0, 4.0);
         assert_eq!(fade.at(Lane([0.0, 2.0, 3.5, 4.0])).0, [1.0, 1.0, 0.25, 0.0]);
-        assert_eq!(fade.at(Lane::splat(9.0)).0, [0.0; 4]);
+        assert_eq!(fade.at::<Lane>(Lane::splat(9.0)).0, [0.0; 4]);
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! The pair loop needs W and F(r) = W'(r) / r, so that grad_i W_ij = F(r_ij) x_ij with x_ij = x_i - x_j and F <= 0.
 
-use crate::lane::{Arch, Lane};
+use crate::lane::{Arch, Lane, Lanes};
 use std::f64::consts::PI;
 
 /// The smoothing kernels.
@@ -38,14 +38,14 @@ pub trait Kernel<const D: usize>: Copy + Send + Sync + 'static {
     /// For smoothing length h, m.
     fn new(smoothing_length: f64) -> Self;
     /// W(r), m^-D.
-    fn value<A: Arch>(&self, r: Lane) -> Lane;
+    fn value<A: Arch, L: Lanes>(&self, r: L) -> L;
     /// F(r) = W'(r) / r, m^-(D+2); r > 0.
-    fn gradient_over_r<A: Arch>(&self, r: Lane) -> Lane;
+    fn gradient_over_r<A: Arch, L: Lanes>(&self, r: L) -> L;
     /// Smoothing length h, m.
     fn smoothing_length(&self) -> f64;
     /// W(r) of one distance.
     fn at(&self, r: f64) -> f64 {
-        self.value::<crate::lane::Unfused>(Lane::splat(r)).0[0]
+        self.value::<crate::lane::Unfused, Lane>(Lane::splat(r)).0[0]
     }
 }
 
@@ -71,20 +71,20 @@ impl<const D: usize> Kernel<D> for CubicSpline<D> {
     }
 
     #[inline(always)]
-    fn value<A: Arch>(&self, r: Lane) -> Lane {
-        let s = r * Lane::splat(self.inverse_h);
-        let a = (Lane::splat(2.0) - s).max(Lane::ZERO);
-        let b = (Lane::splat(1.0) - s).max(Lane::ZERO);
+    fn value<A: Arch, L: Lanes>(&self, r: L) -> L {
+        let s = r * L::splat(self.inverse_h);
+        let a = (L::splat(2.0) - s).max(L::ZERO);
+        let b = (L::splat(1.0) - s).max(L::ZERO);
         let b3 = b * b * b;
-        Lane::splat(self.quarter_c) * A::mul_add(Lane::splat(-4.0), b3, a * a * a)
+        L::splat(self.quarter_c) * A::mul_add(L::splat(-4.0), b3, a * a * a)
     }
 
     #[inline(always)]
-    fn gradient_over_r<A: Arch>(&self, r: Lane) -> Lane {
-        let s = r * Lane::splat(self.inverse_h);
-        let a = (Lane::splat(2.0) - s).max(Lane::ZERO);
-        let b = (Lane::splat(1.0) - s).max(Lane::ZERO);
-        Lane::splat(self.slope) * A::mul_add(Lane::splat(-4.0) * b, b, a * a) / r
+    fn gradient_over_r<A: Arch, L: Lanes>(&self, r: L) -> L {
+        let s = r * L::splat(self.inverse_h);
+        let a = (L::splat(2.0) - s).max(L::ZERO);
+        let b = (L::splat(1.0) - s).max(L::ZERO);
+        L::splat(self.slope) * A::mul_add(L::splat(-4.0) * b, b, a * a) / r
     }
 
     fn smoothing_length(&self) -> f64 {
@@ -113,17 +113,17 @@ impl<const D: usize> Kernel<D> for WendlandC2<D> {
     }
 
     #[inline(always)]
-    fn value<A: Arch>(&self, r: Lane) -> Lane {
-        let half_s = r * Lane::splat(self.half_inverse_h);
-        let t = (Lane::splat(1.0) - half_s).max(Lane::ZERO);
+    fn value<A: Arch, L: Lanes>(&self, r: L) -> L {
+        let half_s = r * L::splat(self.half_inverse_h);
+        let t = (L::splat(1.0) - half_s).max(L::ZERO);
         let t2 = t * t;
-        Lane::splat(self.c) * t2 * t2 * A::mul_add(Lane::splat(4.0), half_s, Lane::splat(1.0))
+        L::splat(self.c) * t2 * t2 * A::mul_add(L::splat(4.0), half_s, L::splat(1.0))
     }
 
     #[inline(always)]
-    fn gradient_over_r<A: Arch>(&self, r: Lane) -> Lane {
-        let t = (Lane::splat(1.0) - r * Lane::splat(self.half_inverse_h)).max(Lane::ZERO);
-        Lane::splat(self.slope) * t * t * t
+    fn gradient_over_r<A: Arch, L: Lanes>(&self, r: L) -> L {
+        let t = (L::splat(1.0) - r * L::splat(self.half_inverse_h)).max(L::ZERO);
+        L::splat(self.slope) * t * t * t
     }
 
     fn smoothing_length(&self) -> f64 {
@@ -163,11 +163,11 @@ mod tests {
         for s in [0.3, 0.9, 1.1, 1.7] {
             let (r, e) = (s * h, 1e-6 * h);
             let difference = (kernel.at(r + e) - kernel.at(r - e)) / (2.0 * e);
-            let exact = kernel.gradient_over_r::<Unfused>(Lane::splat(r)).0[0] * r;
+            let exact = kernel.gradient_over_r::<Unfused, Lane>(Lane::splat(r)).0[0] * r;
             assert!((difference - exact).abs() < 1e-6 * exact.abs(), "s = {s}: {difference} {exact}");
         }
         assert_eq!(kernel.at(2.0 * h), 0.0);
-        assert_eq!(kernel.gradient_over_r::<Unfused>(Lane::splat(2.5 * h)).0[0], 0.0);
+        assert_eq!(kernel.gradient_over_r::<Unfused, Lane>(Lane::splat(2.5 * h)).0[0], 0.0);
     }
 
     #[test]

@@ -90,7 +90,7 @@ impl<const D: usize> FiniteElement<D> {
         let body = geometry::pieces(scene, &layout);
         let dx = scene.solid_spacing(solid);
         let (mesh, element) = (Mesh::new(points, &body, dx), Element::new(dx));
-        let contact = Contact::new(scene, solid, &material, &layout, &body);
+        let contact = Contact::new(scene, solid, &material, &layout, &body, isa);
         let mass = material.density * element.volume();
         let nodes = mesh.nodes();
         let mut clamped = vec![false; nodes];

@@ -70,7 +70,7 @@ impl<const D: usize> Hypoelastic<D> {
         };
         pair::pass(self.isa, &law, &self.neighbours, &mut sums);
         self.sums = sums;
-        self.pair_evaluations += (self.neighbours.entries() * LANES) as u64;
+        self.pair_evaluations += self.neighbours.pairs() as u64;
     }
 
     fn sums<K: Kernel<D>>(&mut self, kernel: K) {

@@ -94,7 +94,7 @@ impl<const D: usize> Hypoelastic<D> {
         let artificial_stress =
             takes_part(scene, solid, EffectName::ArtificialStress).then_some(keys.artificial_stress);
         let walls = takes_part(scene, solid, EffectName::WallContact)
-            .then(|| Walls::new(scene, &layout.wall, (2.0 + SKIN) * wall_smoothing_length))
+            .then(|| Walls::new(scene, &layout.wall, (2.0 + SKIN) * wall_smoothing_length, isa))
             .flatten();
         let side_friction = takes_part(scene, solid, EffectName::SideFriction)
             .then(|| material.side_friction / material.density);
@@ -139,7 +139,7 @@ impl<const D: usize> Hypoelastic<D> {
             sources: Vec::new(),
             artificial: Vec::new(),
             rows: Rows::default(),
-            neighbours: ClusterList::default(),
+            neighbours: ClusterList::new(isa),
             sums: Vec::new(),
             walls,
             pair_evaluations: 0,
@@ -168,7 +168,7 @@ impl<const D: usize> Hypoelastic<D> {
     pub(super) fn list(&mut self) {
         let reach = 2.0 * self.smoothing_length + self.skin;
         self.neighbours.build(&self.reference, &self.reference, &self.rows, reach);
-        fit(&mut self.sums, self.neighbours.clusters(), SolidSum::default());
+        fit(&mut self.sums, self.neighbours.fours(), SolidSum::default());
         if let Some(walls) = &mut self.walls {
             let reach = 2.0 * self.wall_smoothing_length + self.skin;
             walls.relist(&self.reference, &self.rows, reach);

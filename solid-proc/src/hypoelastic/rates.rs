@@ -7,25 +7,31 @@ use super::columns::{Source, State};
 use halfstep_scene::ArtificialStress as Keys;
 use halfstep_sph::artificial_viscosity::damping;
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Arch, LANES, Lane};
-use halfstep_sph::pair::{PairLaw, distance, dot};
+use halfstep_sph::lane::{Arch, Lane, Lanes};
+use halfstep_sph::pair::{PairLaw, distance, dot, pair_sum};
 use std::marker::PhantomData;
 
 /// Correction of the momentum bracket against the tensile instability; `()` is none.
 pub(super) trait TensileCorrection<const D: usize>: Copy + Send + Sync {
-    /// What it loads of four targets.
-    type Own: Copy;
-    fn own(&self, slot: usize) -> Self::Own;
+    /// What it loads of the targets.
+    type Own<L: Lanes>: Copy;
+    fn own<L: Lanes>(&self, slot: usize) -> Self::Own<L>;
     /// The (a, b) component's addition for a pair at kernel value `w`.
-    fn add<A: Arch>(&self, own: &Self::Own, j: usize, w: impl Fn() -> Lane, bracket: &mut [[Lane; D]; D]);
+    fn add<A: Arch, L: Lanes>(
+        &self,
+        own: &Self::Own<L>,
+        j: usize,
+        w: impl Fn() -> L,
+        bracket: &mut [[L; D]; D],
+    );
 }
 
 impl<const D: usize> TensileCorrection<D> for () {
-    type Own = ();
+    type Own<L: Lanes> = ();
     #[inline(always)]
-    fn own(&self, _: usize) {}
+    fn own<L: Lanes>(&self, _: usize) {}
     #[inline(always)]
-    fn add<A: Arch>(&self, _: &(), _: usize, _: impl Fn() -> Lane, _: &mut [[Lane; D]; D]) {}
+    fn add<A: Arch, L: Lanes>(&self, _: &(), _: usize, _: impl Fn() -> L, _: &mut [[L; D]; D]) {}
 }
 
 /// The artificial stress with its tensors R.
@@ -50,16 +56,15 @@ impl<'a, const D: usize> ArtificialStress<'a, D> {
     }
 }
 
-/// A tensor of four consecutive slots.
+/// A tensor of consecutive slots.
 #[inline(always)]
-fn load<const D: usize>(of: impl Fn(usize) -> [[f64; D]; D], slot: usize) -> [[Lane; D]; D] {
-    let four: [_; LANES] = std::array::from_fn(|k| of(slot + k));
-    std::array::from_fn(|a| std::array::from_fn(|b| Lane(std::array::from_fn(|k| four[k][a][b]))))
+fn load<L: Lanes, const D: usize>(of: impl Fn(usize) -> [[f64; D]; D], slot: usize) -> [[L; D]; D] {
+    std::array::from_fn(|a| std::array::from_fn(|b| L::each(|k| of(slot + k)[a][b])))
 }
 
 /// The n-th power, n >= 1. The usual 4 takes no loop.
 #[inline(always)]
-fn power(x: Lane, n: u32) -> Lane {
+fn power<L: Lanes>(x: L, n: u32) -> L {
     if n == 4 {
         let square = x * x;
         return square * square;
@@ -72,19 +77,25 @@ fn power(x: Lane, n: u32) -> Lane {
 }
 
 impl<const D: usize> TensileCorrection<D> for ArtificialStress<'_, D> {
-    type Own = [[Lane; D]; D];
+    type Own<L: Lanes> = [[L; D]; D];
     #[inline(always)]
-    fn own(&self, slot: usize) -> Self::Own {
+    fn own<L: Lanes>(&self, slot: usize) -> Self::Own<L> {
         load(|s| self.tensors[s], slot)
     }
     #[inline(always)]
-    fn add<A: Arch>(&self, own: &Self::Own, j: usize, w: impl Fn() -> Lane, bracket: &mut [[Lane; D]; D]) {
-        let ratio = w() * Lane::splat(self.inverse_w0);
+    fn add<A: Arch, L: Lanes>(
+        &self,
+        own: &Self::Own<L>,
+        j: usize,
+        w: impl Fn() -> L,
+        bracket: &mut [[L; D]; D],
+    ) {
+        let ratio = w() * L::splat(self.inverse_w0);
         let power = power(ratio, self.exponent);
         let other = &self.tensors[j];
         for a in 0..D {
             for b in 0..D {
-                bracket[a][b] = A::mul_add(own[a][b] + Lane::splat(other[a][b]), power, bracket[a][b]);
+                bracket[a][b] = A::mul_add(own[a][b] + L::splat(other[a][b]), power, bracket[a][b]);
             }
         }
     }
@@ -107,17 +118,19 @@ impl Moment for Renormalised {
     const SUMMED: bool = true;
 }
 
-/// Sums for four particles.
+/// Sums for several particles.
 #[derive(Clone, Copy)]
-pub(super) struct SolidSum<const D: usize> {
-    pub acceleration: [Lane; D],
-    pub gradient: [[Lane; D]; D],
-    pub moment: [[Lane; D]; D],
+pub(super) struct SolidSum<const D: usize, L = Lane> {
+    pub acceleration: [L; D],
+    pub gradient: [[L; D]; D],
+    pub moment: [[L; D]; D],
 }
 
-impl<const D: usize> Default for SolidSum<D> {
+pair_sum!(SolidSum { D } { acceleration, gradient, moment });
+
+impl<L: Lanes, const D: usize> Default for SolidSum<D, L> {
     fn default() -> Self {
-        Self { acceleration: [Lane::ZERO; D], gradient: [[Lane::ZERO; D]; D], moment: [[Lane::ZERO; D]; D] }
+        Self { acceleration: [L::ZERO; D], gradient: [[L::ZERO; D]; D], moment: [[L::ZERO; D]; D] }
     }
 }
 
@@ -138,28 +151,28 @@ pub(super) struct SolidLaw<'a, K, T, M, const D: usize> {
 }
 
 #[derive(Clone, Copy)]
-pub(super) struct Target<O, const D: usize> {
-    velocity: [Lane; D],
-    density: Lane,
-    stress_term: [[Lane; D]; D],
+pub(super) struct Target<O, L, const D: usize> {
+    velocity: [L; D],
+    density: L,
+    stress_term: [[L; D]; D],
     own: O,
 }
 
 impl<K: Kernel<D>, T: TensileCorrection<D>, M: Moment, const D: usize> PairLaw<D>
     for SolidLaw<'_, K, T, M, D>
 {
-    type Target = Target<T::Own, D>;
-    type Sum = SolidSum<D>;
+    type Target<L: Lanes> = Target<T::Own<L>, L, D>;
+    type Sum<L: Lanes> = SolidSum<D, L>;
 
     #[inline(always)]
     fn target_positions(&self) -> &[Vec<f64>; D] {
         &self.state.position
     }
     #[inline(always)]
-    fn target(&self, slot: usize) -> Self::Target {
+    fn target<L: Lanes>(&self, slot: usize) -> Self::Target<L> {
         Target {
-            velocity: std::array::from_fn(|d| Lane::load(&self.state.velocity[d], slot)),
-            density: Lane::load(&self.state.density, slot),
+            velocity: std::array::from_fn(|d| L::load(&self.state.velocity[d], slot)),
+            density: L::load(&self.state.density, slot),
             stress_term: load(|s| self.sources[s].stress_term, slot),
             own: self.correction.own(slot),
         }
@@ -169,27 +182,34 @@ impl<K: Kernel<D>, T: TensileCorrection<D>, M: Moment, const D: usize> PairLaw<D
         self.sources[j].position
     }
     #[inline(always)]
-    fn add<A: Arch>(&self, i: &Self::Target, j: usize, dx: [Lane; D], r2: Lane, sum: &mut SolidSum<D>) {
+    fn add<A: Arch, L: Lanes>(
+        &self,
+        i: &Self::Target<L>,
+        j: usize,
+        dx: [L; D],
+        r2: L,
+        sum: &mut SolidSum<D, L>,
+    ) {
         let source = &self.sources[j];
         let h = self.kernel.smoothing_length();
         let r = distance(r2, h);
-        let f = self.kernel.gradient_over_r::<A>(r);
-        let dv: [Lane; D] = std::array::from_fn(|d| i.velocity[d] - Lane::splat(source.velocity[d]));
-        let approach = dot::<D, A>(dv, dx);
-        let density_sum = i.density + Lane::splat(source.density);
+        let f = self.kernel.gradient_over_r::<A, L>(r);
+        let dv: [L; D] = std::array::from_fn(|d| i.velocity[d] - L::splat(source.velocity[d]));
+        let approach = dot::<D, A, L>(dv, dx);
+        let density_sum = i.density + L::splat(source.density);
         let pi =
-            damping::<A>(h, Lane::splat(self.linear), Lane::splat(self.quadratic), approach, r2, density_sum);
-        let mut bracket: [[Lane; D]; D] = std::array::from_fn(|a| {
+            damping::<A, L>(h, L::splat(self.linear), L::splat(self.quadratic), approach, r2, density_sum);
+        let mut bracket: [[L; D]; D] = std::array::from_fn(|a| {
             std::array::from_fn(|b| {
-                let t = i.stress_term[a][b] + Lane::splat(source.stress_term[a][b]);
+                let t = i.stress_term[a][b] + L::splat(source.stress_term[a][b]);
                 if a == b { t - pi } else { t }
             })
         });
-        self.correction.add::<A>(&i.own, j, || self.kernel.value::<A>(r), &mut bracket);
-        let mf = Lane::splat(self.mass) * f;
-        let vf = Lane::splat(source.volume) * f;
+        self.correction.add::<A, L>(&i.own, j, || self.kernel.value::<A, L>(r), &mut bracket);
+        let mf = L::splat(self.mass) * f;
+        let vf = L::splat(source.volume) * f;
         for a in 0..D {
-            sum.acceleration[a] = A::mul_add(mf, dot::<D, A>(bracket[a], dx), sum.acceleration[a]);
+            sum.acceleration[a] = A::mul_add(mf, dot::<D, A, L>(bracket[a], dx), sum.acceleration[a]);
             let row = -(vf * dv[a]);
             for b in 0..D {
                 sum.gradient[a][b] = A::mul_add(row, dx[b], sum.gradient[a][b]);

@@ -43,7 +43,7 @@ impl<const D: usize> Hypoelastic<D> {
         for slot in (0..slots).filter(|&s| self.is_clamped(s)) {
             clamp.free[0][slot] = FAR;
         }
-        clamp.sums.resize(self.neighbours.clusters(), ExtrapolationSum::default());
+        clamp.sums.resize(self.neighbours.fours(), ExtrapolationSum::default());
         with_kernel!(self.kernel, self.smoothing_length, D, |kernel| {
             let law = Extrapolation {
                 kernel,
@@ -55,7 +55,7 @@ impl<const D: usize> Hypoelastic<D> {
             };
             pair::pass(self.isa, &law, &self.neighbours, &mut clamp.sums);
         });
-        self.pair_evaluations += (self.neighbours.entries() * LANES) as u64;
+        self.pair_evaluations += self.neighbours.pairs() as u64;
         let (k, rho0) = (self.material.bulk_modulus(), self.material.density);
         for slot in 0..slots {
             if !self.is_clamped(slot) {

@@ -9,7 +9,6 @@
 
 use halfstep_scene::geometry::SolidPoint;
 use halfstep_scene::{Block, Scene};
-use halfstep_sph::lane::LANES;
 use halfstep_sph::neighbours::ClusterList;
 
 /// Most that the displacement of a free particle counts toward a clamped one.
@@ -30,7 +29,7 @@ pub(super) fn excess_gain<const D: usize>(
         let i = point(slot).filter(|i| !i.clamped)?;
         let (mut sum, mut count) = (0.0, 0);
         let own = |j: &&u32| body.get(id[**j as usize] as usize) == body.get(id[slot] as usize);
-        let near = list.of(slot / LANES).iter().filter(own).filter_map(|&j| point(j as usize));
+        let near = list.of(slot).iter().filter(own).filter_map(|&j| point(j as usize));
         for j in near.filter(|j| j.clamped) {
             let r2: f64 = (0..D).map(|d| (i.position[d] - j.position[d]).powi(2)).sum();
             if r2 < reach * reach {

@@ -14,9 +14,9 @@ use halfstep_scene::geometry::{self, Layout, SolidPoint};
 use halfstep_scene::{EffectName, KernelName, Scene, Solid};
 use halfstep_sph::columns::{copy, fit, moved_farther};
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Arch, Isa, LANES, Lane};
+use halfstep_sph::lane::{Arch, Isa, LANES, Lane, Lanes};
 use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
-use halfstep_sph::pair::{self, PairLaw, distance};
+use halfstep_sph::pair::{self, PairLaw, distance, pair_sum};
 use halfstep_sph::with_kernel;
 use halfstep_wire::order;
 use halfstep_wire::state::StateError;
@@ -68,11 +68,12 @@ impl<const D: usize> Contact<D> {
         material: &Solid,
         layout: &Layout<D>,
         body: &[u32],
+        isa: Isa,
     ) -> Option<Self> {
         let dx = scene.solid_spacing(solid);
         let h = scene.smoothing_ratio * scene.resolution;
         let walls = takes_part(scene, solid, EffectName::WallContact)
-            .then(|| Walls::new(scene, &layout.wall, (2.0 + SKIN) * h))
+            .then(|| Walls::new(scene, &layout.wall, (2.0 + SKIN) * h, isa))
             .flatten();
         let breaks = takes_part(scene, solid, EffectName::Fracture);
         let several = body.iter().any(|&b| b != body[0]);
@@ -97,7 +98,7 @@ impl<const D: usize> Contact<D> {
             body: id.iter().map(|&p| f64::from(body[p as usize])).collect(),
             listed: vectors(0),
             rows: Rows::default(),
-            list: ClusterList::default(),
+            list: ClusterList::new(isa),
             sums: Vec::new(),
             several,
             walls,
@@ -139,7 +140,7 @@ impl<const D: usize> Contact<D> {
         let (reach, wall_reach) = (self.spacing + self.skin(), self.wall_reach());
         if self.several {
             self.list.build(&self.listed, &self.listed, &self.rows, reach);
-            fit(&mut self.sums, self.list.clusters(), Repulsion::default());
+            fit(&mut self.sums, self.list.fours(), Repulsion::default());
         }
         if let Some(walls) = &mut self.walls {
             walls.relist(&self.listed, &self.rows, wall_reach);
@@ -346,7 +347,7 @@ impl<const D: usize> Contact<D> {
             let r2: f64 = (0..D).map(|d| (self.position[d][slot] - self.position[d][j]).powi(2)).sum();
             self.body[j] != self.body[slot] && r2 < self.spacing * self.spacing
         };
-        self.list.of(slot / LANES).iter().filter(pushes).count()
+        self.list.of(slot).iter().filter(pushes).count()
     }
 
     /// Energy in the contacts between bodies, J.
@@ -357,17 +358,19 @@ impl<const D: usize> Contact<D> {
     }
 }
 
-/// Sums over particles of other bodies for four particles, to be multiplied by k.
+/// Sums over particles of other bodies for several particles, to be multiplied by k.
 #[derive(Clone, Copy)]
-struct Repulsion<const D: usize> {
-    force: [Lane; D],
+struct Repulsion<const D: usize, L = Lane> {
+    force: [L; D],
     /// sum (dx - r)².
-    square: Lane,
+    square: L,
 }
 
-impl<const D: usize> Default for Repulsion<D> {
+pair_sum!(Repulsion { D } { force, square });
+
+impl<L: Lanes, const D: usize> Default for Repulsion<D, L> {
     fn default() -> Self {
-        Self { force: [Lane::ZERO; D], square: Lane::ZERO }
+        Self { force: [L::ZERO; D], square: L::ZERO }
     }
 }
 
@@ -378,8 +381,8 @@ struct Repel<'a, const D: usize> {
 }
 
 impl<const D: usize> PairLaw<D> for Repel<'_, D> {
-    type Target = Lane;
-    type Sum = Repulsion<D>;
+    type Target<L: Lanes> = L;
+    type Sum<L: Lanes> = Repulsion<D, L>;
     #[inline(always)]
     fn target_positions(&self) -> &[Vec<f64>; D] {
         self.position
@@ -389,16 +392,16 @@ impl<const D: usize> PairLaw<D> for Repel<'_, D> {
         std::array::from_fn(|d| self.position[d][j])
     }
     #[inline(always)]
-    fn target(&self, slot: usize) -> Lane {
-        Lane::load(self.body, slot)
+    fn target<L: Lanes>(&self, slot: usize) -> L {
+        L::load(self.body, slot)
     }
     #[inline(always)]
-    fn add<A: Arch>(&self, body: &Lane, j: usize, dx: [Lane; D], r2: Lane, sum: &mut Repulsion<D>) {
+    fn add<A: Arch, L: Lanes>(&self, body: &L, j: usize, dx: [L; D], r2: L, sum: &mut Repulsion<D, L>) {
         let r = distance(r2, self.spacing);
         // Body numbers are whole: 1 between different bodies, else 0.
-        let other = *body - Lane::splat(self.body[j]);
-        let other = other.max(-other).min(Lane::splat(1.0));
-        let overlap = (Lane::splat(self.spacing) - r).max(Lane::ZERO) * other;
+        let other = *body - L::splat(self.body[j]);
+        let other = other.max(-other).min(L::splat(1.0));
+        let overlap = (L::splat(self.spacing) - r).max(L::ZERO) * other;
         sum.square = A::mul_add(overlap, overlap, sum.square);
         let force = overlap / r;
         for d in 0..D {

@@ -37,7 +37,7 @@ impl<const D: usize> TotalLagrangian<D> {
 
     /// Pairs that a pass evaluates.
     fn evaluations(&self) -> u64 {
-        (self.pairs.list().entries() * LANES) as u64
+        self.pairs.list().pairs() as u64
     }
 
     /// The sums of the first pass.

@@ -14,7 +14,7 @@
 //! The default alpha makes them equal: particles then resist bending as the material in their cells does.
 
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Lane, Unfused};
+use halfstep_sph::lane::{Lane, Lanes, Unfused};
 
 /// alpha that gives a lattice of spacing `dx` the whole bending stiffness.
 pub(super) fn from_bending<K: Kernel<D>, const D: usize>(kernel: K, dx: f64, poissons_ratio: f64) -> f64 {
@@ -30,7 +30,7 @@ pub(super) fn from_bending<K: Kernel<D>, const D: usize>(kernel: K, dx: f64, poi
                 }
                 let [x, y, z] = [i, j, k].map(|n| n as f64 * dx);
                 let r = Lane::splat((x * x + y * y + z * z).sqrt());
-                let weight = -dx.powi(D as i32) * kernel.gradient_over_r::<Unfused>(r).0[0];
+                let weight = -dx.powi(D as i32) * kernel.gradient_over_r::<Unfused, Lane>(r).0[0];
                 sum += weight * (x * x * y * y + 0.25 * (x * x + nu * y * y).powi(2));
             }
         }
@@ -48,7 +48,7 @@ mod tests {
         // Reach below the diagonal (h = 0.6): four neighbours of weight w, of which only the axial terms
         // count: sum = w dx⁴ (1 + nu'²) / 2. With nu = 0: alpha = 1 / (3 w dx²).
         let kernel = CubicSpline::<2>::new(0.6);
-        let w = -kernel.gradient_over_r::<Unfused>(Lane::splat(1.0)).0[0];
+        let w = -kernel.gradient_over_r::<Unfused, Lane>(Lane::splat(1.0)).0[0];
         assert!((from_bending(kernel, 1.0, 0.0) - 1.0 / (3.0 * w)).abs() < 1e-14);
         // nu = 1/3: nu' = 1/2, alpha = 2 / (6 (2/3) w 5/4).
         assert!((from_bending(kernel, 1.0, 1.0 / 3.0) - 2.0 / (5.0 * w)).abs() < 1e-13);

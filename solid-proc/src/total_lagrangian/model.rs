@@ -124,7 +124,7 @@ impl<const D: usize> TotalLagrangian<D> {
             rows.permute(column);
         }
         rows.permute_ids(&mut id);
-        let mut list = ClusterList::default();
+        let mut list = ClusterList::new(isa);
         list.build(&position, &position, &rows, reach);
         let slots = id.len();
         let mut slot_of = vec![0; points.len()];
@@ -144,7 +144,7 @@ impl<const D: usize> TotalLagrangian<D> {
         } else {
             vec![0.0; slots]
         };
-        let mut contact = Contact::new(scene, solid, &material, &layout, &body);
+        let mut contact = Contact::new(scene, solid, &material, &layout, &body, isa);
         let breaks = takes_part(scene, solid, EffectName::Fracture);
         let dormant = if breaks { contact.take_if(|contact| !contact.acts()) } else { None };
         let alpha = keys.hourglass.unwrap_or_else(|| {

@@ -10,8 +10,8 @@
 
 use crate::columns::Vectors;
 use halfstep_sph::artificial_viscosity::damping;
-use halfstep_sph::lane::{Arch, Lane};
-use halfstep_sph::pair::{FixedLaw, dot};
+use halfstep_sph::lane::{Arch, Lane, Lanes};
+use halfstep_sph::pair::{FixedLaw, dot, pair_sum};
 
 /// Full tensors, entry by entry.
 pub(super) type Matrices<const D: usize> = [[Vec<f64>; D]; D];
@@ -24,10 +24,10 @@ pub(super) struct Fixed {
     pub excess_gain: Vec<f64>,
 }
 
-/// beta_ij - 1 for four targets.
+/// beta_ij - 1 for the targets.
 #[inline(always)]
-fn excess<A: Arch>(clamped: Lane, gain: Lane, clamped_j: f64, gain_j: f64) -> Lane {
-    A::mul_add(Lane::splat(clamped_j), gain, clamped * Lane::splat(gain_j))
+fn excess<A: Arch, L: Lanes>(clamped: L, gain: L, clamped_j: f64, gain_j: f64) -> L {
+    A::mul_add(L::splat(clamped_j), gain, clamped * L::splat(gain_j))
 }
 
 /// The moment matrices, once.
@@ -36,24 +36,25 @@ pub(super) struct Moment {
     pub volume: f64,
 }
 
-/// M of four particles; a <= b filled.
+/// M of several particles; a <= b filled.
 #[derive(Clone, Copy)]
-pub(super) struct MomentSum<const D: usize>(pub [[Lane; D]; D]);
+pub(super) struct MomentSum<const D: usize, L = Lane>(pub [[L; D]; D]);
+pair_sum!(MomentSum { D } { 0 });
 
-impl<const D: usize> Default for MomentSum<D> {
+impl<L: Lanes, const D: usize> Default for MomentSum<D, L> {
     fn default() -> Self {
-        Self([[Lane::ZERO; D]; D])
+        Self([[L::ZERO; D]; D])
     }
 }
 
 impl<const D: usize> FixedLaw<D> for Moment {
-    type Target = ();
-    type Sum = MomentSum<D>;
+    type Target<L: Lanes> = ();
+    type Sum<L: Lanes> = MomentSum<D, L>;
     #[inline(always)]
-    fn target(&self, _: usize) {}
+    fn target<L: Lanes>(&self, _: usize) {}
     #[inline(always)]
-    fn add<A: Arch>(&self, _: &(), _: usize, dx: [Lane; D], slope: Lane, sum: &mut MomentSum<D>) {
-        let weight = Lane::splat(-self.volume) * slope;
+    fn add<A: Arch, L: Lanes>(&self, _: &(), _: usize, dx: [L; D], slope: L, sum: &mut MomentSum<D, L>) {
+        let weight = L::splat(-self.volume) * slope;
         for a in 0..D {
             let moment = weight * dx[a];
             for b in a..D {
@@ -71,52 +72,54 @@ pub(super) struct Deformation<'a, const D: usize> {
     pub volume: f64,
 }
 
-/// Sums of the first pass for four particles.
+/// Sums of the first pass for several particles.
 #[derive(Clone, Copy)]
-pub(super) struct DeformationSum<const D: usize> {
+pub(super) struct DeformationSum<const D: usize, L = Lane> {
     /// H M.
-    pub gradient: [[Lane; D]; D],
+    pub gradient: [[L; D]; D],
     /// sum w |beta u_ij|².
-    pub square: Lane,
+    pub square: L,
 }
 
-impl<const D: usize> Default for DeformationSum<D> {
+pair_sum!(DeformationSum { D } { gradient, square });
+
+impl<L: Lanes, const D: usize> Default for DeformationSum<D, L> {
     fn default() -> Self {
-        Self { gradient: [[Lane::ZERO; D]; D], square: Lane::ZERO }
+        Self { gradient: [[L::ZERO; D]; D], square: L::ZERO }
     }
 }
 
 #[derive(Clone, Copy)]
-pub(super) struct Displaced<const D: usize> {
-    displacement: [Lane; D],
-    clamped: Lane,
-    gain: Lane,
+pub(super) struct Displaced<L, const D: usize> {
+    displacement: [L; D],
+    clamped: L,
+    gain: L,
 }
 
 impl<const D: usize> FixedLaw<D> for Deformation<'_, D> {
-    type Target = Displaced<D>;
-    type Sum = DeformationSum<D>;
+    type Target<L: Lanes> = Displaced<L, D>;
+    type Sum<L: Lanes> = DeformationSum<D, L>;
     #[inline(always)]
-    fn target(&self, slot: usize) -> Displaced<D> {
+    fn target<L: Lanes>(&self, slot: usize) -> Displaced<L, D> {
         Displaced {
-            displacement: std::array::from_fn(|d| Lane::load(&self.displacement[d], slot)),
-            clamped: Lane::load(&self.fixed.clamped, slot),
-            gain: Lane::load(&self.fixed.excess_gain, slot),
+            displacement: std::array::from_fn(|d| L::load(&self.displacement[d], slot)),
+            clamped: L::load(&self.fixed.clamped, slot),
+            gain: L::load(&self.fixed.excess_gain, slot),
         }
     }
     #[inline(always)]
-    fn add<A: Arch>(
+    fn add<A: Arch, L: Lanes>(
         &self,
-        i: &Displaced<D>,
+        i: &Displaced<L, D>,
         j: usize,
-        dx: [Lane; D],
-        slope: Lane,
-        sum: &mut DeformationSum<D>,
+        dx: [L; D],
+        slope: L,
+        sum: &mut DeformationSum<D, L>,
     ) {
-        let weight = Lane::splat(-self.volume) * slope;
-        let excess = excess::<A>(i.clamped, i.gain, self.fixed.clamped[j], self.fixed.excess_gain[j]);
+        let weight = L::splat(-self.volume) * slope;
+        let excess = excess::<A, L>(i.clamped, i.gain, self.fixed.clamped[j], self.fixed.excess_gain[j]);
         for a in 0..D {
-            let u = i.displacement[a] - Lane::splat(self.displacement[a][j]);
+            let u = i.displacement[a] - L::splat(self.displacement[a][j]);
             let u = A::mul_add(excess, u, u);
             sum.square = A::mul_add(weight * u, u, sum.square);
             let row = weight * u;
@@ -129,22 +132,22 @@ impl<const D: usize> FixedLaw<D> for Deformation<'_, D> {
 
 /// Artificial viscosity in the second pass; `()` is none.
 pub(super) trait Damping<const D: usize>: Copy + Send + Sync {
-    /// What it loads of four targets.
-    type Own: Copy;
-    fn own(&self, slot: usize) -> Self::Own;
+    /// What it loads of the targets.
+    type Own<L: Lanes>: Copy;
+    fn own<L: Lanes>(&self, slot: usize) -> Self::Own<L>;
     /// -m Pi_ij rho0 / V0 for a pair at x_ij: coefficient of -w x_ij beside the brackets of the pass.
-    fn coefficient<A: Arch>(&self, own: &Self::Own, j: usize, x: [Lane; D]) -> Lane;
+    fn coefficient<A: Arch, L: Lanes>(&self, own: &Self::Own<L>, j: usize, x: [L; D]) -> L;
     const ACTS: bool;
 }
 
 impl<const D: usize> Damping<D> for () {
-    type Own = ();
+    type Own<L: Lanes> = ();
     const ACTS: bool = false;
     #[inline(always)]
-    fn own(&self, _: usize) {}
+    fn own<L: Lanes>(&self, _: usize) {}
     #[inline(always)]
-    fn coefficient<A: Arch>(&self, _: &(), _: usize, _: [Lane; D]) -> Lane {
-        Lane::ZERO
+    fn coefficient<A: Arch, L: Lanes>(&self, _: &(), _: usize, _: [L; D]) -> L {
+        L::ZERO
     }
 }
 
@@ -163,26 +166,26 @@ pub(super) struct Viscous<'a, const D: usize> {
 }
 
 impl<const D: usize> Damping<D> for Viscous<'_, D> {
-    type Own = [Lane; D];
+    type Own<L: Lanes> = [L; D];
     const ACTS: bool = true;
     #[inline(always)]
-    fn own(&self, slot: usize) -> [Lane; D] {
-        std::array::from_fn(|d| Lane::load(&self.velocity[d], slot))
+    fn own<L: Lanes>(&self, slot: usize) -> [L; D] {
+        std::array::from_fn(|d| L::load(&self.velocity[d], slot))
     }
     #[inline(always)]
-    fn coefficient<A: Arch>(&self, own: &[Lane; D], j: usize, x: [Lane; D]) -> Lane {
-        let v: [Lane; D] = std::array::from_fn(|d| own[d] - Lane::splat(self.velocity[d][j]));
-        let (approach, r2) = (dot::<D, A>(v, x), dot::<D, A>(x, x));
-        let sum = Lane::splat(2.0 * self.density);
-        let pi = damping::<A>(
+    fn coefficient<A: Arch, L: Lanes>(&self, own: &[L; D], j: usize, x: [L; D]) -> L {
+        let v: [L; D] = std::array::from_fn(|d| own[d] - L::splat(self.velocity[d][j]));
+        let (approach, r2) = (dot::<D, A, L>(v, x), dot::<D, A, L>(x, x));
+        let sum = L::splat(2.0 * self.density);
+        let pi = damping::<A, L>(
             self.smoothing_length,
-            Lane::splat(self.linear),
-            Lane::splat(self.quadratic),
+            L::splat(self.linear),
+            L::splat(self.quadratic),
             approach,
             r2,
             sum,
         );
-        Lane::splat(-self.density * self.density) * pi
+        L::splat(-self.density * self.density) * pi
     }
 }
 
@@ -200,10 +203,10 @@ pub(super) struct Momentum<'a, V, const D: usize> {
 }
 
 #[derive(Clone, Copy)]
-pub(super) struct Stressed<O, const D: usize> {
-    displaced: Displaced<D>,
-    stress: [[Lane; D]; D],
-    hourglass: Lane,
+pub(super) struct Stressed<O, L, const D: usize> {
+    displaced: Displaced<L, D>,
+    stress: [[L; D]; D],
+    hourglass: L,
     own: O,
 }
 
@@ -216,82 +219,82 @@ pub(super) struct Viscosity<'a, V, const D: usize> {
 }
 
 impl<V: Damping<D>, const D: usize> FixedLaw<D> for Viscosity<'_, V, D> {
-    type Target = ([Lane; D], V::Own);
-    type Sum = Acceleration<D>;
+    type Target<L: Lanes> = ([L; D], V::Own<L>);
+    type Sum<L: Lanes> = Acceleration<D, L>;
     #[inline(always)]
-    fn target(&self, slot: usize) -> Self::Target {
-        (std::array::from_fn(|d| Lane::load(&self.displacement[d], slot)), self.damping.own(slot))
+    fn target<L: Lanes>(&self, slot: usize) -> Self::Target<L> {
+        (std::array::from_fn(|d| L::load(&self.displacement[d], slot)), self.damping.own(slot))
     }
     #[inline(always)]
-    fn add<A: Arch>(
+    fn add<A: Arch, L: Lanes>(
         &self,
-        (displacement, own): &Self::Target,
+        (displacement, own): &Self::Target<L>,
         j: usize,
-        dx: [Lane; D],
-        slope: Lane,
-        sum: &mut Acceleration<D>,
+        dx: [L; D],
+        slope: L,
+        sum: &mut Acceleration<D, L>,
     ) {
-        let x: [Lane; D] =
-            std::array::from_fn(|a| dx[a] + displacement[a] - Lane::splat(self.displacement[a][j]));
-        let viscous = Lane::splat(self.scale) * slope * self.damping.coefficient::<A>(own, j, x);
+        let x: [L; D] = std::array::from_fn(|a| dx[a] + displacement[a] - L::splat(self.displacement[a][j]));
+        let viscous = L::splat(self.scale) * slope * self.damping.coefficient::<A, L>(own, j, x);
         for a in 0..D {
             sum.0[a] = A::mul_add(viscous, x[a], sum.0[a]);
         }
     }
 }
 
-/// Acceleration of four particles.
+/// Acceleration of several particles.
 #[derive(Clone, Copy)]
-pub(super) struct Acceleration<const D: usize>(pub [Lane; D]);
+pub(super) struct Acceleration<const D: usize, L = Lane>(pub [L; D]);
+pair_sum!(Acceleration { D } { 0 });
 
-impl<const D: usize> Default for Acceleration<D> {
+impl<L: Lanes, const D: usize> Default for Acceleration<D, L> {
     fn default() -> Self {
-        Self([Lane::ZERO; D])
+        Self([L::ZERO; D])
     }
 }
 
 impl<V: Damping<D>, const D: usize> FixedLaw<D> for Momentum<'_, V, D> {
-    type Target = Stressed<V::Own, D>;
-    type Sum = Acceleration<D>;
+    type Target<L: Lanes> = Stressed<V::Own<L>, L, D>;
+    type Sum<L: Lanes> = Acceleration<D, L>;
     #[inline(always)]
-    fn target(&self, slot: usize) -> Self::Target {
+    fn target<L: Lanes>(&self, slot: usize) -> Self::Target<L> {
         let displaced = Displaced {
-            displacement: std::array::from_fn(|d| Lane::load(&self.displacement[d], slot)),
-            clamped: Lane::load(&self.fixed.clamped, slot),
-            gain: Lane::load(&self.fixed.excess_gain, slot),
+            displacement: std::array::from_fn(|d| L::load(&self.displacement[d], slot)),
+            clamped: L::load(&self.fixed.clamped, slot),
+            gain: L::load(&self.fixed.excess_gain, slot),
         };
         Stressed {
             displaced,
-            stress: std::array::from_fn(|a| std::array::from_fn(|b| Lane::load(&self.stress[a][b], slot))),
-            hourglass: Lane::load(self.hourglass, slot),
+            stress: std::array::from_fn(|a| std::array::from_fn(|b| L::load(&self.stress[a][b], slot))),
+            hourglass: L::load(self.hourglass, slot),
             own: self.damping.own(slot),
         }
     }
     #[inline(always)]
-    fn add<A: Arch>(
+    fn add<A: Arch, L: Lanes>(
         &self,
-        i: &Self::Target,
+        i: &Self::Target<L>,
         j: usize,
-        dx: [Lane; D],
-        slope: Lane,
-        sum: &mut Acceleration<D>,
+        dx: [L; D],
+        slope: L,
+        sum: &mut Acceleration<D, L>,
     ) {
-        let f = Lane::splat(self.scale) * slope;
+        let f = L::splat(self.scale) * slope;
         let d = &i.displaced;
-        let excess = excess::<A>(d.clamped, d.gain, self.fixed.clamped[j], self.fixed.excess_gain[j]);
-        let beta = Lane::splat(1.0) + excess;
-        let hourglass = (i.hourglass + Lane::splat(self.hourglass[j])) * beta;
-        let u: [Lane; D] =
-            std::array::from_fn(|a| i.displaced.displacement[a] - Lane::splat(self.displacement[a][j]));
+        let excess = excess::<A, L>(d.clamped, d.gain, self.fixed.clamped[j], self.fixed.excess_gain[j]);
+        let beta = L::splat(1.0) + excess;
+        let hourglass = (i.hourglass + L::splat(self.hourglass[j])) * beta;
+        let u: [L; D] =
+            std::array::from_fn(|a| i.displaced.displacement[a] - L::splat(self.displacement[a][j]));
         let f_beta = f * beta;
         for a in 0..D {
-            let row: [Lane; D] = std::array::from_fn(|b| i.stress[a][b] + Lane::splat(self.stress[a][b][j]));
-            let bracket = A::mul_add(hourglass, u[a], dot::<D, A>(row, dx));
+            let row: [L; D] = std::array::from_fn(|b| i.stress[a][b] + L::splat(self.stress[a][b][j]));
+            let bracket = A::mul_add(hourglass, u[a], dot::<D, A, L>(row, dx));
             sum.0[a] = A::mul_add(f_beta, bracket, sum.0[a]);
         }
         if V::ACTS {
-            let x: [Lane; D] = std::array::from_fn(|a| dx[a] + u[a]);
-            let viscous = f * self.damping.coefficient::<A>(&i.own, j, x);
+            let x: [L; D] = std::array::from_fn(|a| dx[a] + u[a]);
+            let viscous = f * self.damping.coefficient::<A, L>(&i.own, j, x);
             for a in 0..D {
                 sum.0[a] = A::mul_add(viscous, x[a], sum.0[a]);
             }

@@ -14,9 +14,9 @@
 use super::material::{Law, Matrix, green};
 use super::model::TotalLagrangian;
 use halfstep_scene::Material;
-use halfstep_sph::lane::{Arch, LANES, Lane};
+use halfstep_sph::lane::{Arch, LANES, Lane, Lanes};
 use halfstep_sph::neighbours::PADDING;
-use halfstep_sph::pair::{self, FixedLaw, dot};
+use halfstep_sph::pair::{self, FixedLaw, dot, pair_sum};
 
 /// Largest stable sub-step at rest over dx over the speed of the fastest wave: measured with h = 0.75 dx for nu from 0
 /// to 0.49 and alpha from 0 to 10.
@@ -24,13 +24,14 @@ const STABLE: f64 = 0.94;
 /// Part of the stable sub-step that a state may take: the largest `solid_cfl` of a scene over what is stable.
 const PART: f64 = 0.9 / STABLE;
 
-/// sum_j V0 |W'| / R of four particles, 1/m².
+/// sum_j V0 |W'| / R of several particles, 1/m².
 #[derive(Clone, Copy)]
-struct Slopes(Lane);
+struct Slopes<L = Lane>(L);
+pair_sum!(Slopes {} { 0 });
 
-impl Default for Slopes {
+impl<L: Lanes> Default for Slopes<L> {
     fn default() -> Self {
-        Self(Lane::ZERO)
+        Self(L::ZERO)
     }
 }
 
@@ -42,14 +43,14 @@ struct SlopeSum {
 }
 
 impl<const D: usize> FixedLaw<D> for SlopeSum {
-    type Target = ();
-    type Sum = Slopes;
+    type Target<L: Lanes> = ();
+    type Sum<L: Lanes> = Slopes<L>;
     #[inline(always)]
-    fn target(&self, _: usize) {}
+    fn target<L: Lanes>(&self, _: usize) {}
     #[inline(always)]
-    fn add<A: Arch>(&self, _: &(), _: usize, dx: [Lane; D], slope: Lane, sum: &mut Slopes) {
-        let r2 = dot::<D, A>(dx, dx);
-        sum.0 += Lane::splat(-self.volume) * slope * (r2 / (r2 + Lane::splat(self.least)));
+    fn add<A: Arch, L: Lanes>(&self, _: &(), _: usize, dx: [L; D], slope: L, sum: &mut Slopes<L>) {
+        let r2 = dot::<D, A, L>(dx, dx);
+        sum.0 += L::splat(-self.volume) * slope * (r2 / (r2 + L::splat(self.least)));
     }
 }
 

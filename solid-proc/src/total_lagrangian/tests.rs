@@ -148,9 +148,9 @@ fn hourglass_resistance_acts_on_hourglass_modes_only() {
         // diagonal ones move with it. F_axial V0 = -w.
         let w = {
             use halfstep_sph::kernel::{Kernel, WendlandC2};
-            use halfstep_sph::lane::{Lane, Unfused};
+            use halfstep_sph::lane::{Lane, Lanes, Unfused};
             let kernel = WendlandC2::<2>::new(0.0075);
-            -1e-4 * kernel.gradient_over_r::<Unfused>(Lane::splat(0.01)).0[0]
+            -1e-4 * kernel.gradient_over_r::<Unfused, Lane>(Lane::splat(0.01)).0[0]
         };
         let g = 1e6 / 2.6;
         let by_hand = 4.0 * 2.0 * expected * g * w * 2.0 * e / 1000.0;

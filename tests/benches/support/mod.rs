@@ -104,7 +104,6 @@ impl Running {
 pub(crate) struct Patch {
     sorted: patch::Patch,
     pub(crate) sums: Vec<RateSum<2>>,
-    pub(crate) isa: Isa,
     pub(crate) naive: Vec<naive::Particle>,
     pub(crate) grid: naive::Grid,
     pub(crate) pass: naive::Pass,
@@ -115,7 +114,7 @@ const LINEAR: f64 = 1.0;
 const DIFFUSION: f64 = 1.33;
 
 impl Patch {
-    pub(crate) fn new() -> Self {
+    pub(crate) fn new(isa: Isa) -> Self {
         let particle = |k: usize| {
             let (i, j) = ((k % 140) as f64, (k / 140) as f64);
             patch::Particle {
@@ -135,11 +134,11 @@ impl Patch {
                 pressure: p.pressure,
             })
             .collect();
-        let sorted = patch::Patch::new(&particles, 2.3 * H);
-        let sums = vec![RateSum::default(); sorted.list.clusters()];
+        let sorted = patch::Patch::new(&particles, 2.3 * H, isa);
+        let sums = vec![RateSum::default(); sorted.list.fours()];
         let grid = naive::Grid::new(&naive, 2.0 * H);
         let pass = naive::Pass { h: H, mass: 1.0, linear: LINEAR, diffusion: DIFFUSION };
-        Self { sorted, sums, isa: Isa::detect(), naive, grid, pass }
+        Self { sorted, sums, naive, grid, pass }
     }
 
     /// The effects of the pass.
@@ -168,7 +167,7 @@ impl Pass<2> for &mut Patch {
     fn run<E: PairEffect<2>>(self, effects: E) {
         let shown = &self.sorted.shown;
         let law = RateLaw { kernel: WendlandC2::<2>::new(H), effects, targets: shown, sources: shown };
-        pair::pass(self.isa, &law, &self.sorted.list, &mut self.sums);
+        pair::pass(self.sorted.isa, &law, &self.sorted.list, &mut self.sums);
     }
 }
 

@@ -8,6 +8,7 @@ use halfstep_fluid::effects::density_diffusion::{DeltaSph, Diffusion, Simple, St
 use halfstep_fluid::effects::viscosity::ViscousStress;
 use halfstep_fluid::rates::RateSum;
 use halfstep_scene::ArtificialViscosity as Coefficients;
+use halfstep_sph::lane::Isa;
 use halfstep_tests::patch::{Particle, Patch, RatePass, SMOOTHING_LENGTH as H};
 use std::process::ExitCode;
 
@@ -22,14 +23,14 @@ fn patch() -> Patch {
             pressure: 1.0 + (0.1 * i).sin(),
         }
     };
-    Patch::new(&(0..1600).map(particle).collect::<Vec<_>>(), 2.3 * H)
+    Patch::new(&(0..1600).map(particle).collect::<Vec<_>>(), 2.3 * H, Isa::detect())
 }
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let patch = patch();
     let gradient = vec![[0.01, 0.02]; patch.id.len()];
-    let mut sums = vec![RateSum::default(); patch.list.clusters()];
+    let mut sums = vec![RateSum::default(); patch.list.fours()];
     let pass = RatePass(&patch, &mut sums);
     let viscosity = ArtificialViscosity::new(Coefficients { linear: 0.1, quadratic: 0.0 }, 10.0, H);
     let simple = Simple(Strength(0.1));

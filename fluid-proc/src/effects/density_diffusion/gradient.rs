@@ -6,21 +6,23 @@
 
 use crate::columns::PairParticles;
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Arch, LANES, Lane};
-use halfstep_sph::pair::{PairLaw, distance};
+use halfstep_sph::lane::{Arch, LANES, Lane, Lanes};
+use halfstep_sph::pair::{PairLaw, distance, pair_sum};
 use halfstep_sph::tensor::moment_inverse;
 use nalgebra::{SMatrix, SVector};
 
-/// Raw gradient and moment matrix of four particles.
+/// Raw gradient and moment matrix of several particles.
 #[derive(Clone, Copy, Debug)]
-pub struct GradientSum<const D: usize> {
-    raw: [Lane; D],
-    moment: [[Lane; D]; D],
+pub struct GradientSum<const D: usize, L = Lane> {
+    raw: [L; D],
+    moment: [[L; D]; D],
 }
 
-impl<const D: usize> Default for GradientSum<D> {
+pair_sum!(GradientSum { D } { raw, moment });
+
+impl<L: Lanes, const D: usize> Default for GradientSum<D, L> {
     fn default() -> Self {
-        Self { raw: [Lane::ZERO; D], moment: [[Lane::ZERO; D]; D] }
+        Self { raw: [L::ZERO; D], moment: [[L::ZERO; D]; D] }
     }
 }
 
@@ -34,15 +36,15 @@ pub struct GradientLaw<'a, K, const D: usize> {
 
 impl<K: Kernel<D>, const D: usize> PairLaw<D> for GradientLaw<'_, K, D> {
     /// Density.
-    type Target = Lane;
-    type Sum = GradientSum<D>;
+    type Target<L: Lanes> = L;
+    type Sum<L: Lanes> = GradientSum<D, L>;
 
     #[inline(always)]
     fn target_positions(&self) -> &[Vec<f64>; D] {
         &self.fluid.position
     }
     #[inline(always)]
-    fn target(&self, slot: usize) -> Self::Target {
+    fn target<L: Lanes>(&self, slot: usize) -> Self::Target<L> {
         self.fluid.densities(slot)
     }
     #[inline(always)]
@@ -50,11 +52,18 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for GradientLaw<'_, K, D> {
         self.fluid.sources[j].position
     }
     #[inline(always)]
-    fn add<A: Arch>(&self, i: &Self::Target, j: usize, dx: [Lane; D], r2: Lane, sum: &mut GradientSum<D>) {
-        let f = self.kernel.gradient_over_r::<A>(distance(r2, self.kernel.smoothing_length()));
+    fn add<A: Arch, L: Lanes>(
+        &self,
+        i: &Self::Target<L>,
+        j: usize,
+        dx: [L; D],
+        r2: L,
+        sum: &mut GradientSum<D, L>,
+    ) {
+        let f = self.kernel.gradient_over_r::<A, L>(distance(r2, self.kernel.smoothing_length()));
         let source = &self.fluid.sources[j];
-        let vf = Lane::splat(source.volume) * f;
-        let difference = vf * (Lane::splat(source.density) - *i);
+        let vf = L::splat(source.volume) * f;
+        let difference = vf * (L::splat(source.density) - *i);
         for a in 0..D {
             sum.raw[a] = A::mul_add(difference, dx[a], sum.raw[a]);
             let row = -(vf * dx[a]);

@@ -1,17 +1,23 @@
-//! Neighbour lists for clusters of four consecutive slots.
+//! Neighbour lists for clusters of consecutive slots, as many as the passes compute at once.
 
 use super::Rows;
-use crate::lane::LANES;
+use crate::lane::{Isa, LANES, WIDEST};
 use rayon::prelude::*;
+use std::ops::Range;
 
-/// Clusters that one task works on.
-pub const CHUNK_CLUSTERS: usize = 128;
+/// Fours of targets that one task works on.
+pub const CHUNK_FOURS: usize = 128;
 
-/// For each cluster of targets the sources within reach of any of its four, in slot order.
-#[derive(Clone, Debug, Default)]
+/// Targets that one task works on.
+const CHUNK: usize = CHUNK_FOURS * LANES;
+
+/// For each cluster of targets the sources within reach of any of them, in slot order.
+#[derive(Clone, Debug)]
 pub struct ClusterList {
     chunks: Vec<Chunk>,
-    clusters: usize,
+    /// Targets of a cluster.
+    width: usize,
+    targets: usize,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -32,7 +38,7 @@ impl Chunk {
         let used = self.index.len();
         if self.index.capacity() != before || before < used + used / 32 {
             // Short lists, those of walls, change the most.
-            let room = if used < 16 * CHUNK_CLUSTERS { 2 * used + 256 } else { used / 4 };
+            let room = if used < 16 * CHUNK_FOURS { 2 * used + 256 } else { used / 4 };
             self.index.shrink_to(used + room);
             self.index.reserve_exact(room);
         }
@@ -53,6 +59,11 @@ impl Chunk {
 }
 
 impl ClusterList {
+    /// An empty list for passes with an instruction set.
+    pub fn new(isa: Isa) -> Self {
+        Self { chunks: Vec::new(), width: isa.min(Isa::detect()).targets(), targets: 0 }
+    }
+
     /// Lists all sources within `reach` of the targets. Both sets are sorted; `rows` is the order of the sources.
     pub fn build<const D: usize>(
         &mut self,
@@ -61,47 +72,68 @@ impl ClusterList {
         rows: &Rows<D>,
         reach: f64,
     ) {
-        self.clusters = targets[0].len() / LANES;
-        let clusters = self.clusters;
-        let used = clusters.div_ceil(CHUNK_CLUSTERS);
+        self.targets = targets[0].len();
+        let used = self.targets.div_ceil(CHUNK);
+        let width = self.width;
         // Chunks that are not needed now keep their memory for when they are.
         // One more stands ready: spreading particles need more padding.
         self.chunks.resize_with((used + 1).max(self.chunks.len()), Chunk::default);
         self.chunks[used].clear();
-        self.chunks[used].start.reserve_exact(CHUNK_CLUSTERS + 1);
+        self.chunks[used].start.reserve_exact(CHUNK / width + 1);
         self.chunks[used..].iter_mut().for_each(Chunk::clear);
         self.chunks[..used].par_iter_mut().enumerate().for_each(|(c, chunk)| {
-            let first = c * CHUNK_CLUSTERS;
-            let last = (first + CHUNK_CLUSTERS).min(clusters);
+            let first = c * CHUNK;
+            let last = (first + CHUNK).min(targets[0].len());
             let before = chunk.index.capacity();
             chunk.clear();
-            chunk.start.reserve_exact(CHUNK_CLUSTERS + 1);
+            chunk.start.reserve_exact(CHUNK / width + 1);
             chunk.start.push(0);
-            for cluster in first..last {
-                push_neighbours(cluster * LANES, targets, sources, rows, reach, &mut chunk.index);
+            for slot in (first..last).step_by(width) {
+                let index = &mut chunk.index;
+                match width {
+                    LANES => push_neighbours::<D, LANES>(slot, targets, sources, rows, reach, index),
+                    _ => push_neighbours::<D, WIDEST>(slot, targets, sources, rows, reach, index),
+                }
                 chunk.start.push(chunk.index.len() as u32);
             }
             chunk.keep_room(before);
         });
     }
 
-    /// Number of clusters.
-    pub fn clusters(&self) -> usize {
-        self.clusters
+    /// Number of targets of a cluster.
+    pub fn width(&self) -> usize {
+        self.width
     }
 
-    /// Listed pairs (four targets each).
-    pub fn entries(&self) -> usize {
-        self.chunks.iter().map(|c| c.index.len()).sum()
+    /// Number of fours of targets.
+    pub fn fours(&self) -> usize {
+        self.targets / LANES
+    }
+
+    /// Pairs that a pass evaluates: each source with all targets of the cluster.
+    pub fn pairs(&self) -> usize {
+        self.width * self.chunks.iter().map(|c| c.index.len()).sum::<usize>()
     }
 
     pub(crate) fn chunks(&self) -> &[Chunk] {
-        &self.chunks[..self.clusters.div_ceil(CHUNK_CLUSTERS)]
+        &self.chunks[..self.targets.div_ceil(CHUNK)]
     }
 
-    /// Neighbours of a cluster.
-    pub fn of(&self, cluster: usize) -> &[u32] {
-        self.chunks[cluster / CHUNK_CLUSTERS].of(cluster % CHUNK_CLUSTERS)
+    /// Numbers of the clusters of a chunk.
+    pub(crate) fn clusters_of(&self, chunk: usize) -> Range<usize> {
+        chunk * CHUNK / self.width..((chunk + 1) * CHUNK).min(self.targets) / self.width
+    }
+
+    /// The chunk of a target, its cluster's neighbours, and how many the clusters before it in the chunk have.
+    pub(crate) fn place(&self, slot: usize) -> (usize, &[u32], usize) {
+        let chunk = slot / CHUNK;
+        let (neighbours, first) = self.chunks[chunk].range(slot % CHUNK / self.width);
+        (chunk, neighbours, first)
+    }
+
+    /// Neighbours of a target's cluster.
+    pub fn of(&self, slot: usize) -> &[u32] {
+        self.place(slot).1
     }
 
     /// Allocated bytes.
@@ -110,7 +142,7 @@ impl ClusterList {
     }
 }
 
-fn push_neighbours<const D: usize>(
+fn push_neighbours<const D: usize, const N: usize>(
     slot: usize,
     targets: &[Vec<f64>; D],
     sources: &[Vec<f64>; D],
@@ -118,16 +150,16 @@ fn push_neighbours<const D: usize>(
     reach: f64,
     index: &mut Vec<u32>,
 ) {
-    let i: [[f64; LANES]; D] = std::array::from_fn(|d| std::array::from_fn(|k| targets[d][slot + k]));
+    let i: [[f64; N]; D] = std::array::from_fn(|d| std::array::from_fn(|k| targets[d][slot + k]));
     let low = std::array::from_fn(|d| i[d].iter().copied().fold(f64::INFINITY, f64::min));
     let high = std::array::from_fn(|d| i[d].iter().copied().fold(f64::NEG_INFINITY, f64::max));
     let reach2 = reach * reach;
     rows.candidates(&sources[0], low, high, reach, |first, end| {
         for j in first..end {
-            let mut r2 = [0.0; LANES];
+            let mut r2 = [0.0; N];
             for d in 0..D {
                 let xj = sources[d][j];
-                for k in 0..LANES {
+                for k in 0..N {
                     let dx = i[d][k] - xj;
                     r2[k] += dx * dx;
                 }
@@ -155,10 +187,16 @@ mod tests {
             rows.permute(column);
         }
         rows.permute_ids(&mut id);
-        let mut list = ClusterList::default();
-        list.build(&x, &x, &rows, 1.0);
+        for isa in [Isa::Avx2, Isa::Avx512vl] {
+            let mut list = ClusterList::new(isa);
+            list.build(&x, &x, &rows, 1.0);
+            holds_every_pair(&list, &x, &id);
+        }
+    }
+
+    fn holds_every_pair<const D: usize>(list: &ClusterList, x: &[Vec<f64>; D], id: &[u32]) {
         for i in 0..id.len() {
-            let listed = list.of(i / LANES);
+            let listed = list.of(i);
             assert!(listed.windows(2).all(|w| w[0] < w[1]));
             for j in 0..id.len() {
                 let r2: f64 = x.iter().map(|x| (x[i] - x[j]).powi(2)).sum();
