@@ -82,7 +82,21 @@ pub fn flow_speed(scene: &Scene) -> f64 {
         let (mode, solid) = (shape.cantilever_mode?, scene.solids.get(shape.solid?)?);
         Some(solid.sound_speed() * mode.fraction.abs())
     });
-    let swing = swings.fold(0.0, f64::max);
+    let spins =
+        scene.solids.iter().enumerate().filter_map(|(solid, material)| Some((solid, material.rigid()?)));
+    let spins = spins.flat_map(|(solid, keys)| {
+        keys.bodies.iter().map(move |body| {
+            let own = scene.shapes.iter().filter(|s| s.solid == Some(solid) && s.body() == body.name);
+            let boxes: Vec<_> = own.map(|s| geometry::bounding_box(s, scene)).collect();
+            let extent = |d: usize| {
+                let least = boxes.iter().map(|b| b.min[d]).fold(f64::INFINITY, f64::min);
+                boxes.iter().map(|b| b.max[d]).fold(f64::NEG_INFINITY, f64::max) - least
+            };
+            let across = [0, 1, 2].map(|d| if boxes.is_empty() { 0.0 } else { extent(d) });
+            length(&body.angular_velocity) * length(&across)
+        })
+    });
+    let swing = swings.chain(spins).fold(0.0, f64::max);
     scene
         .shapes
         .iter()

@@ -1,6 +1,8 @@
 //! What must hold between the tables of contact.
 
+use super::bounds::flow_speed;
 use super::check::Check;
+use super::contact::PairContact;
 
 impl Check<'_> {
     /// One table speaks of a pair of solids.
@@ -13,6 +15,18 @@ impl Check<'_> {
             if all[..k].iter().any(|other| other.solids == contact.solids) {
                 self.wrong(&format!("contact.{k}.solids"), "another [[contact]] is about these two solids");
             }
+        }
+        let unknown = |contact: &PairContact| contact.stiffness.is_none();
+        let Some(pair) = self.scene.contacts().into_iter().find(unknown) else { return };
+        if self.scene.dimension == 2 && flow_speed(self.scene) == 0.0 {
+            let [a, b] = pair.solids.map(|solid| &self.scene.solids[solid].name);
+            self.wrong(
+                "solid",
+                format!(
+                    "`{a}` and `{b}` can touch, but nothing in the scene says how fast: give a [[contact]] with \
+                     `stiffness` (Pa/m), or with `touch = false`"
+                ),
+            );
         }
     }
 }

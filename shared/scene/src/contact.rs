@@ -26,8 +26,9 @@ impl PairContact {
     }
 }
 
-/// Speed of the stiffness from the scene over the flow's, U ([`flow_speed`]): a body that meets another with U goes at
-/// most a twentieth of its thickness into it.
+/// Speed of the stiffness from the scene over the flow's, U ([`flow_speed`]): a body as deep as the smallest side that
+/// meets another, which stays, with U goes a twentieth of that side into it; a heavier one deeper, by the root of its
+/// mass behind an area.
 const STIFFNESS_SPEED: f64 = 20.0;
 
 impl Scene {

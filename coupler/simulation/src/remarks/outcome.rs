@@ -8,6 +8,9 @@ const DENSITY_ERROR: f64 = 0.03;
 /// Distance of fluid and solid particles that says that one went into the other, over the mean spacing.
 const CLOSEST: f64 = 0.1;
 
+/// Energy that a contact may give to two solids, over its largest force times its largest penetration.
+const CREATED: f64 = 0.1;
+
 /// Part of the largest energy that the ledger may leave to the error of time integration.
 const RESIDUAL: f64 = 0.05;
 
@@ -26,6 +29,15 @@ pub fn outcome(report: &RunReport) -> Vec<String> {
     }
     if let Some(gap) = report.audit.min_gap.filter(|gap| *gap < CLOSEST) {
         all.push(format!("fluid and solid came as close as {gap:.3} dx"));
+    }
+    for contact in &report.contacts {
+        if contact.normal > CREATED * contact.largest_force * contact.largest_penetration {
+            all.push(format!(
+                "contact of {} gave them {:.2e} J instead of taking some: say a `stiffness` or a shorter step",
+                contact.solids.join(" and "),
+                contact.normal
+            ));
+        }
     }
     if let Some(energy) = &report.energy {
         if energy.relative_residual > RESIDUAL {

@@ -7,14 +7,12 @@ use halfstep_scene::{PairContact, Scene};
 /// Decay time of the damper along the surface, in steps of the limit.
 const ALONG: f64 = 2.0;
 
-/// Part of the fastest approach within which a force changes from that of coming to that of leaving.
+/// Part of the fastest approach within which a force changes from that of coming to that of leaving, unless a step
+/// changes more.
 const SLOW: f64 = 0.01;
 
 /// Steps of the limit in which gravity gives the speed of a body at rest.
 const REST: f64 = 4.0;
-
-/// How deep a point is looked for inside of another solid, in that solid's spacings.
-const DEPTH: f64 = 3.0;
 
 /// Room between the step that a derived stiffness allows and the fluid's.
 const ROOM: f64 = 1.01;
@@ -164,8 +162,10 @@ impl Law {
         touch.approach = touch.approach.max(approach);
         let spring = 0.5 * self.stiffness * outline.points[point].length;
         let kept = self.restitution * self.restitution;
-        let slow = 0.5 * THETA * THETA / self.limit * foot.depth * (1.0 - kept);
-        let slow = slow.min(SLOW * touch.approach).max(self.rest.min(slow));
+        // No less than what a step of the limit changes at this depth: else the half-step sees the force of leaving
+        // before the step has turned the motion round, and bodies sink into each other.
+        let change = 0.5 * THETA * THETA / self.limit * foot.depth * (1.0 - kept);
+        let slow = change.max(SLOW * touch.approach).max(self.rest);
         let way = if slow > 0.0 { libm::tanh(approach / slow) } else { sign(approach) };
         let push = spring * foot.depth * 0.5 * (1.0 + kept + (1.0 - kept) * way);
         let most = self.friction * push;
@@ -204,7 +204,7 @@ fn give(outline: &Outline, point: u32, force: [f64; 2], forces: &mut [[f64; 2]])
     }
 }
 
-/// The nearest place on a piece to a point that is inside of it and not too deep.
+/// The nearest place on a piece to a point that is inside of it.
 fn nearest((outline, placed): (&Outline, &Placed), piece: usize, at: [f64; 2]) -> Option<Foot> {
     let ends = |part: u32| outline.parts[part as usize].ends.map(|end| placed.position[end as usize]);
     let mut best: Option<(f64, u32, f64)> = None;
@@ -237,7 +237,7 @@ fn nearest((outline, placed): (&Outline, &Placed), piece: usize, at: [f64; 2]) -
     };
     let depth = square.sqrt();
     let outside = dot(away, side[0]) + dot(away, side[1]) >= 0.0;
-    if outside || depth > DEPTH * outline.spacing {
+    if outside {
         return None;
     }
     let normal = if share > 0.0 && share < 1.0 { side[0] } else { away.map(|x| -x / depth) };

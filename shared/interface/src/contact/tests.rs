@@ -151,12 +151,50 @@ fn an_impact_keeps_momentum_and_gives_the_speed_that_restitution_says() {
         assert!((after[0] - before[0]).abs() < 1e-12 * 10.0, "{before:?} {after:?}");
         let speed = run.blocks[1].velocity[0] - run.blocks[0].velocity[0];
         println!("e = {restitution}: {} after {} steps, {:?}", speed / 1.5, run.steps, run.booked());
-        // Without restitution the force goes to nothing within v_s.
-        let within = if restitution > 0.0 { 0.02 } else { 0.05 };
-        assert!((speed / 1.5 - restitution).abs() < within, "{restitution}: {speed}");
+        // Without restitution the force goes to nothing within v_s, which is what a step changes.
+        let (least, most) =
+            if restitution > 0.0 { (restitution - 0.02, restitution + 0.05) } else { (0.0, 0.35) };
+        assert!((least..most).contains(&(speed / 1.5)), "{restitution}: {speed}");
         let lost = run.kinetic() - energy;
         assert!((run.booked().normal - lost).abs() < 1e-9 * energy, "{lost}");
         assert_eq!(run.booked().friction, 0.0);
+    }
+}
+
+/// A block that falls on another, which stays, from a height that changes where in a step the two meet.
+fn falling(restitution: f64, phase: f64) -> Run {
+    let shapes = [boxed("a", [0.0, 0.0], [0.1, 0.05]), boxed("b", [-0.1, -0.05], [0.2, 0.0])];
+    let more = format!("restitution = {restitution}");
+    let mut run = Run::of(0.01, shapes, [[0.0, -0.3], [0.0, 0.0]], &more);
+    run.blocks[1].fixed = true;
+    run.gravity = [0.0, -10.0];
+    let gap = 0.3 * run.dt * (2.0 + phase);
+    (run.blocks[0].at, run.blocks[1].at) = ([0.0, gap], [0.0; 2]);
+    run.show(0, [0.0, gap], [0.0, -0.3]);
+    run
+}
+
+#[test]
+fn where_in_a_step_two_bodies_meet_does_not_matter() {
+    for restitution in [0.0, 0.2, 0.5, 1.0] {
+        let mut left = (f64::INFINITY, 0.0_f64);
+        for phase in 0..7 {
+            let mut run = falling(restitution, f64::from(phase) / 7.0);
+            let (mass, limit) = (run.blocks[0].mass, run.contact.limit());
+            run.until(20.0 * limit);
+            let deep = run.booked().largest_penetration;
+            // Undamped a mass m on a spring of K goes v sqrt(m / K) deep.
+            let (_, law, _) = run.contact.booked().next().expect("a pair");
+            let undamped = 0.3 * (mass / (0.1 * law.stiffness)).sqrt();
+            assert!(deep < 1.2 * undamped, "e = {restitution}, phase {phase}: {deep} m of {undamped} m");
+            left = (left.0.min(run.blocks[0].velocity[1] / 0.3), left.1.max(run.blocks[0].velocity[1] / 0.3));
+            run.until(800.0 * limit);
+            if restitution < 1.0 {
+                assert!(run.booked().normal < 0.0, "e = {restitution}, phase {phase}: {:?}", run.booked());
+                assert!(run.kinetic() < 1e-3 * 0.5 * mass * 0.09, "e = {restitution}, phase {phase} rests");
+            }
+        }
+        println!("e = {restitution}: leaves with {left:?} of its speed");
     }
 }
 
