@@ -1,7 +1,8 @@
 //! Moving particles sorted into rows: slots of one row are consecutive and ascend in x.
 //!
 //! A row is a strip along x (2D) or a square column along x (3D). Each row is padded to whole clusters, of the widest
-//! kind whatever the processor, with copies of its last particle; a padding slot is never anybody's neighbour, so what becomes of it does not matter.
+//! kind whatever the processor, with copies of its last particle; a padding slot is never anybody's neighbour, so what
+//! becomes of it does not matter.
 
 use super::PADDING;
 use crate::columns::fit;
