@@ -6,7 +6,7 @@
 
 use crate::lane::{Arch, Lanes};
 
-/// Pi_ij of a pair, for each target, m⁵/(kg s²). `linear` is A c, m/s; `quadratic` is B; `approach` is v_ij . x_ij, m²/s.
+/// Pi_ij with each target, m⁵/(kg s²). `linear` is A c, m/s; `quadratic` is B; `approach` is v_ij . x_ij, m²/s.
 #[inline(always)]
 pub fn damping<A: Arch, L: Lanes>(h: f64, linear: L, quadratic: L, approach: L, r2: L, density_sum: L) -> L {
     let q = approach.min(L::ZERO) * L::splat(h);
