@@ -33,6 +33,7 @@ mod energy;
 mod error;
 mod file;
 pub mod geometry;
+mod keys;
 mod load;
 mod metric;
 mod motion;
@@ -52,6 +53,7 @@ mod read_shape;
 mod read_solid;
 mod read_waves;
 mod resources;
+mod schema;
 mod section;
 mod solid;
 mod solid_json;
@@ -71,6 +73,7 @@ pub use motion::{Composed, Course, Motion, Part, Placement, Solitary, Spline, Tu
 pub use participant::Participant;
 pub use probe::{BodyQuantity, Probe, ProbeKind, Reference};
 pub use resources::{expected_speed, expected_speed_of_fluid, memory_available, memory_needed};
+pub use schema::schema;
 pub use solid::{
     ArtificialStress, ContactKeys, FiniteElementKeys, Fracture, HypoelasticKeys, Joint, JointKind, Material,
     ModelKeys, Plane, RigidBody, RigidKeys, Solid, SolidModelName, SubSteps, TimeIntegration,

@@ -24,20 +24,33 @@ pub(crate) const SMOOTHING: Range = Range::at_least(1.0)
     .up_to(2.5)
     .why("below, neighbours are too few; above, they are too many to resolve anything at this spacing");
 // Ends beyond any material, within which no formula overflows.
-pub(super) const DENSITY: Range = Range::at_least(1e-6).up_to(1e9);
+pub(crate) const DENSITY: Range = Range::at_least(1e-6).up_to(1e9);
 /// Most worker threads of a process.
-pub(super) const MAX_THREADS: u32 = 1024;
-const PRESSURE: Range = Range::at_least(0.0).up_to(1e15);
+pub(crate) const MAX_THREADS: u32 = 1024;
 pub(crate) const COEFFICIENT: Range = Range::at_least(0.0).up_to(100.0);
+
+pub(crate) const PRESETS: [(&str, Preset); 2] = [("kayaki", Preset::Kayaki), ("waves", Preset::Waves)];
+pub(crate) const DIFFUSIONS: [(&str, DensityDiffusion); 4] = [
+    ("delta-sph", DensityDiffusion::DeltaSph),
+    ("simple", DensityDiffusion::Simple),
+    ("hydrostatic", DensityDiffusion::Hydrostatic),
+    ("none", DensityDiffusion::None),
+];
+pub(crate) const TREATMENTS: [(&str, Treatment); 2] =
+    [("moving-wall", Treatment::MovingWall), ("phase-blind", Treatment::PhaseBlind)];
+pub(crate) const KERNELS: [(&str, KernelName); 2] =
+    [("cubic-spline", KernelName::CubicSpline), ("wendland-c2", KernelName::WendlandC2)];
+pub(crate) const LATTICES: [(&str, Lattice); 2] = [("centred", Lattice::Centred), ("nodal", Lattice::Nodal)];
+pub(crate) const SWITCHES: [(&str, Switch); 3] =
+    [("auto", Switch::Auto), ("on", Switch::On), ("off", Switch::Off)];
 
 pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&str]) -> Draft {
     let top = Section::root(root, report);
-    let presets = [("kayaki", Preset::Kayaki), ("waves", Preset::Waves)];
-    let preset = top.node("preset").and_then(|n| top.as_choice("preset", n, &presets));
+    let preset = top.node("preset").and_then(|n| top.as_choice("preset", n, &PRESETS));
     let dimension = dimension(&top);
     let defaults = Defaults::of(preset, dimension);
     let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let end_time = top.number("end_time", None, Range::at_least(1e-12).up_to(1e12));
+    let end_time = top.number("end_time", None);
     let numerics = numerics(top.section("numerics"), dimension, &defaults);
     let interface = interface(top.section("interface"), &defaults);
     let linear_auto = defaults.own_viscosity_counts && {
@@ -77,10 +90,10 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&s
         path: path.to_string_lossy().into_owned().into(),
         preset,
         dimension,
-        resolution: top.number("resolution", None, Range::positive()),
-        smoothing_ratio: top.number("smoothing_ratio", Some(defaults.smoothing_ratio), SMOOTHING),
+        resolution: top.number("resolution", None),
+        smoothing_ratio: top.number("smoothing_ratio", Some(defaults.smoothing_ratio)),
         end_time,
-        time_step: match top.number_or_auto("time_step", fixed(defaults.time_step), Range::positive()) {
+        time_step: match top.number_or_auto("time_step", fixed(defaults.time_step)) {
             Some(dt) => TimeStep::Fixed(dt),
             None => TimeStep::Auto,
         },
@@ -137,30 +150,18 @@ fn dimension(top: &Section<'_>) -> usize {
 }
 
 fn fluid(section: Section<'_>, defaults: &Defaults) -> (Fluid, bool) {
-    let sound_speed = section.number_or_auto("sound_speed", None, Range::positive().up_to(1e9));
+    let sound_speed = section.number_or_auto("sound_speed", None);
     let fluid = Fluid {
-        density: section.number("density", None, DENSITY),
-        viscosity: section.number("viscosity", Some(0.0), Range::at_least(0.0).up_to(1e9)),
+        density: section.number("density", None),
+        viscosity: section.number("viscosity", Some(0.0)),
         sound_speed: sound_speed.unwrap_or(f64::NAN),
         artificial_viscosity: viscosity(&section, defaults.fluid_viscosity),
         density_diffusion: section
-            .choice(
-                "density_diffusion",
-                Some(defaults.density_diffusion),
-                &[
-                    ("delta-sph", DensityDiffusion::DeltaSph),
-                    ("simple", DensityDiffusion::Simple),
-                    ("hydrostatic", DensityDiffusion::Hydrostatic),
-                    ("none", DensityDiffusion::None),
-                ],
-            )
+            .choice("density_diffusion", Some(defaults.density_diffusion), &DIFFUSIONS)
             .unwrap_or(defaults.density_diffusion),
-        density_diffusion_coefficient: section.number(
-            "density_diffusion_coefficient",
-            Some(defaults.density_diffusion_coefficient),
-            Range::at_least(0.0).up_to(1.0).why("the usual value is 0.1"),
-        ),
-        background_pressure: section.number("background_pressure", Some(0.0), PRESSURE),
+        density_diffusion_coefficient: section
+            .number("density_diffusion_coefficient", Some(defaults.density_diffusion_coefficient)),
+        background_pressure: section.number("background_pressure", Some(0.0)),
         beach: beach(section.section("beach")),
     };
     section.finish();
@@ -169,14 +170,13 @@ fn fluid(section: Section<'_>, defaults: &Defaults) -> (Fluid, bool) {
 
 /// Where waves are absorbed.
 fn beach(section: Section<'_>) -> Option<Beach> {
-    const PLACE: Range = Range::at_least(-1e9).up_to(1e9);
     if !section.is_present() {
         return None;
     }
     let beach = Beach {
-        from: section.number("from", None, PLACE),
-        to: section.number("to", None, PLACE),
-        rate: section.number("rate", Some(10.0), Range::positive().up_to(1e6)),
+        from: section.number("from", None),
+        to: section.number("to", None),
+        rate: section.number("rate", Some(10.0)),
     };
     if let (true, Some(node)) = (beach.from == beach.to, section.node("to")) {
         section.wrong("to", node, "must be another place than `from`: waves run from there to it");
@@ -188,22 +188,17 @@ fn beach(section: Section<'_>) -> Option<Beach> {
 pub(super) fn viscosity(section: &Section<'_>, default: ArtificialViscosity) -> ArtificialViscosity {
     let table = section.section("artificial_viscosity");
     let viscosity = ArtificialViscosity {
-        linear: table.number("linear", Some(default.linear), COEFFICIENT),
-        quadratic: table.number("quadratic", Some(default.quadratic), COEFFICIENT),
+        linear: table.number("linear", Some(default.linear)),
+        quadratic: table.number("quadratic", Some(default.quadratic)),
     };
     table.finish();
     viscosity
 }
 
 fn interface(section: Section<'_>, defaults: &Defaults) -> Interface {
-    let treatment = section
-        .choice(
-            "treatment",
-            Some(defaults.treatment),
-            &[("moving-wall", Treatment::MovingWall), ("phase-blind", Treatment::PhaseBlind)],
-        )
-        .unwrap_or(defaults.treatment);
-    let near = section.number("cross_viscosity", Some(defaults.cross_viscosity), COEFFICIENT);
+    let treatment =
+        section.choice("treatment", Some(defaults.treatment), &TREATMENTS).unwrap_or(defaults.treatment);
+    let near = section.number("cross_viscosity", Some(defaults.cross_viscosity));
     // Phase-blind, f_i is the paper's, whose C is the same everywhere.
     let share = if treatment == Treatment::PhaseBlind { 1.0 } else { defaults.cross_viscosity_far };
     let range = Range::at_least(0.0).up_to(if near.is_finite() { near } else { f64::MAX });
@@ -212,7 +207,7 @@ fn interface(section: Section<'_>, defaults: &Defaults) -> Interface {
     let interface = Interface {
         treatment,
         cross_viscosity: near,
-        cross_viscosity_far: section.number("cross_viscosity_far", Some(share * near), range),
+        cross_viscosity_far: section.number_within("cross_viscosity_far", Some(share * near), range),
     };
     section.finish();
     interface
@@ -220,9 +215,9 @@ fn interface(section: Section<'_>, defaults: &Defaults) -> Interface {
 
 fn output(section: Section<'_>, end_time: f64) -> Output {
     let output = Output {
-        frame_interval: section.number("frame_interval", Some(end_time / 50.0), Range::positive()),
-        probe_interval: section.number("probe_interval", Some(end_time / 2000.0), Range::positive()),
-        checkpoint_interval: section.number("checkpoint_interval", Some(0.0), Range::at_least(0.0)),
+        frame_interval: section.number("frame_interval", Some(end_time / 50.0)),
+        probe_interval: section.number("probe_interval", Some(end_time / 2000.0)),
+        checkpoint_interval: section.number("checkpoint_interval", Some(0.0)),
     };
     section.finish();
     output
@@ -234,7 +229,6 @@ fn effects(
     defaults: &Defaults,
     own: &[&str],
 ) -> (BTreeMap<EffectName, Switch>, BTreeMap<String, Switch>) {
-    const SWITCHES: [(&str, Switch); 3] = [("auto", Switch::Auto), ("on", Switch::On), ("off", Switch::Off)];
     let mut effects: BTreeMap<_, _> = defaults.effects.iter().copied().collect();
     let mut own_effects = BTreeMap::new();
     let section = top.section("effects");
@@ -267,40 +261,16 @@ fn effects(
 fn numerics(section: Section<'_>, dimension: usize, defaults: &Defaults) -> Numerics {
     let threads = section.section("threads");
     let numerics = Numerics {
-        kernel: section
-            .choice(
-                "kernel",
-                Some(defaults.kernel),
-                &[("cubic-spline", KernelName::CubicSpline), ("wendland-c2", KernelName::WendlandC2)],
-            )
-            .unwrap_or(defaults.kernel),
-        cfl: section.number(
-            "cfl",
-            Some(0.4),
-            Range::positive()
-                .up_to(1.0)
-                .why("a sound wave must not cross more than a smoothing length a step"),
-        ),
-        solid_cfl: section.number(
-            "solid_cfl",
-            Some(0.6),
-            Range::positive().up_to(1.1).why("dt c_P / dx beyond 1.1 is unstable"),
-        ),
-        max_sub_steps: section.integer("max_sub_steps", 200, 1, 100_000),
-        interface_capacity: section
-            .node("interface_capacity")
-            .and_then(|node| section.as_integer("interface_capacity", node, 1, 100_000_000)),
+        kernel: section.choice("kernel", Some(defaults.kernel), &KERNELS).unwrap_or(defaults.kernel),
+        cfl: section.number("cfl", Some(0.4)),
+        solid_cfl: section.number("solid_cfl", Some(0.6)),
+        max_sub_steps: section.integer("max_sub_steps", 200),
+        interface_capacity: section.optional_integer("interface_capacity"),
         threads: Threads {
-            fluid: threads.integer("fluid", 2, 1, MAX_THREADS) as usize,
-            solid: threads.integer("solid", 1, 1, MAX_THREADS) as usize,
+            fluid: threads.integer("fluid", 2) as usize,
+            solid: threads.integer("solid", 1) as usize,
         },
-        lattice: section
-            .choice(
-                "lattice",
-                Some(defaults.lattice),
-                &[("centred", Lattice::Centred), ("nodal", Lattice::Nodal)],
-            )
-            .unwrap_or(defaults.lattice),
+        lattice: section.choice("lattice", Some(defaults.lattice), &LATTICES).unwrap_or(defaults.lattice),
         domain: match section.section("domain") {
             domain if domain.is_present() => Some(domain.whole_block(dimension)),
             _ => None,

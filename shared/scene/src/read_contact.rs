@@ -2,13 +2,8 @@
 
 use super::document::Value;
 use super::error::{listed, nearest};
-use super::section::{Range, Section};
-use super::solid::{FRICTION, RESTITUTION};
+use super::section::Section;
 use super::*;
-
-/// Ends beyond any material, within which no formula overflows.
-const STIFFNESS: Range =
-    Range::positive().up_to(1e18).why("it is the pressure over how far one goes into the other, Pa/m");
 
 /// Contact of two solids; `None` where it is not clear of which.
 pub(super) fn contact(section: Section<'_>, names: &[&str]) -> Option<PairContact> {
@@ -16,9 +11,9 @@ pub(super) fn contact(section: Section<'_>, names: &[&str]) -> Option<PairContac
     let contact = PairContact {
         solids: solids.unwrap_or_default(),
         touch: section.boolean("touch", true),
-        friction: section.number("friction", Some(0.0), FRICTION),
-        restitution: section.number("restitution", Some(0.0), RESTITUTION),
-        stiffness: section.number_or_auto("stiffness", None, STIFFNESS),
+        friction: section.number("friction", Some(0.0)),
+        restitution: section.number("restitution", Some(0.0)),
+        stiffness: section.number_or_auto("stiffness", None),
     };
     section.finish();
     solids.map(|_| contact)

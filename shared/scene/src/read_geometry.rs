@@ -3,14 +3,12 @@
 use super::document::{Node, Value};
 use super::geometry::{Fault, MAX_CORNERS, Moved, Polygon};
 use super::read_probe::read_csv;
-use super::section::{Range, Section};
+use super::section::Section;
 use super::*;
 use std::path::Path;
 
-/// Degrees: more would lose digits, and fewer say the same.
-const ANGLE: Range = Range::at_least(-360.0).up_to(360.0);
 /// Most copies of a shape.
-const MAX_COPIES: u32 = 100_000;
+pub(crate) const MAX_COPIES: u32 = 100_000;
 
 /// The polygon that a shape's `polygon` or `outline` with its `holes` says; `None` with errors.
 pub(super) fn polygon(section: &Section<'_>, key: &'static str, folder: &Path) -> Option<Polygon> {
@@ -76,7 +74,7 @@ fn from_file(section: &Section<'_>, folder: &Path) -> Option<Vec<[f64; 2]>> {
     if table.is_present() && node.is_none() {
         table.missing("file");
     }
-    let scale = table.number("scale", Some(1.0), Range::positive().up_to(1e9));
+    let scale = table.number("scale", Some(1.0));
     let (node, file) = (node?, folder.join(file?));
     let found = read_csv(&file, "x", "y").and_then(|corners| {
         let corners: Vec<_> = corners.into_iter().map(|corner| corner.map(|x| x * scale)).collect();
@@ -109,14 +107,14 @@ pub(super) fn moved(section: &Section<'_>, geometry: Geometry, dimension: usize)
         geometry: Box::new(geometry),
     };
     if rotate.is_present() {
-        moved.angle = rotate.number("angle", None, ANGLE);
+        moved.angle = rotate.number("angle", None);
         moved.about = rotate.vector("about", dimension, Some(moved.about));
     }
     if repeat.is_present() {
         if repeat.node("count").is_none() {
             repeat.missing("count");
         }
-        moved.count = repeat.integer("count", 1, 1, MAX_COPIES);
+        moved.count = repeat.integer("count", 1);
         moved.step = repeat.vector("step", dimension, None);
         if let (true, Some(node)) = (moved.count > 1 && moved.step == [0.0; 3], repeat.node("step")) {
             repeat.wrong("step", node, "puts all copies in one place");

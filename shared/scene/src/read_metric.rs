@@ -6,7 +6,7 @@ use super::section::{Range, Section};
 use super::*;
 
 #[derive(Clone, Copy, PartialEq)]
-enum Kind {
+pub(crate) enum Kind {
     Peak,
     PeakTime,
     FirstAbove,
@@ -17,7 +17,7 @@ enum Kind {
     Decay,
 }
 
-const KINDS: [(&str, Kind); 8] = [
+pub(crate) const KINDS: [(&str, Kind); 8] = [
     ("peak", Kind::Peak),
     ("peak-time", Kind::PeakTime),
     ("first-above", Kind::FirstAbove),
@@ -28,8 +28,6 @@ const KINDS: [(&str, Kind); 8] = [
     ("decay", Kind::Decay),
 ];
 
-const TIME: Range = Range::at_least(0.0);
-
 /// A metric; `None` where it is not clear what it measures.
 pub(super) fn metric(section: Section<'_>) -> Option<Metric> {
     let name = name(&section);
@@ -39,20 +37,20 @@ pub(super) fn metric(section: Section<'_>) -> Option<Metric> {
     let probe = section.string("probe").map(str::to_owned);
     // Without a kind its other keys mean nothing: they are not looked at.
     let kind = section.choice("kind", None, &KINDS)?;
-    let level = || section.number("level", Some(0.0), Range::ANY);
+    let level = || section.number("level", Some(0.0));
     let read = match kind {
         Kind::Peak => MetricKind::Peak,
         Kind::PeakTime => MetricKind::PeakTime,
         Kind::FirstAbove => MetricKind::FirstAbove { level: level() },
         Kind::Rms => MetricKind::Rms,
-        Kind::Value => MetricKind::Value { at: section.number("at", None, TIME) },
+        Kind::Value => MetricKind::Value { at: section.number("at", None) },
         Kind::Period => MetricKind::Period { level: level() },
         Kind::Mean => MetricKind::Mean,
         Kind::Decay => MetricKind::Decay { level: level() },
     };
     let (from, to) = if kind == Kind::Value { (0.0, None) } else { window(&section) };
     let reference = reference(&section, kind);
-    let scale = section.node("scale").map(|_| section.number("scale", None, Range::positive()));
+    let scale = section.node("scale").map(|_| section.number("scale", None));
     if let (Some(MetricReference::Number { value: 0.0, .. }), None) = (&reference, scale)
         && let Some(node) = section.node("reference")
     {
@@ -63,8 +61,8 @@ pub(super) fn metric(section: Section<'_>) -> Option<Metric> {
 }
 
 fn window(section: &Section<'_>) -> (f64, Option<f64>) {
-    let from = section.number("from", Some(0.0), TIME);
-    let to = section.node("to").map(|_| section.number("to", None, TIME));
+    let from = section.number("from", Some(0.0));
+    let to = section.node("to").map(|_| section.number("to", None));
     if let (Some(end), Some(node)) = (to, section.node("to"))
         && end <= from
     {

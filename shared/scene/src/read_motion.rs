@@ -8,9 +8,9 @@ use super::*;
 use std::path::Path;
 use std::sync::Arc;
 
-pub(super) const INSTANT: Range = Range::at_least(0.0).up_to(1e12);
+pub(crate) const INSTANT: Range = Range::at_least(0.0).up_to(1e12);
 /// Angles, rad, and angular velocities, rad/s.
-const ANGLE: Range = Range::at_least(-1e6).up_to(1e6);
+pub(crate) const ANGLE: Range = Range::at_least(-1e6).up_to(1e6);
 /// Longest series of a file.
 const MAX_ROWS: usize = 1_000_000;
 
@@ -46,7 +46,7 @@ pub(super) fn motion(section: &Section<'_>, around: &Around<'_>) -> Option<Motio
             table.finish();
             return Some(simple);
         }
-        let parts = if table.node("wave").is_some() {
+        let parts = if makes_waves(&table) {
             let (parts, makes) = read_waves::waves(&table, around).unwrap_or_default();
             if composed.makes.is_some() && makes.is_some() {
                 table.whole("makes waves beside another part that does: a paddle makes one sort of waves");
@@ -74,10 +74,17 @@ pub(super) fn motion(section: &Section<'_>, around: &Around<'_>) -> Option<Motio
     Some(Motion::Composed(Arc::new(composed)))
 }
 
+fn makes_waves(table: &Section<'_>) -> bool {
+    table.has("wave")
+}
+
 /// A translation at constant velocity, or one that swings.
 fn simple(table: &Section<'_>, dimension: usize) -> Option<Motion> {
     let has = |key| table.node(key).is_some();
-    if ["angular_velocity", "angle", "file", "pivot", "phase", "wave"].into_iter().any(has) {
+    if makes_waves(table) {
+        return None;
+    }
+    if ["angular_velocity", "angle", "file", "pivot", "phase"].into_iter().any(has) {
         return None;
     }
     match (has("velocity"), has("amplitude")) {
@@ -87,9 +94,9 @@ fn simple(table: &Section<'_>, dimension: usize) -> Option<Motion> {
         }
         (false, true) => Some(Motion::Oscillating {
             amplitude: table.vector("amplitude", dimension, None),
-            period: table.number("period", None, Range::at_least(1e-9).up_to(1e12)),
-            start: table.number("start", Some(0.0), INSTANT),
-            ramp: table.number("ramp", Some(0.0), INSTANT),
+            period: table.number("period", None),
+            start: table.number("start", Some(0.0)),
+            ramp: table.number("ramp", Some(0.0)),
         }),
         _ => None,
     }
@@ -97,8 +104,8 @@ fn simple(table: &Section<'_>, dimension: usize) -> Option<Motion> {
 
 /// Start and end, with room for two ramps between them.
 fn span(table: &Section<'_>, ramp: f64) -> (f64, f64) {
-    let start = table.number("start", Some(0.0), INSTANT);
-    let end = table.number("end", Some(1e12), INSTANT);
+    let start = table.number("start", Some(0.0));
+    let end = table.number("end", Some(1e12));
     if end <= start {
         table.whole(format!("must have an `end` after its `start`, {start} s"));
     } else if end - start < 2.0 * ramp {
@@ -116,17 +123,17 @@ fn parts(table: &Section<'_>, dimension: usize, folder: &Path) -> Vec<Part> {
     let zero = Some([0.0; 3]);
     match kinds {
         [true, false, false] => {
-            let ramp = table.number("ramp", Some(0.0), INSTANT);
+            let ramp = table.number("ramp", Some(0.0));
             let (start, end) = span(table, ramp);
             vec![Part {
                 course: Course::Steady { start, end, ramp },
                 translation: table.vector("velocity", dimension, zero),
-                angle: table.number("angular_velocity", Some(0.0), ANGLE),
+                angle: table.number("angular_velocity", Some(0.0)),
             }]
         }
         [false, true, false] => {
-            let phase = table.number("phase", Some(0.0), ANGLE);
-            let ramp = table.number("ramp", Some(0.0), INSTANT);
+            let phase = table.number("phase", Some(0.0));
+            let ramp = table.number("ramp", Some(0.0));
             if let (true, Some(node)) = (phase != 0.0 && ramp == 0.0, table.node("phase")) {
                 table.wrong(
                     "phase",
@@ -136,13 +143,13 @@ fn parts(table: &Section<'_>, dimension: usize, folder: &Path) -> Vec<Part> {
             }
             vec![Part {
                 course: Course::Sine {
-                    period: table.number("period", None, Range::at_least(1e-9).up_to(1e12)),
+                    period: table.number("period", None),
                     phase,
-                    start: table.number("start", Some(0.0), INSTANT),
+                    start: table.number("start", Some(0.0)),
                     ramp,
                 },
                 translation: table.vector("amplitude", dimension, zero),
-                angle: table.number("angle", Some(0.0), ANGLE),
+                angle: table.number("angle", Some(0.0)),
             }]
         }
         [false, false, true] => from_file(table, dimension, folder).unwrap_or_default(),
@@ -162,7 +169,7 @@ fn parts(table: &Section<'_>, dimension: usize, folder: &Path) -> Vec<Part> {
 
 /// A series in a file: `columns = { time, x, y, angle }` are the titles of its columns.
 fn from_file(table: &Section<'_>, dimension: usize, folder: &Path) -> Option<Vec<Part>> {
-    let scale = table.number("scale", Some(1.0), Range::at_least(-1e12).up_to(1e12));
+    let scale = table.number("scale", Some(1.0));
     let columns = table.section("columns");
     if !columns.is_present() {
         if table.node("columns").is_none() {

@@ -7,7 +7,7 @@ use super::*;
 use std::path::Path;
 
 #[derive(Clone, Copy)]
-enum Kind {
+pub(crate) enum Kind {
     Displacement,
     Position,
     Stress,
@@ -49,12 +49,12 @@ const OTHERS: [(&str, Kind); 17] = [
 ];
 
 /// All kinds.
-fn kinds() -> Vec<(&'static str, Kind)> {
+pub(crate) fn kinds() -> Vec<(&'static str, Kind)> {
     let bodies = BodyQuantity::ALL.map(|(name, quantity)| (name, Kind::Body(quantity)));
     OTHERS.into_iter().chain(bodies).collect()
 }
 
-const MOVING: [(&str, Phase); 2] = [("fluid", Phase::Fluid), ("solid", Phase::Solid)];
+pub(crate) const MOVING: [(&str, Phase); 2] = [("fluid", Phase::Fluid), ("solid", Phase::Solid)];
 
 /// A probe; `None` where it is not clear what it measures, so that nobody asks it anything.
 pub(super) fn probe(
@@ -178,7 +178,7 @@ fn which_shape(
 }
 
 /// Most gauges of one probe.
-const MAX_GAUGES: usize = 1000;
+pub(crate) const MAX_GAUGES: usize = 1000;
 
 /// x of one column of water, or of several.
 fn gauges(section: &Section<'_>) -> Option<Vec<f64>> {
@@ -259,7 +259,7 @@ fn given(section: &Section<'_>, node: &Node) -> Option<Vec<[f64; 2]>> {
 }
 
 fn from_file(section: &Section<'_>, node: &Node, folder: &Path) -> Option<Vec<[f64; 2]>> {
-    let scale = section.number("scale", Some(1.0), Range::ANY);
+    let scale = section.number("scale", Some(1.0));
     let columns = columns(section);
     let file = folder.join(section.string("file")?);
     let [time, value] = columns?;

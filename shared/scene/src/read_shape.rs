@@ -2,14 +2,13 @@
 
 use super::document::Value;
 use super::error::listed;
-use super::read::DENSITY;
 use super::read_geometry;
 use super::read_motion::{self, Around};
 use super::section::{Range, Section};
 use super::*;
 use std::path::Path;
 
-const SIDES: [(&str, TankSide); 6] = [
+pub(crate) const SIDES: [(&str, TankSide); 6] = [
     ("left", TankSide::Left),
     ("right", TankSide::Right),
     ("bottom", TankSide::Bottom),
@@ -18,18 +17,31 @@ const SIDES: [(&str, TankSide); 6] = [
     ("front", TankSide::Front),
 ];
 
-const GEOMETRIES: [&str; 6] = ["box", "disc", "ring", "tank", "polygon", "outline"];
+pub(crate) const GEOMETRIES: [&str; 6] = ["box", "disc", "ring", "tank", "polygon", "outline"];
 
 /// Most particles across a shape.
-const MAX_ACROSS: u32 = 100_000;
+pub(crate) const MAX_ACROSS: u32 = 100_000;
 
 /// Phases of shapes; a void has none.
-const SHAPE_PHASES: [(&str, Option<Phase>); 4] = [
+pub(crate) const SHAPE_PHASES: [(&str, Option<Phase>); 4] = [
     ("fluid", Some(Phase::Fluid)),
     ("solid", Some(Phase::Solid)),
     ("wall", Some(Phase::Wall)),
     ("void", None),
 ];
+
+pub(crate) const SLIPS: [(&str, bool); 2] = [("free", true), ("none", false)];
+/// Whether it is hydrostatic.
+pub(crate) const PRESSURES: [(&str, bool); 2] = [("hydrostatic", true), ("zero", false)];
+
+#[derive(Clone, Copy)]
+pub(crate) enum Field {
+    TaylorGreen,
+    StandingWave,
+}
+
+pub(crate) const FIELDS: [(&str, Field); 2] =
+    [("taylor-green", Field::TaylorGreen), ("standing-wave", Field::StandingWave)];
 
 /// Whether a shape is a void.
 pub(super) fn is_void(section: &Section<'_>) -> bool {
@@ -58,7 +70,7 @@ pub(super) fn shape(section: Section<'_>, around: &Around<'_>, solids: &[&str], 
         solid: which_solid(&section, solids).filter(|_| phase == Some(Phase::Solid)),
         spacing: spacing(&section, &geometry, dimension, lattice).filter(|_| phase == Some(Phase::Solid)),
         geometry,
-        density: section.node("density").and_then(|node| section.as_number("density", node, DENSITY)),
+        density: section.optional_number("density"),
         velocity: section.vector("velocity", dimension, Some([0.0; 3])),
         cantilever_mode: cantilever_mode(&section),
         velocity_field: velocity_field(&section, dimension),
@@ -69,10 +81,8 @@ pub(super) fn shape(section: Section<'_>, around: &Around<'_>, solids: &[&str], 
         body: body(&section),
         motion: read_motion::motion(&section, around),
         contact: section.boolean("contact", false),
-        free_slip: section.choice("slip", Some(true), &[("free", true), ("none", false)]).unwrap_or(true),
-        hydrostatic: section
-            .choice("pressure", Some(false), &[("hydrostatic", true), ("zero", false)])
-            .unwrap_or(false),
+        free_slip: section.choice("slip", Some(true), &SLIPS).unwrap_or(true),
+        hydrostatic: section.choice("pressure", Some(false), &PRESSURES).unwrap_or(false),
     };
     for (key, owner, article) in [
         ("cantilever_mode", Phase::Solid, "a solid"),
@@ -116,13 +126,14 @@ fn body(section: &Section<'_>) -> String {
 /// A solid's own spacing: `spacing`, m, or `across`, the number of particles across its thinnest side.
 fn spacing(section: &Section<'_>, geometry: &Geometry, dimension: usize, lattice: Lattice) -> Option<f64> {
     let across = section.node("across");
-    if let Some(node) = section.node("spacing") {
+    if section.node("spacing").is_some() {
         if across.is_some() {
             section.whole("has both `spacing` and `across`: each says how far apart its particles are");
         }
-        return section.as_number("spacing", node, Range::positive());
+        return section.optional_number("spacing");
     }
-    let across = section.as_integer("across", across?, 1, MAX_ACROSS)?;
+    across?;
+    let across = section.optional_integer("across")?;
     Some(spacing::with_across(geometry, dimension, lattice, across)).filter(|spacing| spacing.is_finite())
 }
 
@@ -206,11 +217,11 @@ fn unmoved_geometry(
         "box" => Geometry::Box(place.block(dimension)),
         "disc" => Geometry::Disc {
             center: place.vector("center", dimension, None),
-            radius: place.number("radius", None, Range::positive()),
+            radius: place.number("radius", None),
         },
         "ring" => {
-            let inner = place.number("inner", None, Range::positive());
-            let outer = place.number("outer", None, Range::positive());
+            let inner = place.number("inner", None);
+            let outer = place.number("outer", None);
             if outer <= inner {
                 place.whole(format!("must have an `outer` radius greater than the `inner`, {inner}"));
             }
@@ -247,47 +258,34 @@ fn cantilever_mode(section: &Section<'_>) -> Option<CantileverMode> {
         return None;
     }
     let read = CantileverMode {
-        fraction: mode.number(
-            "fraction",
-            None,
-            Range::at_least(-0.5).up_to(0.5).why("the tip's speed is this part of the bulk sound speed"),
-        ),
-        root: mode.number("root", None, Range::ANY),
-        length: mode.number("length", None, Range::positive()),
+        fraction: mode.number("fraction", None),
+        root: mode.number("root", None),
+        length: mode.number("length", None),
     };
     mode.finish();
     Some(read)
 }
 
 fn velocity_field(section: &Section<'_>, dimension: usize) -> Option<VelocityField> {
-    #[derive(Clone, Copy)]
-    enum Kind {
-        TaylorGreen,
-        StandingWave,
-    }
-    const KINDS: [(&str, Kind); 2] =
-        [("taylor-green", Kind::TaylorGreen), ("standing-wave", Kind::StandingWave)];
-    const SPEED: Range = Range::at_least(-1e6).up_to(1e6);
-    const LENGTH: Range = Range::at_least(1e-9).up_to(1e9);
     let table = section.section("velocity_field");
     if !table.is_present() {
         return None;
     }
     // Without a kind its other keys mean nothing: they are not looked at.
-    let kind = table.choice("kind", None, &KINDS)?;
+    let kind = table.choice("kind", None, &FIELDS)?;
     let origin = table.vector("origin", dimension, None);
-    let half_wave = table.number("half_wave", None, LENGTH);
+    let half_wave = table.number("half_wave", None);
     let field = match kind {
-        Kind::TaylorGreen => {
-            VelocityField::TaylorGreen { speed: table.number("speed", None, SPEED), origin, half_wave }
+        Field::TaylorGreen => {
+            VelocityField::TaylorGreen { speed: table.number("speed", None), origin, half_wave }
         }
-        Kind::StandingWave => {
-            let depth = table.number("depth", None, LENGTH);
+        Field::StandingWave => {
+            let depth = table.number("depth", None);
             // Steeper waves break, and no wave is higher than its water.
             let most = (0.2 * half_wave).min(0.5 * depth);
             let why = "linear theory has no steeper waves: a fifth of half a wave, half the depth";
             let range = Range::at_least(0.0).up_to(if most > 0.0 { most } else { f64::MAX }).why(why);
-            let amplitude = table.number("amplitude", None, range);
+            let amplitude = table.number_within("amplitude", None, range);
             VelocityField::StandingWave { amplitude, origin, half_wave, depth }
         }
     };
@@ -308,7 +306,7 @@ fn load(section: &Section<'_>, dimension: usize) -> Option<Traction> {
     let read = Traction {
         within: within.whole_block(dimension),
         traction: table.vector("traction", dimension, None),
-        ramp: table.number("ramp", Some(0.0), Range::at_least(0.0).up_to(1e9).why("it is a time, s")),
+        ramp: table.number("ramp", Some(0.0)),
     };
     table.finish();
     Some(read)

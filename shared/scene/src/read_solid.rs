@@ -2,8 +2,8 @@
 
 use super::document::Value;
 use super::preset::Defaults;
-use super::read::{DENSITY, MAX_THREADS, viscosity};
-use super::section::{Range, Section};
+use super::read::viscosity;
+use super::section::Section;
 use super::*;
 
 /// Longest name of a solid or a process: it is part of the names of shared memory and of files.
@@ -11,9 +11,6 @@ const LONGEST_NAME: usize = 24;
 /// Names that a solid must not have: those of other participants, and the word for a process of one's own.
 const RESERVED: [&str; 4] = ["fluid", "coupler", "wall", OWN];
 const OWN: &str = "own";
-/// The lower end of the range is no friction.
-const FRICTION: Range =
-    Range::at_least(0.0).up_to(1e12).why("it is a force per volume, N/m3, against the velocity");
 
 /// The solids of a scene: the one of `[solid]`, or those of `[[solid]]`.
 pub(super) fn solids(top: &Section<'_>, defaults: Defaults, numerics: &Numerics) -> Vec<Solid> {
@@ -88,24 +85,18 @@ fn solid(section: Section<'_>, name: String, defaults: Defaults, numerics: &Nume
     let solid = Solid {
         process: process(&section, &name),
         name,
-        threads: section.integer("threads", numerics.threads.solid as u32, 1, MAX_THREADS) as usize,
-        density: section.number("density", None, DENSITY),
-        youngs_modulus: section.number("youngs_modulus", none, Range::positive().up_to(1e15)),
-        poissons_ratio: section.number(
-            "poissons_ratio",
-            none,
-            Range::at_least(0.0)
-                .below(0.5)
-                .why("at 0.5 a solid is incompressible, its bulk modulus infinite"),
-        ),
-        smoothing_ratio: section.number(
+        threads: section.integer("threads", numerics.threads.solid as u32) as usize,
+        density: section.number("density", None),
+        youngs_modulus: section.number("youngs_modulus", none),
+        poissons_ratio: section.number("poissons_ratio", none),
+        smoothing_ratio: section.number_within(
             "smoothing_ratio",
             Some(defaults.solid_smoothing_ratio),
             rules.smoothing,
         ),
         artificial_viscosity: viscosity(&section, defaults.solid_viscosity),
         model: model.read(&section, &defaults),
-        side_friction: section.number("side_friction", Some(0.0), FRICTION),
+        side_friction: section.number("side_friction", Some(0.0)),
         sub_steps: sub_steps(&section, numerics.max_sub_steps),
     };
     let others = SolidModelName::ALL.iter().filter(|(_, other)| *other != model);

@@ -1,25 +1,27 @@
 //! `motion = { wave = .. }`: wave makers.
 
 use super::motion::{Paddle, Sea, breaking_height, wave_number};
-use super::read_motion::{Around, INSTANT};
+use super::read_motion::Around;
 use super::section::{Range, Section};
 use super::*;
 
 #[derive(Clone, Copy, PartialEq)]
-enum Wave {
+pub(crate) enum Wave {
     Regular,
     Irregular,
     Solitary,
 }
 
-const WAVES: [(&str, Wave); 3] =
+pub(crate) const WAVES: [(&str, Wave); 3] =
     [("regular", Wave::Regular), ("irregular", Wave::Irregular), ("solitary", Wave::Solitary)];
-const LENGTH: Range = Range::at_least(1e-6).up_to(1e6);
-const PERIOD: Range = Range::at_least(1e-3).up_to(1e6);
+/// Whether it is a flap.
+pub(crate) const MAKERS: [(&str, bool); 2] = [("piston", false), ("flap", true)];
+/// Sign of the way to the waves.
+pub(crate) const DIRECTIONS: [(&str, f64); 2] = [("right", 1.0), ("left", -1.0)];
 /// Largest angle of a flap to either side, rad.
 const STEEPEST: f64 = 0.5;
 /// Most waves that are added up.
-const MAX_COMPONENTS: u32 = 1000;
+pub(crate) const MAX_COMPONENTS: u32 = 1000;
 /// Highest solitary wave over the depth.
 const HIGHEST: f64 = 0.78;
 /// Keys of wave makers beside those of regular waves.
@@ -38,35 +40,25 @@ pub(super) fn waves(table: &Section<'_>, around: &Around<'_>) -> Option<(Vec<Par
     if !down && !table.report.has("gravity") {
         table.whole("needs a `gravity` straight down, along -y: it gives the waves their length");
     }
-    let depth = table.number("depth", None, LENGTH.why("it is the depth of the water at rest, m"));
-    let start = table.number("start", Some(0.0), INSTANT);
-    let sign = table.choice("toward", Some(1.0), &[("right", 1.0), ("left", -1.0)]).unwrap_or(1.0);
+    let depth = table.number("depth", None);
+    let start = table.number("start", Some(0.0));
+    let sign = table.choice("toward", Some(1.0), &DIRECTIONS).unwrap_or(1.0);
     if wave == Wave::Solitary {
         return solitary(table, (g, depth, start, sign));
     }
-    let floor = table.number("floor", Some(0.0), Range::at_least(-1e9).up_to(1e9));
+    let floor = table.number("floor", Some(0.0));
     let paddle = paddle(table, around.dimension, floor, depth);
-    let period = table.number("period", None, PERIOD);
-    let ramp = table.number(
-        "ramp",
-        Some(period),
-        Range::positive().up_to(1e12).why("the paddle begins at rest where the scene has it"),
-    );
+    let period = table.number("period", None);
+    let ramp = table.number("ramp", Some(period));
     let usable = [g, depth, period, ramp].iter().all(|x| x.is_finite() && *x > 0.0);
     let k = if usable { wave_number(period, depth, g) } else { f64::NAN };
     let breaking = if usable { rounded(breaking_height(k, depth)) } else { f64::MAX };
     let sea = (wave == Wave::Irregular).then(|| Sea {
         height: 0.0,
         period,
-        peakedness: table.number(
-            "peakedness",
-            Some(3.3),
-            Range::at_least(1.0)
-                .up_to(10.0)
-                .why("1 is a sea that is fully developed, 3.3 the North Sea's mean"),
-        ),
-        components: table.integer("components", 64, 8, MAX_COMPONENTS),
-        seed: table.integer("seed", 1, 0, u32::MAX),
+        peakedness: table.number("peakedness", Some(3.3)),
+        components: table.integer("components", 64),
+        seed: table.integer("seed", 1),
     });
     let range = match wave {
         Wave::Regular => Range::positive()
@@ -76,7 +68,7 @@ pub(super) fn waves(table: &Section<'_>, around: &Around<'_>) -> Option<(Vec<Par
             "single waves are up to twice as high, and those of this period break beyond 0.142 L tanh kd (Miche 1944)",
         ),
     };
-    let height = table.number("height", None, range);
+    let height = table.number_within("height", None, range);
     if !usable || !height.is_finite() {
         return None;
     }
@@ -124,7 +116,7 @@ fn rounded(x: f64) -> f64 {
 
 /// What the paddle is; `None` where its hinge is wrong.
 fn paddle(table: &Section<'_>, dimension: usize, floor: f64, depth: f64) -> Option<Paddle> {
-    let flap = table.choice("maker", Some(false), &[("piston", false), ("flap", true)]).unwrap_or(false);
+    let flap = table.choice("maker", Some(false), &MAKERS).unwrap_or(false);
     let pivot = table.node("pivot");
     if !flap {
         if let Some(node) = pivot {
@@ -181,7 +173,7 @@ fn solitary(
     }
     let most = if depth > 0.0 { rounded(HIGHEST * depth) } else { f64::MAX };
     let range = Range::positive().up_to(most).why("a solitary wave breaks beyond 0.78 depths (McCowan 1894)");
-    let height = table.number("height", None, range);
+    let height = table.number_within("height", None, range);
     if !(g > 0.0 && height.is_finite() && depth.is_finite()) {
         return None;
     }

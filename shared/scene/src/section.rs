@@ -5,15 +5,12 @@
 use super::Block;
 use super::document::{Entry, Node, Value};
 use super::error::{Report, listed, nearest};
+use super::keys::{Key, SCENE, Table};
 use std::cell::RefCell;
 use std::fmt;
 
-/// Keys at the top of a scene: they turn up in a section when they stand below its heading.
-pub(super) const TOP_KEYS: [&str; 7] =
-    ["preset", "dimension", "resolution", "smoothing_ratio", "end_time", "time_step", "gravity"];
-
 /// Components of vectors, whose squares are formed.
-const COMPONENT: Range = Range::at_least(-1e12).up_to(1e12);
+pub(crate) const COMPONENT: Range = Range::at_least(-1e12).up_to(1e12);
 
 /// The numbers that a key allows, and why no others.
 #[derive(Clone, Copy, Debug)]
@@ -51,6 +48,21 @@ impl Range {
         Self { why, ..self }
     }
 
+    pub(crate) fn is_any(&self) -> bool {
+        self.low.is_none() && self.high.is_none()
+    }
+    /// Lower and upper end with the word that JSON schemas have for each.
+    pub(crate) fn ends(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        let word = |included: &'static str, excluded| {
+            move |(x, bound)| match bound {
+                Bound::Included => (included, x),
+                Bound::Excluded => (excluded, x),
+            }
+        };
+        let low = self.low.map(word("minimum", "exclusiveMinimum"));
+        low.into_iter().chain(self.high.map(word("maximum", "exclusiveMaximum")))
+    }
+
     fn holds(&self, x: f64) -> bool {
         let low = self.low.is_none_or(|(low, b)| x > low || (b == Bound::Included && x == low));
         let high = self.high.is_none_or(|(high, b)| x < high || (b == Bound::Included && x == high));
@@ -84,6 +96,8 @@ pub(crate) struct Section<'a> {
     node: &'a Node,
     /// Whether the scene has it; else `node` is the table around it.
     present: bool,
+    /// Its keys.
+    table: &'static Table,
     pub(super) path: String,
     pub(super) report: &'a Report,
     asked: RefCell<Vec<&'static str>>,
@@ -91,7 +105,7 @@ pub(crate) struct Section<'a> {
 
 impl<'a> Section<'a> {
     pub(super) fn root(node: &'a Node, report: &'a Report) -> Self {
-        Self { node, present: true, path: String::new(), report, asked: RefCell::default() }
+        Self { node, present: true, table: &SCENE, path: String::new(), report, asked: RefCell::default() }
     }
 
     pub(super) fn is_present(&self) -> bool {
@@ -103,9 +117,27 @@ impl<'a> Section<'a> {
         if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) }
     }
 
+    /// What the table of keys says of a key.
+    fn known(&self, key: &str) -> Option<&'static Key> {
+        self.table.key(key)
+    }
+
+    fn range_of(&self, key: &str) -> Range {
+        self.known(key).map_or(Range::ANY, |key| key.kind.range())
+    }
+
     pub(super) fn entry(&self, key: &'static str) -> Option<&'a Entry> {
+        if self.known(key).is_none() {
+            let reason = format!("is read, but stands in no table of keys (`{}`)", self.table.name);
+            self.report.place(&self.path_of(key), self.node.origin, reason);
+        }
         self.asked.borrow_mut().push(key);
         if self.present { self.node.table()?.get(key) } else { None }
+    }
+
+    /// Whether a key is there, without asking for it.
+    pub(super) fn has(&self, key: &str) -> bool {
+        self.present && self.node.child(key).is_some()
     }
 
     pub(crate) fn node(&self, key: &'static str) -> Option<&'a Node> {
@@ -130,7 +162,17 @@ impl<'a> Section<'a> {
     }
 
     /// A number; without a default it must be there.
-    pub(crate) fn number(&self, key: &'static str, default: Option<f64>, range: Range) -> f64 {
+    pub(crate) fn number(&self, key: &'static str, default: Option<f64>) -> f64 {
+        self.number_within(key, default, self.range_of(key))
+    }
+
+    /// A number where one is said.
+    pub(crate) fn optional_number(&self, key: &'static str) -> Option<f64> {
+        self.as_number(key, self.node(key)?, self.range_of(key))
+    }
+
+    /// A number whose range depends on the rest of the scene.
+    pub(crate) fn number_within(&self, key: &'static str, default: Option<f64>, range: Range) -> f64 {
         match (self.node(key), default) {
             (Some(node), _) => self.as_number(key, node, range).or(default).unwrap_or(f64::NAN),
             (None, Some(default)) => default,
@@ -142,12 +184,7 @@ impl<'a> Section<'a> {
     }
 
     /// A number or `"auto"`, which is `None`.
-    pub(crate) fn number_or_auto(
-        &self,
-        key: &'static str,
-        default: Option<f64>,
-        range: Range,
-    ) -> Option<f64> {
+    pub(crate) fn number_or_auto(&self, key: &'static str, default: Option<f64>) -> Option<f64> {
         let Some(node) = self.node(key) else { return default };
         match &node.value {
             Value::String(text) if text == "auto" => None,
@@ -155,7 +192,7 @@ impl<'a> Section<'a> {
                 self.wrong(key, node, "must be a number or \"auto\"");
                 None
             }
-            _ => self.as_number(key, node, range),
+            _ => self.as_number(key, node, self.range_of(key)),
         }
     }
 
@@ -185,11 +222,14 @@ impl<'a> Section<'a> {
     }
 
     /// A whole number.
-    pub(crate) fn integer(&self, key: &'static str, default: u32, low: u32, high: u32) -> u32 {
-        self.node(key).and_then(|node| self.as_integer(key, node, low, high)).unwrap_or(default)
+    pub(crate) fn integer(&self, key: &'static str, default: u32) -> u32 {
+        self.optional_integer(key).unwrap_or(default)
     }
 
-    pub(super) fn as_integer(&self, key: &str, node: &Node, low: u32, high: u32) -> Option<u32> {
+    /// A whole number where one is said.
+    pub(super) fn optional_integer(&self, key: &'static str) -> Option<u32> {
+        let node = self.node(key)?;
+        let (low, high) = self.known(key)?.kind.whole();
         match node.value {
             Value::Integer(n) => match u32::try_from(n) {
                 Ok(n) if (low..=high).contains(&n) => return Some(n),
@@ -320,6 +360,7 @@ impl<'a> Section<'a> {
             None => Section {
                 node: self.node,
                 present: false,
+                table: self.table_of(key),
                 path: self.path_of(key),
                 report: self.report,
                 asked: RefCell::default(),
@@ -332,7 +373,17 @@ impl<'a> Section<'a> {
         if !present {
             self.wrong_kind(key, node, "a table");
         }
-        Section { node, present, path, report: self.report, asked: RefCell::default() }
+        let table = match self.table_of(key) {
+            Table { instead: Some((sign, other)), .. } if node.child(sign).is_some() => other,
+            table => table,
+        };
+        Section { node, present, table, path, report: self.report, asked: RefCell::default() }
+    }
+
+    /// The keys of the table or the tables under a key.
+    fn table_of(&self, key: &str) -> &'static Table {
+        static NONE: Table = Table::new("", "", &[]);
+        self.known(key).and_then(|key| key.kind.table()).unwrap_or(&NONE)
     }
 
     /// The tables of an array, each under its name or its index.
@@ -366,7 +417,9 @@ impl<'a> Section<'a> {
             let mut known = asked.clone();
             known.sort_unstable();
             known.dedup();
-            if !self.path.is_empty() && TOP_KEYS.contains(&key.as_str()) {
+            // Keys of the top turn up in a section when they stand below its heading.
+            let of_the_top = SCENE.key(key).is_some_and(|key| !key.kind.is_section());
+            if !self.path.is_empty() && of_the_top {
                 note.help(format!("`{key}` belongs at the top of the scene, above the first [section]"));
             } else if let Some(near) = nearest(key, known.iter().copied()) {
                 note.help(format!("did you mean `{near}`?"));

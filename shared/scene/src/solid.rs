@@ -10,6 +10,7 @@ mod total_lagrangian;
 pub use finite_element::{FiniteElementKeys, TimeIntegration};
 pub use fracture::Fracture;
 pub use hypoelastic::{ArtificialStress, HypoelasticKeys};
+pub(crate) use models::MODEL_KEYS;
 pub use models::{ModelKeys, SolidModelName};
 pub use rigid::{ContactKeys, Joint, JointKind, RigidBody, RigidKeys};
 pub(crate) use rigid::{FRICTION, RESTITUTION};

@@ -2,6 +2,7 @@
 
 use super::models::Rules;
 use super::total_lagrangian::{self, Material, Plane, material, plane};
+use crate::keys::{Key, words};
 use crate::preset::Defaults;
 use crate::section::{Range, Section};
 use serde::{Deserialize, Serialize};
@@ -46,18 +47,26 @@ pub(super) const RULES: Rules = Rules {
     rigid: false,
 };
 
+const TIME_INTEGRATIONS: [(&str, TimeIntegration); 2] =
+    [("explicit", TimeIntegration::Explicit), ("implicit", TimeIntegration::Implicit)];
+
+/// Those of the total-Lagrangian model that it has, too, are listed there.
+pub(super) const KEYS: &[Key] =
+    &[Key::words("time_integration", || words(&TIME_INTEGRATIONS), "How nodes go on in time.")
+        .default("\"explicit\"")
+        .only(&["finite-element"])];
+
 impl FiniteElementKeys {
     pub(super) fn read(section: &Section<'_>, _: &Defaults) -> Self {
         let viscosity = section.section("artificial_viscosity");
         if let Some(node) = viscosity.node("quadratic")
-            && viscosity.number("quadratic", Some(0.0), Range::at_least(0.0)) > 0.0
+            && viscosity.number("quadratic", Some(0.0)) > 0.0
         {
             viscosity.wrong("quadratic", node, "must be 0: the viscosity of finite elements is linear");
         }
-        const CHOICES: [(&str, TimeIntegration); 2] =
-            [("explicit", TimeIntegration::Explicit), ("implicit", TimeIntegration::Implicit)];
         let default = TimeIntegration::default();
-        let time_integration = section.choice("time_integration", Some(default), &CHOICES).unwrap_or(default);
+        let time_integration =
+            section.choice("time_integration", Some(default), &TIME_INTEGRATIONS).unwrap_or(default);
         Self { material: material(section), plane: plane(section), time_integration }
     }
 }

@@ -1,6 +1,7 @@
 //! `solid.fracture`: when a total-Lagrangian solid breaks, and what that takes.
 
 use super::{ModelKeys, Plane, Solid};
+use crate::keys::{Key, Table};
 use crate::section::{Range, Section};
 use serde::{Deserialize, Serialize};
 
@@ -12,6 +13,27 @@ pub struct Fracture {
     /// Fracture energy G_f, J/m².
     pub energy: f64,
 }
+
+pub(super) static TABLE: Table = Table::new(
+    "fracture",
+    "When a solid breaks, and what that takes.",
+    &[
+        Key::number(
+            "strength",
+            Range::positive().up_to(1e15).why("it is the tensile strength f_t, Pa"),
+            "Tensile strength.",
+        )
+        .unit("Pa")
+        .required(),
+        Key::number(
+            "energy",
+            Range::positive().up_to(1e15).why("it is the fracture energy G_f, J/m2"),
+            "Fracture energy.",
+        )
+        .unit("J/m2")
+        .required(),
+    ],
+);
 
 impl Fracture {
     /// Width of the band that a crack smears over, in particle spacings: a crack along a row opens between two rows,
@@ -28,12 +50,8 @@ impl Fracture {
         if !table.is_present() {
             return None;
         }
-        let strength = Range::positive().up_to(1e15).why("it is the tensile strength f_t, Pa");
-        let energy = Range::positive().up_to(1e15).why("it is the fracture energy G_f, J/m2");
-        let fracture = Self {
-            strength: table.number("strength", None, strength),
-            energy: table.number("energy", None, energy),
-        };
+        let fracture =
+            Self { strength: table.number("strength", None), energy: table.number("energy", None) };
         table.finish();
         Some(fracture)
     }

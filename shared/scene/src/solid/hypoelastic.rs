@@ -1,6 +1,7 @@
 //! What a scene says to the hypoelastic model alone.
 
 use super::models::Rules;
+use crate::keys::{Key, Kind, Table};
 use crate::preset::Defaults;
 use crate::read::{COEFFICIENT, SMOOTHING};
 use crate::section::{Range, Section};
@@ -32,12 +33,30 @@ pub(super) const RULES: Rules = Rules {
     rigid: false,
 };
 
+pub(super) const KEYS: &[Key] =
+    &[Key::new("artificial_stress", Kind::Table(&STRESS), "Gray's artificial stress.")
+        .only(&["hypoelastic"])];
+
+static STRESS: Table = Table::new(
+    "artificial_stress",
+    "Gray's artificial stress.",
+    &[
+        Key::number("strength", COEFFICIENT, "Coefficient epsilon; 0 leaves it out.").default("0.3"),
+        Key::number(
+            "exponent",
+            Range::at_least(1.0).up_to(16.0).why("it is a whole power of a ratio of kernels"),
+            "Exponent n of the kernel ratio, a whole number.",
+        )
+        .default("4.0"),
+    ],
+);
+
 impl HypoelasticKeys {
     pub(super) fn read(section: &Section<'_>, defaults: &Defaults) -> Self {
         let stress = section.section("artificial_stress");
         let default = defaults.artificial_stress;
         let artificial_stress = ArtificialStress {
-            strength: stress.number("strength", Some(default.strength), COEFFICIENT),
+            strength: stress.number("strength", Some(default.strength)),
             exponent: exponent(&stress, default.exponent),
         };
         stress.finish();
@@ -46,8 +65,7 @@ impl HypoelasticKeys {
 }
 
 fn exponent(stress: &Section<'_>, default: f64) -> f64 {
-    let range = Range::at_least(1.0).up_to(16.0).why("it is a whole power of a ratio of kernels");
-    let exponent = stress.number("exponent", Some(default), range);
+    let exponent = stress.number("exponent", Some(default));
     if exponent.fract() != 0.0
         && let Some(node) = stress.node("exponent")
     {

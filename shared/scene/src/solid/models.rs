@@ -1,6 +1,7 @@
 //! The solid models that come with the program, and what each asks of a scene.
 
 use super::{finite_element, hypoelastic, rigid, total_lagrangian};
+use crate::keys::Key;
 use crate::preset::Defaults;
 use crate::section::{Range, Section};
 use serde::{Deserialize, Serialize};
@@ -56,6 +57,9 @@ macro_rules! registry {
         pub enum ModelKeys {
             $($(#[$doc])* $model($module::$keys),)*
         }
+
+        /// Keys that only some models have.
+        pub(crate) const MODEL_KEYS: &[&[Key]] = &[$($module::KEYS,)*];
 
         impl SolidModelName {
             /// All of them, by their name in scenes.

@@ -5,6 +5,7 @@ mod joint;
 pub use joint::{Joint, JointKind};
 
 use super::models::Rules;
+use crate::keys::{Key, Kind, Table};
 use crate::preset::Defaults;
 use crate::read::SMOOTHING;
 use crate::section::{Range, Section};
@@ -71,14 +72,47 @@ const MASS: Range = Range::positive().up_to(1e15);
 /// rad/s.
 const SPIN: Range = Range::at_least(-1e6).up_to(1e6);
 
+const RIGID: &[&str] = &["rigid"];
+
+pub(super) const KEYS: &[Key] = &[
+    Key::new("contact", Kind::Table(&CONTACT), "What happens where a body touches a wall or another body.")
+        .only(RIGID),
+    Key::new("bodies", Kind::Tables(&BODY), "What does not follow from the shapes of a body.").only(RIGID),
+    Key::new("joints", Kind::Tables(&joint::TABLE), "What holds bodies.").only(RIGID),
+];
+
+static CONTACT: Table = Table::new(
+    "rigid_contact",
+    "What happens where a body touches a wall or another body.",
+    &[
+        Key::number("friction", FRICTION, "Coulomb's coefficient, sticking and sliding.").default("0.0"),
+        Key::number("restitution", RESTITUTION, "Normal speed after an impact over that before it.")
+            .default("0.0"),
+    ],
+);
+
+static BODY: Table = Table::new(
+    "rigid_body",
+    "A rigid body whose mass or motion does not follow from its shapes.",
+    &[
+        Key::new("name", Kind::Text, "The `body` of its shapes, or the name of its only shape.").required(),
+        Key::number("mass", MASS, "Mass.").unit("kg (2D: kg/m)").default("from the shapes"),
+        Key::new("center", Kind::Vector, "Centre of mass at the start.").unit("m").default("from the shapes"),
+        Key::number("inertia", MASS, "Moment of inertia about the centre of mass.")
+            .unit("kg m2 (2D: kg m)")
+            .default("from the shapes"),
+        Key::number("angular_velocity", SPIN, "Angular velocity at the start.").unit("rad/s").default("0.0"),
+    ],
+);
+
 impl RigidKeys {
     pub(super) fn read(section: &Section<'_>, defaults: &Defaults) -> Self {
         let dimension = defaults.dimension;
         let contact = section.section("contact");
         let keys = Self {
             contact: ContactKeys {
-                friction: contact.number("friction", Some(0.0), FRICTION),
-                restitution: contact.number("restitution", Some(0.0), RESTITUTION),
+                friction: contact.number("friction", Some(0.0)),
+                restitution: contact.number("restitution", Some(0.0)),
             },
             bodies: section.tables("bodies").into_iter().map(|table| body(table, dimension)).collect(),
             joints: section.tables("joints").into_iter().filter_map(|t| joint::read(t, dimension)).collect(),
@@ -100,7 +134,7 @@ fn body(table: Section<'_>, dimension: usize) -> RigidBody {
     };
     let body = RigidBody {
         name: joint::required(&table, "name"),
-        mass: table.node("mass").and_then(|node| table.as_number("mass", node, MASS)),
+        mass: table.optional_number("mass"),
         center: table.node("center").and_then(|node| table.as_vector("center", node, dimension)),
         inertia: turning("inertia", MASS),
         angular_velocity: turning("angular_velocity", SPIN).unwrap_or_default(),

@@ -1,9 +1,11 @@
 //! What a scene says to the total-Lagrangian model alone.
 
 use super::Fracture;
+use super::fracture as fracture_keys;
 use super::models::Rules;
 use crate::ArtificialViscosity;
 use crate::document::{Node, Value};
+use crate::keys::{Key, Kind, words};
 use crate::preset::Defaults;
 use crate::section::{Range, Section};
 use serde::{Deserialize, Serialize};
@@ -76,17 +78,46 @@ pub(super) const RULES: Rules = Rules {
     rigid: false,
 };
 
+const MATERIALS: [(&str, Material); 2] =
+    [("st-venant-kirchhoff", Material::StVenantKirchhoff), ("neo-hookean", Material::NeoHookean)];
+const PLANES: [(&str, Plane); 2] = [("strain", Plane::Strain), ("stress", Plane::Stress)];
+const SHARE: Range =
+    Range::positive().up_to(100.0).why("g is the arm's shear modulus over the long-time one");
+const TIME: Range = Range::at_least(1e-9).up_to(1e9).why("tau is the arm's relaxation time, s");
+
+const OWN: &[&str] = &["total-lagrangian"];
+const BOTH: &[&str] = &["total-lagrangian", "finite-element"];
+
+pub(super) const KEYS: &[Key] = &[
+    Key::words("material", || words(&MATERIALS), "The law.").default("\"neo-hookean\"").only(BOTH),
+    Key::new(
+        "hourglass",
+        Kind::NumberOrAuto(
+            Range::at_least(0.0)
+                .up_to(10.0)
+                .why("beyond, it is stiffer than the material and limits the time step"),
+        ),
+        "Coefficient of the hourglass resistance; \"auto\": particles bend as their cells do.",
+    )
+    .default("\"auto\"")
+    .only(OWN),
+    Key::new(
+        "prony",
+        Kind::Array(&Kind::Row(&[Kind::Number(SHARE), Kind::Number(TIME)]), 0, MAX_ARMS),
+        "Maxwell arms [g, tau]: shear modulus over G, and relaxation time, s.",
+    )
+    .only(OWN),
+    Key::words("plane", || words(&PLANES), "What two dimensions mean.").default("\"strain\"").only(BOTH),
+    Key::new("fracture", Kind::Table(&fracture_keys::TABLE), "Strength and energy with which it breaks.")
+        .only(OWN),
+];
+
 impl TotalLagrangianKeys {
     pub(super) fn read(section: &Section<'_>, _: &Defaults) -> Self {
-        let stiffest = "beyond, it is stiffer than the material and limits the time step";
         let (prony, plane, material) = (prony(section), plane(section), material(section));
         Self {
             material,
-            hourglass: section.number_or_auto(
-                "hourglass",
-                None,
-                Range::at_least(0.0).up_to(10.0).why(stiffest),
-            ),
+            hourglass: section.number_or_auto("hourglass", None),
             prony,
             plane,
             fracture: fracture(section, plane, material),
@@ -101,8 +132,6 @@ impl TotalLagrangianKeys {
 
 /// The law of the material.
 pub(super) fn material(section: &Section<'_>) -> Material {
-    const MATERIALS: [(&str, Material); 2] =
-        [("st-venant-kirchhoff", Material::StVenantKirchhoff), ("neo-hookean", Material::NeoHookean)];
     section.choice("material", Some(Material::NeoHookean), &MATERIALS).unwrap_or(Material::NeoHookean)
 }
 
@@ -128,7 +157,6 @@ fn fracture(section: &Section<'_>, plane: Plane, material: Material) -> Option<F
 
 /// What two dimensions mean.
 pub(super) fn plane(section: &Section<'_>) -> Plane {
-    const PLANES: [(&str, Plane); 2] = [("strain", Plane::Strain), ("stress", Plane::Stress)];
     let plane = section.choice("plane", Some(Plane::Strain), &PLANES).unwrap_or(Plane::Strain);
     if let (Plane::Stress, Some(node), Some(_)) = (plane, section.node("plane"), section.node("prony")) {
         let why = "what a plate does across its plane would depend on all that its arms remember";
@@ -138,9 +166,6 @@ pub(super) fn plane(section: &Section<'_>) -> Plane {
 }
 
 fn prony(section: &Section<'_>) -> Vec<[f64; 2]> {
-    const SHARE: Range =
-        Range::positive().up_to(100.0).why("g is the arm's shear modulus over the long-time one");
-    const TIME: Range = Range::at_least(1e-9).up_to(1e9).why("tau is the arm's relaxation time, s");
     let Some(node) = section.node("prony") else { return Vec::new() };
     let form = "must be an array of Maxwell arms, each [g, tau]: its shear modulus over G, and its time, s";
     let Value::Array(items) = &node.value else {

@@ -1,5 +1,6 @@
 //! Joints of rigid bodies.
 
+use crate::keys::{Key, Kind as Value, Table, words};
 use crate::section::{Range, Section};
 use serde::{Deserialize, Serialize};
 
@@ -79,6 +80,43 @@ const COEFFICIENT: Range = Range::at_least(0.0).up_to(1e15);
 /// Ways, m or rad.
 const WAY: Range = Range::at_least(-1e6).up_to(1e6);
 
+const MOVES: &[&str] = &["hinge", "rail", "spring"];
+
+pub(super) static TABLE: Table = Table::new(
+    "joint",
+    "What holds a rigid body.",
+    &[
+        Key::new("name", Value::Text, "Name of the joint.").required(),
+        Key::words("kind", || words(&KINDS), "What it leaves free.").required(),
+        Key::new("body", Value::Text, "The body that it holds.").required(),
+        Key::new("with", Value::Text, "What it is tied to: another body of the solid, or a wall.")
+            .default("space"),
+        Key::new("at", Value::Vector, "Point of the body at the start.").unit("m").only(MOVES),
+        Key::new("to", Value::Vector, "Point of what it is tied to.")
+            .unit("m")
+            .default("`at`")
+            .only(&["spring"]),
+        Key::new("axis", Value::Vector, "Direction of the line.").only(&["rail"]),
+        Key::new("turns", Value::Boolean, "The body may turn about `at`.").default("false").only(&["rail"]),
+        Key::number("stiffness", COEFFICIENT, "Stiffness of its spring.")
+            .unit("of a hinge N m/rad (2D: N/rad), else N/m (2D: N/m2)")
+            .default("0.0")
+            .only(MOVES),
+        Key::number("damping", COEFFICIENT, "Coefficient of its damper.")
+            .unit("of a hinge N m s/rad (2D: N s/rad), else N s/m (2D: N s/m2)")
+            .default("0.0")
+            .only(MOVES),
+        Key::number("rest", WAY, "Where the spring rests.")
+            .unit("rad or m")
+            .default("0; spring: its length at the start")
+            .only(MOVES),
+        Key::new("limits", Value::Array(&Value::Number(WAY), 2, 2), "Stops, from the start.")
+            .unit("rad or m")
+            .only(&["hinge", "rail"]),
+    ],
+)
+.tag("kind");
+
 /// A joint; `None` where its kind is not known, so that nobody asks it anything.
 pub(super) fn read(table: Section<'_>, dimension: usize) -> Option<Joint> {
     let (name, body) = (required(&table, "name"), required(&table, "body"));
@@ -102,16 +140,16 @@ pub(super) fn read(table: Section<'_>, dimension: usize) -> Option<Joint> {
     };
     refuse(&table, which);
     let rest = match which {
-        Kind::Spring => table.number("rest", Some(length), Range::at_least(0.0).up_to(1e6)),
-        _ => table.number("rest", Some(0.0), WAY),
+        Kind::Spring => table.number_within("rest", Some(length), Range::at_least(0.0).up_to(1e6)),
+        _ => table.number("rest", Some(0.0)),
     };
     let joint = Joint {
         name,
         body,
         with,
         kind,
-        stiffness: table.number("stiffness", Some(0.0), COEFFICIENT),
-        damping: table.number("damping", Some(0.0), COEFFICIENT),
+        stiffness: table.number("stiffness", Some(0.0)),
+        damping: table.number("damping", Some(0.0)),
         rest,
         limits: limits(&table),
     };
@@ -185,10 +223,10 @@ fn unit(table: &Section<'_>, axis: [f64; 3]) -> [f64; 3] {
 }
 
 fn limits(table: &Section<'_>) -> Option<[f64; 2]> {
-    use crate::document::Value;
+    use crate::document::Value as Written;
     let node = table.node("limits")?;
     let form = "must be the least and the largest way, [least, largest]";
-    let Value::Array(items) = &node.value else {
+    let Written::Array(items) = &node.value else {
         table.wrong("limits", node, form);
         return None;
     };
