@@ -48,6 +48,8 @@ pub(crate) enum Command {
         #[arg(long, value_enum, default_value = "coupled")]
         kind: Kind,
     },
+    /// Prints the JSON schema of scenes, from which editors know their keys
+    Schema,
     /// Prints completions for a shell: bash, zsh, fish, elvish or powershell
     Completions {
         /// The shell

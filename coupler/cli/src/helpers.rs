@@ -73,6 +73,12 @@ pub(crate) fn new(path: &Path, kind: Kind) -> ExitCode {
     }
 }
 
+/// Prints the JSON schema of scenes.
+pub(crate) fn schema() -> ExitCode {
+    say::tell(format_args!("{:#}", halfstep_scene::schema()));
+    ExitCode::SUCCESS
+}
+
 /// Prints a shell's completions.
 pub(crate) fn completions(mut command: Command, shell: Shell) -> ExitCode {
     let mut text = Vec::new();

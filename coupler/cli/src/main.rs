@@ -58,6 +58,7 @@ fn main() -> ExitCode {
         Command::Compare(arguments) => compare(arguments),
         Command::FakeFluid(arguments) => fake_fluid::try_solid(arguments),
         Command::New { scene, kind } => helpers::new(&scene, kind),
+        Command::Schema => helpers::schema(),
         Command::Completions { shell } => helpers::completions(Arguments::command(), shell),
         Command::Man => helpers::manual(Arguments::command()),
         Command::Role { name } => ExitCode::from(halfstep::serve_role(&name, isa)),

@@ -178,3 +178,6 @@ fn reference(of: &'static Table, tables: &mut Map<String, Value>) -> Value {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -63,7 +63,7 @@ impl Range {
         low.into_iter().chain(self.high.map(word("maximum", "exclusiveMaximum")))
     }
 
-    fn holds(&self, x: f64) -> bool {
+    pub(crate) fn holds(&self, x: f64) -> bool {
         let low = self.low.is_none_or(|(low, b)| x > low || (b == Bound::Included && x == low));
         let high = self.high.is_none_or(|(high, b)| x < high || (b == Bound::Included && x == high));
         x.is_finite() && low && high

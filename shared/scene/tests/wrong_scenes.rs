@@ -98,10 +98,16 @@ fn the_scenes_that_they_are_made_of_are_right() {
     parse(&rigid(), Path::new("s.toml"), &[]).unwrap();
 }
 
-#[test]
-fn every_wrong_scene_is_told_what_is_wrong_and_nothing_else() {
-    let (mut cases, mut failed) = (0, Vec::new());
-    for case in CASES.split("\n\n") {
+/// A wrong scene: its paragraph, file, overrides and messages.
+struct Case {
+    case: &'static str,
+    text: String,
+    set: Vec<&'static str>,
+    want: Vec<&'static str>,
+}
+
+fn cases() -> impl Iterator<Item = Case> {
+    CASES.split("\n\n").map(|case| {
         let marked = |mark: &str| case.lines().filter_map(|l| l.strip_prefix(mark)).collect::<Vec<_>>();
         let [out, put, set, want] = ["- ", "+ ", "$ ", "> "].map(marked);
         let two = case.starts_with("= two solids\n");
@@ -115,14 +121,22 @@ fn every_wrong_scene_is_told_what_is_wrong_and_nothing_else() {
         };
         let lines = |lines: &[&str]| lines.iter().map(|l| format!("{l}\n")).collect::<String>();
         let text = if out.is_empty() { base } else { replaced(&base, &lines(&out), &lines(&put)) };
+        Case { case, text, set, want }
+    })
+}
+
+#[test]
+fn every_wrong_scene_is_told_what_is_wrong_and_nothing_else() {
+    let (mut count, mut failed) = (0, Vec::new());
+    for Case { case, text, set, want } in cases() {
         let got = messages(&errors(&text, &set));
         if got != want {
             failed.push(format!("{case}\n  got: {got:#?}"));
         }
-        cases += 1;
+        count += 1;
     }
     assert!(failed.is_empty(), "{}", failed.join("\n\n"));
-    assert!(cases > 100, "{cases} cases");
+    assert!(count > 100, "{count} cases");
 }
 
 #[test]
@@ -206,4 +220,38 @@ fn a_file_that_cannot_be_read_is_said_so() {
     let error = halfstep_scene::load(Path::new("no/such.toml"), &[]).unwrap_err();
     assert_eq!(error.problems[0].place, Place::Whole("no/such.toml".into()));
     assert!(error.problems[0].to_string().starts_with("no/such.toml: cannot be read: "));
+}
+
+/// What a schema can say: kinds, words, ranges that are always the same, keys that are unknown or must be there.
+#[test]
+fn a_schema_refuses_what_it_can_say() {
+    let schema = jsonschema::draft202012::new(&halfstep_scene::schema()).unwrap();
+    let is_right = |text: &str| match toml::from_str::<serde_json::Value>(text) {
+        Ok(scene) => schema.is_valid(&scene),
+        Err(_) => false,
+    };
+    for base in [RIGHT.to_owned(), two_solids(), rigid()] {
+        assert!(is_right(&base), "{base}");
+    }
+    let says = ["unknown key", "must be one of", ", not a", "must be at least", "must be greater than"];
+    // What depends on other keys.
+    let depends = [
+        "greater than `min`",
+        "greater than `from`",
+        "with phase-blind",
+        "solid.smoothing_ratio = 0.75",
+        "linear theory has no steeper waves",
+        "one of `kinetic`",
+        "one of `water`",
+        "one of `gate`",
+    ];
+    let mut refused = 0;
+    for Case { case, text, want, .. } in cases().filter(|case| case.set.is_empty()) {
+        let any = |words: &[&str]| want.iter().any(|message| words.iter().any(|word| message.contains(word)));
+        if any(&says) && !any(&depends) {
+            assert!(!is_right(&text), "{case}");
+            refused += 1;
+        }
+    }
+    assert!(refused > 50, "{refused}");
 }

@@ -50,7 +50,7 @@ pub(super) static SHAPE: Table = Table {
             )
             .unit("m"),
             Key::new("rotate", Kind::Table(&ROTATE), "Turns it."),
-            Key::new("translate", Kind::Vector, "Shifts it.").unit("m").default("[0.0, 0.0]"),
+            Key::new("translate", Kind::Vector, "Shifts it.").unit("m"),
             Key::new("repeat", Kind::Table(&REPEAT), "Puts copies of it."),
             Key::new("body", NAME, "The body that it is part of.").default("the shape's name").only(SOLID),
             Key::number("density", DENSITY, "Density of this shape alone, of a rigid solid.")
