@@ -11,7 +11,8 @@ cp docs/book.toml docs/book.css "$book"
 
 # The pages where they stand in the repository, with what they show or link to.
 git ls-files --cached --others --exclude-standard -- \
-    '*.md' ':!.github' 'docs/**.png' 'validation/**' scenes 'LICENSE*' CITATION.cff 'tests/python/*.py' 'python/**' |
+    '*.md' ':!.github' 'docs/**.png' docs/scene.schema.json \
+    'validation/**' scenes 'LICENSE*' CITATION.cff 'tests/python/*.py' 'python/**' |
     while read -r file; do
         mkdir -p "$book/src/$(dirname "$file")"
         cp "$file" "$book/src/$file"
