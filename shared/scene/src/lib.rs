@@ -43,6 +43,7 @@ mod parameters;
 mod participant;
 mod preset;
 mod probe;
+mod range;
 mod read;
 mod read_contact;
 mod read_geometry;
