@@ -3,8 +3,10 @@
 use crate::columns::Source;
 use crate::effects::FluidEffect;
 use crate::fluid::Fluid;
+use crate::midpoint::TASK;
 use halfstep_scene::Phase;
 use halfstep_sph::neighbours::PADDING;
+use halfstep_sph::state_equation::StateEquation;
 use halfstep_wire::frame::{Frame, FramePoint};
 use halfstep_wire::protocol::Audit;
 use halfstep_wire::wide;
@@ -29,24 +31,14 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
 
     pub(crate) fn audit_values(&self) -> Audit {
         let mass = self.columns.now.mass;
-        let (mut momentum, mut energy, mut stored, mut error) = ([0.0; D], 0.0, 0.0, 0.0_f64);
-        // All in one walk: it is done every step.
-        for (particle, _) in self.columns.now.sources.iter().zip(&self.columns.id).filter(|p| *p.1 != PADDING)
-        {
-            for d in 0..D {
-                momentum[d] += particle.velocity[d];
-            }
-            energy += particle.velocity.iter().map(|v| v.powi(2)).sum::<f64>();
-            stored += self.state.energy(particle.density);
-            error = error.max((particle.density / self.state.density - 1.0).abs());
-        }
+        let totals = Totals::of(&self.columns.now.sources, &self.columns.id, &self.state);
         Audit {
-            momentum: wide(momentum.map(|p| mass * p)),
-            kinetic_energy: 0.5 * mass * energy,
+            momentum: wide(totals.velocity.map(|v| mass * v)),
+            kinetic_energy: 0.5 * mass * totals.square,
             mass: mass * self.columns.particles as f64,
-            density_error: error,
+            density_error: totals.density_error,
             gap: self.coupling.as_ref().map_or(f64::INFINITY, |c| c.gap()),
-            stored_energy: mass * stored,
+            stored_energy: mass * totals.stored,
         }
     }
 
@@ -78,6 +70,48 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
             hash.update(&particle.density.to_le_bytes());
         }
         hash.digest()
+    }
+}
+
+/// Sums over particles, in one walk: they are asked for every step.
+#[derive(Clone, Copy)]
+struct Totals<const D: usize> {
+    /// Of velocities, m/s.
+    velocity: [f64; D],
+    /// Of squared velocities, m²/s².
+    square: f64,
+    /// Of energies of compression, J/kg.
+    stored: f64,
+    /// Largest |rho / rho0 - 1|.
+    density_error: f64,
+}
+
+impl<const D: usize> Totals<D> {
+    /// Halves are added up where they end, whatever thread has walked them: the same bits for any number of threads.
+    fn of(particles: &[Source<D>], id: &[u32], state: &StateEquation) -> Self {
+        if particles.len() > TASK {
+            let at = (particles.len() / 2).next_multiple_of(TASK);
+            let (a, b) = rayon::join(
+                || Self::of(&particles[..at], &id[..at], state),
+                || Self::of(&particles[at..], &id[at..], state),
+            );
+            return Self {
+                velocity: std::array::from_fn(|d| a.velocity[d] + b.velocity[d]),
+                square: a.square + b.square,
+                stored: a.stored + b.stored,
+                density_error: a.density_error.max(b.density_error),
+            };
+        }
+        let mut totals = Self { velocity: [0.0; D], square: 0.0, stored: 0.0, density_error: 0.0 };
+        for (particle, _) in particles.iter().zip(id).filter(|p| *p.1 != PADDING) {
+            for d in 0..D {
+                totals.velocity[d] += particle.velocity[d];
+            }
+            totals.square += particle.velocity.iter().map(|v| v.powi(2)).sum::<f64>();
+            totals.stored += state.energy(particle.density);
+            totals.density_error = totals.density_error.max((particle.density / state.density - 1.0).abs());
+        }
+        totals
     }
 }
 

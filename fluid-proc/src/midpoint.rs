@@ -10,7 +10,7 @@ use halfstep_sph::state_equation::StateEquation;
 use halfstep_wire::half_step::{HalfStep, Stage};
 
 /// Slots that one task walks over; a whole number of clusters.
-const TASK: usize = 1024;
+pub(crate) const TASK: usize = 1024;
 
 /// The extremes over all particles after a stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
