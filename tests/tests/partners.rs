@@ -1,6 +1,6 @@
 //! Solvers of others as solids: the examples in `python/examples`.
 
-use halfstep_tests::python::python;
+use halfstep_tests::python::{python, python_of};
 use halfstep_tests::run::{repository, scene_at};
 
 /// Spacing of the floating box's water, m.
@@ -60,4 +60,20 @@ fn a_flap_of_mujoco_holds_back_water() {
     let expected = 0.14 * angle.sin() - 0.01 * (1.0 - angle.cos());
     println!("tip {mean} m, expected {expected} m");
     assert!((mean / expected - 1.0).abs() < 0.05, "{mean} m, expected {expected} m");
+}
+
+/// A stem of PyElastica's, a rod, swings in waves as the built-in one does. PyElastica comes with its own environment.
+#[test]
+#[ignore = "minutes"]
+fn a_stem_of_pyelastica_swings_as_the_built_in_one_does() {
+    let folder = repository().join("python/examples/pyelastica");
+    let script = folder.join("stem.py");
+    let line = format!("OMP_NUM_THREADS=1 {} {}", python_of("pyelastica").display(), script.display());
+    let stem = || scene_at(&folder.join("stem.toml")).until(3.3);
+    // The first high swing.
+    let own = stem().run().curve("tip.x").between(2.8, 3.3).peak();
+    let rod = stem().argument("--solid").argument(line).run().curve("tip.x").between(2.8, 3.3).peak();
+    println!("own {own:?}, rod {rod:?}: s and m");
+    assert!((rod.1 / own.1 - 1.0).abs() < 0.05, "{own:?} and {rod:?}");
+    assert!((rod.0 - own.0).abs() < 0.03, "{own:?} and {rod:?}");
 }
