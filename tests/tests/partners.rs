@@ -77,3 +77,22 @@ fn a_stem_of_pyelastica_swings_as_the_built_in_one_does() {
     assert!((rod.1 / own.1 - 1.0).abs() < 0.05, "{own:?} and {rod:?}");
     assert!((rod.0 - own.0).abs() < 0.03, "{own:?} and {rod:?}");
 }
+
+/// A flap of MuJoCo's takes from waves what linear theory gives for those that arrive: 0.170 W/m with its motor's best
+/// damping, B = 5.5 N m s/rad, over a period before what it sends back has been at the paddle.
+#[test]
+#[ignore = "a minute"]
+fn the_motor_of_a_flap_takes_the_power_of_waves() {
+    const DAMPING: f64 = 5.5;
+    // Of the particle that the probe takes, over the hinge, m.
+    const HEIGHT: f64 = 0.275;
+    let folder = repository().join("python/examples/mujoco");
+    let line = format!("{} {} {DAMPING} 0", python().display(), folder.join("wave_flap.py").display());
+    let run = scene_at(&folder.join("wave-flap.toml")).until(4.31).argument("--solid").argument(line).run();
+    let tip = run.curve("tip.x").between(3.4, 4.3);
+    let rates = tip.times.windows(2).zip(tip.values.windows(2));
+    let squares = rates.map(|(t, x)| ((x[1] - x[0]) / (t[1] - t[0]) / HEIGHT).powi(2));
+    let power = DAMPING * squares.sum::<f64>() / (tip.times.len() - 1) as f64;
+    println!("{power} W/m");
+    assert!((power / 0.170 - 1.0).abs() < 0.05, "{power} W/m");
+}
