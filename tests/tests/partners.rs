@@ -1,7 +1,8 @@
 //! Solvers of others as solids: the examples in `python/examples`.
 
+use halfstep_tests::Curve;
 use halfstep_tests::python::{python, python_of};
-use halfstep_tests::run::{repository, scene_at};
+use halfstep_tests::run::{repository, scene, scene_at};
 
 /// Spacing of the floating box's water, m.
 const COARSE: f64 = 0.02;
@@ -95,4 +96,21 @@ fn the_motor_of_a_flap_takes_the_power_of_waves() {
     let power = DAMPING * squares.sum::<f64>() / (tip.times.len() - 1) as f64;
     println!("{power} W/m");
     assert!((power / 0.170 - 1.0).abs() < 0.05, "{power} W/m");
+}
+
+/// A wall of Akantu's cohesive finite elements breaks when the built-in one does: when its tip has gone 1 mm, twice as
+/// far as a whole wall bends. Weaker than the scene's: it breaks as the load rises and not at its peak or not at
+/// all. Akantu comes with its own environment.
+#[test]
+#[ignore = "minutes"]
+fn a_wall_of_akantu_breaks_when_the_built_in_one_does() {
+    let script = repository().join("python/examples/akantu/wall.py");
+    let line = format!("OMP_NUM_THREADS=1 {} {}", python_of("akantu").display(), script.display());
+    let weak = || scene("breaking-wall").set("resolution", 0.004).set("solid.fracture.strength", 0.3e6);
+    let wall = || weak().until(0.172);
+    let broken = |curve: Curve| curve.first_above(0.001).expect("the wall breaks");
+    let own = broken(wall().run().curve("tip.x"));
+    let elements = broken(wall().argument("--solid").argument(line).run().curve("tip.x"));
+    println!("own {own} s, finite elements {elements} s");
+    assert!((elements / own - 1.0).abs() < 0.1, "{own} s and {elements} s");
 }
