@@ -97,6 +97,17 @@ impl<const N: usize> Default for Lane<N> {
     }
 }
 
+/// Each number by itself: a plain loop, which inlines whatever surrounds it, unlike `std::array::from_fn`.
+macro_rules! each {
+    ($k:ident => $number:expr) => {{
+        let mut lane = Self::ZERO;
+        for $k in 0..N {
+            lane.0[$k] = $number;
+        }
+        lane
+    }};
+}
+
 impl<const N: usize> Lanes for Lane<N> {
     const TARGETS: usize = N;
     const ZERO: Self = Self([0.0; N]);
@@ -107,7 +118,7 @@ impl<const N: usize> Lanes for Lane<N> {
     }
     #[inline(always)]
     fn each(value: impl Fn(usize) -> f64) -> Self {
-        Self(std::array::from_fn(value))
+        each!(k => value(k))
     }
     #[inline(always)]
     fn load(column: &[f64], slot: usize) -> Self {
@@ -116,31 +127,36 @@ impl<const N: usize> Lanes for Lane<N> {
     }
     #[inline(always)]
     fn of_fours(four: impl Fn(usize) -> Lane) -> Self {
-        Self(std::array::from_fn(|k| four(k / LANES).0[k % LANES]))
+        let mut lane = Self::ZERO;
+        for (k, part) in lane.0.chunks_exact_mut(LANES).enumerate() {
+            part.copy_from_slice(&four(k).0);
+        }
+        lane
     }
     #[inline(always)]
     fn four(self, k: usize) -> Lane {
-        Lane(std::array::from_fn(|i| self.0[LANES * k + i]))
+        let part: &[f64; LANES] = self.0[LANES * k..][..LANES].try_into().expect("a slice of four");
+        Lane(*part)
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
-        Self(std::array::from_fn(|k| self.0[k].sqrt()))
+        each!(k => self.0[k].sqrt())
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        Self(std::array::from_fn(|k| if self.0[k] > other.0[k] { self.0[k] } else { other.0[k] }))
+        each!(k => if self.0[k] > other.0[k] { self.0[k] } else { other.0[k] })
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        Self(std::array::from_fn(|k| if self.0[k] < other.0[k] { self.0[k] } else { other.0[k] }))
+        each!(k => if self.0[k] < other.0[k] { self.0[k] } else { other.0[k] })
     }
     #[inline(always)]
     fn fused(self, b: Self, c: Self) -> Self {
-        Self(std::array::from_fn(|k| self.0[k].mul_add(b.0[k], c.0[k])))
+        each!(k => self.0[k].mul_add(b.0[k], c.0[k]))
     }
     #[inline(always)]
     fn unfused(self, b: Self, c: Self) -> Self {
-        Self(std::array::from_fn(|k| self.0[k] * b.0[k] + c.0[k]))
+        each!(k => self.0[k] * b.0[k] + c.0[k])
     }
 }
 
@@ -150,7 +166,7 @@ macro_rules! operator {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                Self(std::array::from_fn(|k| self.0[k] $op other.0[k]))
+                each!(k => self.0[k] $op other.0[k])
             }
         }
     };
@@ -171,7 +187,7 @@ impl<const N: usize> Neg for Lane<N> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self(std::array::from_fn(|k| -self.0[k]))
+        each!(k => -self.0[k])
     }
 }
 

@@ -13,6 +13,9 @@ use rayon::prelude::*;
 
 /// A sum over neighbours.
 pub trait PairLaw<const D: usize>: Sync {
+    /// As many targets are computed at once as the processor can; else four: a law with more numbers for a target than
+    /// registers gains nothing by more of them. The list is made for it ([`ClusterList::new`], [`ClusterList::narrow`]).
+    const WIDE: bool = true;
     /// What is loaded of the targets before their neighbours are visited.
     type Target<L: Lanes>: Copy;
     /// What is summed up for the targets.
@@ -33,6 +36,32 @@ pub trait PairLaw<const D: usize>: Sync {
         r2: L,
         sum: &mut Self::Sum<L>,
     );
+}
+
+/// A law that computes four targets at once, over a list that others like it use.
+pub struct Narrow<W>(pub W);
+
+impl<const D: usize, W: PairLaw<D>> PairLaw<D> for Narrow<W> {
+    const WIDE: bool = false;
+    type Target<L: Lanes> = W::Target<L>;
+    type Sum<L: Lanes> = W::Sum<L>;
+
+    #[inline(always)]
+    fn target_positions(&self) -> &[Vec<f64>; D] {
+        self.0.target_positions()
+    }
+    #[inline(always)]
+    fn source_position(&self, j: usize) -> [f64; D] {
+        self.0.source_position(j)
+    }
+    #[inline(always)]
+    fn target<L: Lanes>(&self, slot: usize) -> W::Target<L> {
+        self.0.target(slot)
+    }
+    #[inline(always)]
+    fn add<A: Arch, L: Lanes>(&self, i: &W::Target<L>, j: usize, dx: [L; D], r2: L, sum: &mut W::Sum<L>) {
+        self.0.add::<A, L>(i, j, dx, r2, sum);
+    }
 }
 
 /// Sums of several targets, which are stored by fours; see [`pair_sum`](crate::pair_sum).
@@ -135,6 +164,8 @@ impl<F: Copy + Send> Sink<F> for Add {
 
 /// A law with the list of its pairs, or several, each of which adds to the same sum in its turn.
 trait Work<const D: usize>: Copy + Sync {
+    /// See [`PairLaw::WIDE`].
+    const WIDE: bool;
     /// What is summed up.
     type Sum<L: Lanes>: PairSum<L, Four = Self::Sum<Lane>> + Default;
     /// The list.
@@ -144,6 +175,7 @@ trait Work<const D: usize>: Copy + Sync {
 }
 
 impl<const D: usize, W: PairLaw<D>> Work<D> for (&W, &ClusterList) {
+    const WIDE: bool = W::WIDE;
     type Sum<L: Lanes> = W::Sum<L>;
     fn list(&self) -> &ClusterList {
         self.1
@@ -212,7 +244,7 @@ struct Place {
 }
 
 impl<const D: usize> FixedPairs<D> {
-    /// Of a list among these positions.
+    /// Of a narrow list among these positions.
     pub fn new<K: Kernel<D>>(isa: Isa, kernel: K, position: Vectors<D>, list: ClusterList) -> Self {
         let mut pairs = Self { position, list, slopes: Vec::new() };
         let fused = isa.min(Isa::detect()) != Isa::Baseline;
@@ -325,6 +357,8 @@ impl<W, const D: usize> Clone for OverFixed<'_, W, D> {
 impl<W, const D: usize> Copy for OverFixed<'_, W, D> {}
 
 impl<const D: usize, W: FixedLaw<D>> Work<D> for OverFixed<'_, W, D> {
+    // Eight of one row have nearly as long a list as twice four, and eight slopes to load for each entry.
+    const WIDE: bool = false;
     type Sum<L: Lanes> = W::Sum<L>;
     fn list(&self) -> &ClusterList {
         &self.1.list
@@ -366,6 +400,7 @@ impl<W> Clone for Both<'_, W> {
 impl<W> Copy for Both<'_, W> {}
 
 impl<const D: usize, W: PairLaw<D>> Work<D> for Both<'_, W> {
+    const WIDE: bool = W::WIDE;
     type Sum<L: Lanes> = W::Sum<L>;
     fn list(&self) -> &ClusterList {
         let [(_, first), (_, second)] = self.0;
@@ -427,7 +462,8 @@ fn run_chunks<const D: usize, W: Work<D>, S: Sink<W::Sum<Lane>>>(
     assert_eq!(out.len(), list.fours(), "one sum for each four targets");
     // Never more than the processor has: that is what makes the calls below safe.
     let isa = isa.min(Isa::detect());
-    assert_eq!(list.width(), isa.targets(), "the list's clusters are as wide as the passes");
+    let width = if W::WIDE { isa.targets() } else { LANES };
+    assert_eq!(list.width(), width, "the list's clusters are as wide as the passes");
     if out.len() <= CHUNK_FOURS {
         if !out.is_empty() {
             run_chunk(isa, work, 0, sink, out);
@@ -447,7 +483,10 @@ fn run_chunk<const D: usize, W: Work<D>, S: Sink<W::Sum<Lane>>>(
     match isa {
         // SAFETY: `run_chunks` asked the processor.
         #[cfg(target_arch = "x86_64")]
-        Isa::Avx512vl => unsafe { run_avx512(work, chunk, sink, out) },
+        Isa::Avx512vl if W::WIDE => unsafe { run_avx512::<D, W, S, Eight>(work, chunk, sink, out) },
+        // SAFETY: as above.
+        #[cfg(target_arch = "x86_64")]
+        Isa::Avx512vl => unsafe { run_avx512::<D, W, S, Lane>(work, chunk, sink, out) },
         // SAFETY: as above.
         #[cfg(target_arch = "x86_64")]
         Isa::Avx2 => unsafe { run_avx2(work, chunk, sink, out) },
@@ -457,13 +496,13 @@ fn run_chunk<const D: usize, W: Work<D>, S: Sink<W::Sum<Lane>>>(
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2,fma")]
-unsafe fn run_avx512<const D: usize, W: Work<D>, S: Sink<W::Sum<Lane>>>(
+unsafe fn run_avx512<const D: usize, W: Work<D>, S: Sink<W::Sum<Lane>>, L: Lanes>(
     work: W,
     chunk: usize,
     sink: S,
     out: &mut [S::Out],
 ) {
-    run::<D, W, S, Fused, Eight>(work, chunk, sink, out);
+    run::<D, W, S, Fused, L>(work, chunk, sink, out);
 }
 
 #[cfg(target_arch = "x86_64")]

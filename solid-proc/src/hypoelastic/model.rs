@@ -139,7 +139,7 @@ impl<const D: usize> Hypoelastic<D> {
             sources: Vec::new(),
             artificial: Vec::new(),
             rows: Rows::default(),
-            neighbours: ClusterList::new(isa),
+            neighbours: ClusterList::narrow(),
             sums: Vec::new(),
             walls,
             pair_evaluations: 0,

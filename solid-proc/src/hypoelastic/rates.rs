@@ -161,6 +161,7 @@ pub(super) struct Target<O, L, const D: usize> {
 impl<K: Kernel<D>, T: TensileCorrection<D>, M: Moment, const D: usize> PairLaw<D>
     for SolidLaw<'_, K, T, M, D>
 {
+    const WIDE: bool = false;
     type Target<L: Lanes> = Target<T::Own<L>, L, D>;
     type Sum<L: Lanes> = SolidSum<D, L>;
 

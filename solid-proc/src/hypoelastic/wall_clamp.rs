@@ -10,7 +10,8 @@ use crate::columns::{Vectors, vectors};
 use halfstep_sph::extrapolation::{Extrapolation, ExtrapolationSum};
 use halfstep_sph::lane::LANES;
 use halfstep_sph::neighbours::PADDING;
-use halfstep_sph::{pair, with_kernel};
+use halfstep_sph::pair::{self, Narrow};
+use halfstep_sph::with_kernel;
 
 /// Out of every kernel's reach, m.
 const FAR: f64 = 1e30;
@@ -45,14 +46,14 @@ impl<const D: usize> Hypoelastic<D> {
         }
         clamp.sums.resize(self.neighbours.fours(), ExtrapolationSum::default());
         with_kernel!(self.kernel, self.smoothing_length, D, |kernel| {
-            let law = Extrapolation {
+            let law = Narrow(Extrapolation {
                 kernel,
                 gravity: self.gravity,
                 targets: &self.now.position,
                 sources: &clamp.free,
                 density: &self.now.density,
                 pressure: &self.pressure,
-            };
+            });
             pair::pass(self.isa, &law, &self.neighbours, &mut clamp.sums);
         });
         self.pair_evaluations += self.neighbours.pairs() as u64;

@@ -124,7 +124,7 @@ impl<const D: usize> TotalLagrangian<D> {
             rows.permute(column);
         }
         rows.permute_ids(&mut id);
-        let mut list = ClusterList::new(isa);
+        let mut list = ClusterList::narrow();
         list.build(&position, &position, &rows, reach);
         let slots = id.len();
         let mut slot_of = vec![0; points.len()];

@@ -59,9 +59,14 @@ impl Chunk {
 }
 
 impl ClusterList {
-    /// An empty list for passes with an instruction set.
+    /// An empty list for wide laws with an instruction set.
     pub fn new(isa: Isa) -> Self {
-        Self { chunks: Vec::new(), width: isa.min(Isa::detect()).targets(), targets: 0 }
+        Self { width: isa.min(Isa::detect()).targets(), ..Self::narrow() }
+    }
+
+    /// An empty list for laws that compute four targets at once.
+    pub fn narrow() -> Self {
+        Self { chunks: Vec::new(), width: LANES, targets: 0 }
     }
 
     /// Lists all sources within `reach` of the targets. Both sets are sorted; `rows` is the order of the sources.
