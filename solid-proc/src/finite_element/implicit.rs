@@ -3,7 +3,7 @@
 //! The midpoint rule for the way w = u(n+1) - u(n) of each node,
 //!   2 M (w / dt² - v(n) / dt) = f(u(n), w) + load,   v(n+1) = 2 w / dt - v(n),
 //! with the stresses P = F S, F that of the middle and S that of Green's strain E(n) + kappa (E(n+1) - E(n)): turning
-//! does not strain, angular momentum is kept, and a St. Venant-Kirchhoff material with kappa = 1/2 keeps its energy (J.
+//! does not strain, these stresses keep angular momentum, and a St. Venant-Kirchhoff material with kappa = 1/2 keeps its energy (J.
 //! C. Simo and N. Tarnow, The discrete energy-momentum method, Zeitschrift für angewandte Mathematik und Physik 43,
 //! 1992; for small strains that is Newmark's method, beta = 1/4 and gamma = 1/2). kappa = 1/2 + theta is a viscosity of
 //! theta dt times the stiffness: a mode of the frequency omega loses the part theta (omega dt)² of its energy in a
@@ -29,7 +29,7 @@ const THETA: f64 = 0.05;
 /// Where in a step strains are taken.
 const KAPPA: f64 = 0.5 + THETA;
 
-/// A correction of the way that ends the iteration, over the spacing; what is left is smaller by the square.
+/// A correction of the way that ends the iteration, over the spacing; what is left is at most [`CONTRACTION`] of it.
 const SMALL: f64 = 1e-8;
 
 /// Largest ratio of a correction to the one before with which the same factorisation is kept.
