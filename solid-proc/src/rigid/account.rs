@@ -57,6 +57,7 @@ impl System {
         for touch in touches {
             walls += of_row(&touch.normal, touch.impulse);
             walls += touch.tangents.iter().zip(&touch.friction).map(|(row, &x)| of_row(row, x)).sum::<f64>();
+            walls += touch.slide.iter().zip(&touch.friction).map(|(rate, x)| rate * x).sum::<f64>();
         }
         self.books.give(EnergyPart::Clamps, joints);
         self.books.give(EnergyPart::MovingWalls, walls);

@@ -24,6 +24,8 @@ pub(super) struct Body {
     pub(super) surfaces: Vec<Surface>,
     /// A bound of the speed of what moves by prescription, m/s.
     pub(super) fastest: f64,
+    /// Of a wall's surface, which stays where it is, m/s: what rests on it is taken along by friction.
+    pub(super) surface_velocity: Vec3,
     /// What touches others' surfaces: balls, their centres from the centre of mass, m, their radii, m, and how
     /// deep another surface may lie in them and be pushed out, m.
     pub(super) balls: Vec<(Vec3, f64, f64)>,
@@ -99,6 +101,7 @@ impl Body {
             surfaces: Vec::new(),
             balls: Vec::new(),
             fastest: 0.0,
+            surface_velocity: Vec3::zeros(),
             radius: 0.0,
             tied: Vec::new(),
         }

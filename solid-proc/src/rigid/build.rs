@@ -49,6 +49,7 @@ pub(super) fn system<const D: usize>(
         if touched || keys.joints.iter().any(|joint| joint.with == wall.name) {
             let mut frame = Body::frame(wall.motion.clone());
             frame.fastest = fastest(scene, wall);
+            frame.surface_velocity = wall.velocity.into();
             if touched {
                 frame.surfaces.push(Surface::new(&wall.geometry, None));
             }

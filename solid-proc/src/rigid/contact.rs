@@ -19,6 +19,8 @@ pub(super) struct Touch {
     /// Impulses along these, N s (2D: N s/m).
     pub(super) impulse: f64,
     pub(super) friction: Vec<f64>,
+    /// How fast a wall's surface, which stays where it is, goes along these, m/s.
+    pub(super) slide: Vec<f64>,
     /// Least rate along the normal, m/s.
     pub(super) target: f64,
 }
@@ -26,7 +28,8 @@ pub(super) struct Touch {
 impl Touch {
     fn new(normal: Row, tangents: Vec<Row>) -> Self {
         let friction = vec![0.0; tangents.len()];
-        Self { normal, tangents, impulse: 0.0, friction, target: 0.0 }
+        let slide = friction.clone();
+        Self { normal, tangents, impulse: 0.0, friction, slide, target: 0.0 }
     }
 
     /// A contact of bodies, and no stop of a joint.
@@ -168,6 +171,9 @@ impl System {
         let n = normal.linear;
         let directions = if self.plane { vec![Vec3::new(-n[1], n[0], 0.0)] } else { across(&n).to_vec() };
         let row = |d: Vec3| Row::between(normal.ends, &self.poses, point, d, 0.0);
-        Touch::new(normal, directions.into_iter().map(row).collect())
+        let tangents: Vec<Row> = directions.into_iter().map(row).collect();
+        let surface = self.bodies[normal.ends[0]].surface_velocity;
+        let slide = tangents.iter().map(|row| row.linear.dot(&surface)).collect();
+        Touch { slide, ..Touch::new(normal, tangents) }
     }
 }

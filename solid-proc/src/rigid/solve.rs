@@ -123,8 +123,8 @@ pub(super) fn solve(
 fn rub(motions: &mut Motions, touch: &mut Touch, across: &mut [Ready], bound: f64) -> f64 {
     let give = across.iter().map(Ready::give).fold(0.0, f64::max);
     let mut wanted = [0.0; 2];
-    for ((wanted, row), now) in wanted.iter_mut().zip(&*across).zip(&touch.friction) {
-        *wanted = now - row.rate(motions) / give;
+    for (k, (row, now)) in across.iter().zip(&touch.friction).enumerate() {
+        wanted[k] = now - (row.rate(motions) - touch.slide[k]) / give;
     }
     let size = wanted.iter().map(|x| x * x).sum::<f64>().sqrt();
     let scale = if size > bound { bound / size } else { 1.0 };

@@ -389,6 +389,27 @@ fn a_sliding_block_stops_after_its_way() {
     assert!(model.states[0].kinetic_energy < 1e-20);
 }
 
+/// A wall's `velocity`, its surface's, which stays where it is: mu g up to the belt's speed, then rest on it.
+#[test]
+fn a_belt_takes_a_block_along() {
+    let shape = format!("{BOX}{FLOOR}velocity = [0.5, 0.0]\n");
+    let mut model = build::<2>(&scene("contact = { friction = 0.3 }", &shape));
+    let load = free(&model);
+    model.keep_account();
+    let mut given = 0.0;
+    run(&mut model, 0.5, 5e-4, &load, |time, model| {
+        let right = (0.3 * G * time).min(0.5);
+        let speed = model.states[0].velocity[0];
+        assert!((speed - right).abs() < 2e-3, "{time} s: {speed} m/s, by hand {right}");
+        model.account(&mut |_, joules| given += joules);
+    });
+    // 10 kg/m at 0.5 m/s.
+    let held = model.states[0].kinetic_energy;
+    println!("{held:.6} J/m, given {given:.6} J/m");
+    assert!((held / 1.25 - 1.0).abs() < 1e-6, "{held}");
+    assert!((given / held - 1.0).abs() < 1e-3, "{given} {held}");
+}
+
 #[test]
 fn a_block_on_a_slope_holds_below_the_angle_of_friction() {
     // A slope is gravity at an angle.
