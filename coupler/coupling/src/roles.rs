@@ -1,5 +1,6 @@
 //! The participants of a scene as owners of particles.
 
+use halfstep_interface::contact::Contact;
 use halfstep_output::checkpoint::{StateWriter, file, file_name};
 use halfstep_output::{FrameWriter, OutputError};
 use halfstep_role::Member;
@@ -17,6 +18,32 @@ pub fn build(place: usize, scene: &Scene, isa: Isa) -> Option<Box<dyn Role>> {
         Phase::Fluid => halfstep_fluid::role(scene, isa),
         Phase::Solid => halfstep_solid::role(scene, place - usize::from(scene.fluid.is_some()), isa),
         Phase::Wall => None,
+    }
+}
+
+/// What contact between the solids asks of a run, from the first records of all participants in their order.
+#[derive(Clone, Debug, Default)]
+pub struct ContactAsks {
+    /// Largest time step that all contacts are stable with, s; `None` where nothing can touch.
+    pub limit: Option<f64>,
+    /// Of each pair that may touch its solids' places in the scene and its stiffness, Pa/m.
+    pub stiffness: Vec<([usize; 2], f64)>,
+}
+
+/// What contact asks before anything is run.
+pub fn contact_asks(scene: &Scene, roles: &mut [Box<dyn Role>]) -> ContactAsks {
+    let Some(mut contact) = Contact::new(scene) else { return ContactAsks::default() };
+    let first = |role: &mut Box<dyn Role>| {
+        let mut records = Vec::new();
+        role.publish(&[], &mut records);
+        records
+    };
+    let solids = roles.iter_mut().filter(|role| role.phase() == Phase::Solid);
+    let states: Vec<_> = solids.map(first).collect();
+    contact.begin(states.iter().map(Vec::as_slice));
+    ContactAsks {
+        limit: Some(contact.limit()).filter(|limit| limit.is_finite()),
+        stiffness: contact.booked().map(|(solids, law, _)| (solids, law.stiffness)).collect(),
     }
 }
 

@@ -4,7 +4,7 @@ use crate::forecast::{self, Forecast, megabytes};
 use crate::remarks::Placed;
 use crate::step_cost::step_cost;
 use crate::{effects, remarks};
-use halfstep_coupling::roles;
+use halfstep_coupling::roles::{self, ContactAsks};
 use halfstep_output::run_json::EffectReport;
 use halfstep_scene::geometry::{self, Counts};
 use halfstep_scene::{self as scene, Phase, Scene, TimeStep, dispatch};
@@ -29,6 +29,8 @@ pub struct Check {
     solids: Vec<Solid>,
     /// Largest stable step of the fluid, s.
     fluid_dt_limit: Option<f64>,
+    /// Largest stable step of contact between solids, s; `None` where no two can touch.
+    contact_dt_limit: Option<f64>,
     /// First time step, s.
     pub time_step: f64,
     /// Steps to the end with it.
@@ -48,6 +50,9 @@ pub struct Check {
     effects: Vec<EffectReport>,
     /// Where the scene means something else than its author may think.
     pub warnings: Vec<String>,
+    /// Pairs of solids, and whether they touch.
+    #[serde(skip)]
+    pairs: Option<String>,
     #[serde(skip)]
     bodies_listed: Option<String>,
 }
@@ -97,9 +102,13 @@ fn check_in<const D: usize>(scene: &Scene, isa: Isa) -> Check {
     let counts @ Counts { fluid, solid, wall } = layout.counts();
     let shapes = remarks::placed(scene, &layout);
     let bodies = scene.bodies_of(&layout);
-    let built: Vec<_> =
+    let mut built: Vec<_> =
         (0..scene.participants().len()).filter_map(|place| roles::build(place, scene, isa)).collect();
-    let limit = built.iter().map(|role| role.dt_limit()).fold(f64::INFINITY, f64::min);
+    let contact = roles::contact_asks(scene, &mut built);
+    let of_contact = contact.limit.map(|limit| ("contact".to_owned(), limit));
+    let limits: Vec<(String, f64)> =
+        built.iter().map(|role| (role.name().to_string(), role.dt_limit())).chain(of_contact).collect();
+    let limit = limits.iter().map(|(_, limit)| *limit).fold(f64::INFINITY, f64::min);
     let time_step = match scene.time_step {
         TimeStep::Auto => limit,
         TimeStep::Fixed(dt) => dt,
@@ -120,6 +129,9 @@ fn check_in<const D: usize>(scene: &Scene, isa: Isa) -> Check {
     let solids = solids.collect();
     let Forecast { shared, disk, frames } = Forecast::of(scene, &layout, &[]);
     let fluid_role = built.iter().find(|role| role.phase() == Phase::Fluid);
+    let mut warnings = remarks::on(scene, &layout, &shapes);
+    warnings.extend(too_long(scene, &limits));
+    warnings.extend(too_soft(scene, &contact));
     Check {
         scene: scene.name.clone(),
         path: scene.path.display().to_string(),
@@ -129,6 +141,8 @@ fn check_in<const D: usize>(scene: &Scene, isa: Isa) -> Check {
         bodies: bodies.iter().map(|body| named(scene, body)).collect(),
         solids,
         fluid_dt_limit: fluid_role.map(|role| role.dt_limit()),
+        contact_dt_limit: contact.limit,
+        pairs: pairs(scene),
         time_step,
         steps: (scene.end_time / time_step).ceil() as u64,
         end_time: scene.end_time,
@@ -140,7 +154,7 @@ fn check_in<const D: usize>(scene: &Scene, isa: Isa) -> Check {
         expected_seconds: expected_seconds(built, time_step, scene.end_time),
         instruction_set: isa.bits_name(),
         effects: effects::reports(scene, &counts),
-        warnings: remarks::on(scene, &layout, &shapes),
+        warnings,
         shapes,
     }
 }
@@ -148,6 +162,70 @@ fn check_in<const D: usize>(scene: &Scene, isa: Isa) -> Check {
 fn named(scene: &Scene, body: &scene::Body) -> Body {
     let shapes = body.shapes.iter().map(|&shape| scene.shapes[shape].name.clone()).collect();
     Body { shapes, particles: body.particles, clamped: body.clamped }
+}
+
+/// A fixed step above limits.
+fn too_long(scene: &Scene, limits: &[(String, f64)]) -> Vec<String> {
+    let TimeStep::Fixed(dt) = scene.time_step else { return Vec::new() };
+    let above = limits.iter().filter(|(_, limit)| dt > limit * (1.0 + 1e-9));
+    let say = |(name, limit): &(String, f64)| {
+        format!(
+            "time_step = {dt:.4e} s is above the {name}'s stability limit of {limit:.4e} s, {:.2} times (time_step = \
+             \"auto\" keeps to it)",
+            dt / limit
+        )
+    };
+    above.map(say).collect()
+}
+
+/// Part of the smallest side of two solids into which the weight of the lighter may press the other.
+const SOFT: f64 = 0.1;
+
+/// Contacts that the weight of the lighter solid presses far in. A body rests on at most its longest side.
+fn too_soft(scene: &Scene, contact: &ContactAsks) -> Vec<String> {
+    let gravity = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+    let soft = |(solids, stiffness): &([usize; 2], f64)| {
+        let of = |solid: usize| {
+            let own = scene.shapes.iter().filter(move |s| s.phase == Phase::Solid && s.solid == Some(solid));
+            own.map(move |shape| {
+                let around = geometry::bounding_box(shape, scene);
+                let sides = [0, 1].map(|d| around.max[d] - around.min[d]);
+                let density = shape.density.unwrap_or(scene.solids[solid].density);
+                // What rests on the longer side is as high as the shorter one.
+                (density * gravity * sides[0].min(sides[1]), sides[0].min(sides[1]))
+            })
+        };
+        let lightest = solids.map(|k| of(k).map(|(pressure, _)| pressure).fold(f64::INFINITY, f64::min));
+        let smallest = solids.iter().flat_map(|&k| of(k)).map(|(_, side)| side).fold(f64::INFINITY, f64::min);
+        let depth = lightest[0].min(lightest[1]) / stiffness;
+        let [a, b] = solids.map(|k| &scene.solids[k].name);
+        (depth > SOFT * smallest).then(|| {
+            format!(
+                "contact of `{a}` and `{b}` is soft: the weight of the lighter one presses it {depth:.2e} m into the \
+                 other, and the smallest side is {smallest:.2e} m (`stiffness` of their [[contact]] is {stiffness:.1e} \
+                 Pa/m)"
+            )
+        })
+    };
+    contact.stiffness.iter().filter_map(soft).collect()
+}
+
+/// Which solids touch, and which pass through each other; `None` where there are not two.
+fn pairs(scene: &Scene) -> Option<String> {
+    let touching = scene.contacts();
+    let names = |[a, b]: [usize; 2]| format!("{} and {}", scene.solids[a].name, scene.solids[b].name);
+    let count = scene.solids.len();
+    let all = (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b]));
+    let in_plane = scene.dimension == 2;
+    let (touch, pass): (Vec<_>, Vec<_>) =
+        all.partition(|pair| in_plane && touching.iter().any(|contact| contact.solids == *pair));
+    let say = |list: Vec<[usize; 2]>, what: &str| {
+        let named: Vec<String> = list.into_iter().map(names).collect();
+        (!named.is_empty()).then(|| format!("{} {what}", named.join(", ")))
+    };
+    let both = [say(touch, "touch"), say(pass, "pass through each other where they meet")];
+    let text: Vec<String> = both.into_iter().flatten().collect();
+    (!text.is_empty()).then(|| text.join("; "))
 }
 
 fn expected_seconds(roles: Vec<Box<dyn halfstep_role::role::Role>>, dt: f64, end: f64) -> Option<f64> {
@@ -176,6 +254,9 @@ impl Display for Check {
         for (name, limit) in limits.chain(self.solids.iter().map(|solid| (&*solid.name, solid.dt_limit))) {
             line(&format!("{name} dt limit"), &format_args!("{limit:.3e} s"))?;
         }
+        if let Some(limit) = self.contact_dt_limit {
+            line("contact limit", &format_args!("{limit:.3e} s"))?;
+        }
         let steps = format_args!("{:.3e} s: {} steps to t = {} s", self.time_step, self.steps, self.end_time);
         line("time step", &steps)?;
         for Solid { name, sub_steps, .. } in &self.solids {
@@ -184,9 +265,8 @@ impl Display for Check {
                 line(&format!("{name} sub-steps"), &text)?;
             }
         }
-        if self.solids.len() > 1 {
-            let none = "nothing acts but the water: where they meet they pass through each other";
-            line("between solids", &none)?;
+        if let Some(pairs) = &self.pairs {
+            line("between solids", pairs)?;
             for solid in &self.solids {
                 line(&solid.name, &format_args!("{} particles", solid.particles))?;
             }
@@ -215,3 +295,6 @@ impl Display for Check {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests;

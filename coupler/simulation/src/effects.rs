@@ -78,7 +78,7 @@ pub(crate) fn reports(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
     let why = if coupled {
         format!("interface.treatment is \"{treatment}\"")
     } else {
-        "one phase only: no coupler, nothing exchanged".into()
+        "one phase only: nothing to exchange between fluid and solid".into()
     };
     list.push(row(INTERFACE, coupled, why));
     let (c, far) = (scene.interface.cross_viscosity, scene.interface.cross_viscosity_far);
