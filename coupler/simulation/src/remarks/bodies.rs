@@ -56,13 +56,23 @@ pub(super) fn free(scene: &Scene, bodies: &[Body], all: &mut Vec<String>) {
         let through: Vec<String> =
             walls().filter(|wall| !wall.contact).map(|wall| format!("`{}`", wall.name)).collect();
         if !through.is_empty() {
+            let held = if on_spring(scene, body) { "a spring alone" } else { "no clamp" };
             let (are, them) = if through.len() == 1 { ("does", "it") } else { ("do", "them") };
             say(format!(
-                "{name} is held by no clamp, and {} {are} not stop it (contact is false): it goes through {them}",
+                "{name} is held by {held}, and {} {are} not stop it (contact is false): it goes through {them}",
                 through.join(" and ")
             ));
         }
     }
+}
+
+/// A spring joint ties a rigid body, which stays free.
+fn on_spring(scene: &Scene, body: &Body) -> bool {
+    body.shapes.iter().any(|&k| {
+        let shape = &scene.shapes[k];
+        let keys = shape.solid.and_then(|k| scene.solids[k].rigid());
+        keys.is_some_and(|keys| keys.joints.iter().any(|j| j.body == shape.body() || j.with == shape.body()))
+    })
 }
 
 /// Shapes that name one body and are several: too far from each other.

@@ -60,7 +60,10 @@ pub(super) fn overlaps(scene: &Scene, all: &mut Vec<String>) {
     let contact = |a: &Toucher<'_>, b: &Toucher<'_>| match (a.shape.solid, b.shape.solid) {
         (Some(k), Some(l)) if k != l => pairs.iter().any(|pair| pair.solids == [k.min(l), k.max(l)]),
         (Some(_), Some(_)) => {
-            let one_body = a.shape.body() == b.shape.body() && (!a.shape.body.is_empty() || a.copy == b.copy);
+            let one_body = a.shape.body() == b.shape.body() && {
+                let named = !a.shape.body.is_empty() || !b.shape.body.is_empty();
+                named || a.copy == b.copy
+            };
             rigid(a.shape) && !one_body && !tied(scene, a.shape, b.shape)
         }
         (Some(_), None) => rigid(a.shape) && !tied(scene, a.shape, b.shape),

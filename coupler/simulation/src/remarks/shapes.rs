@@ -229,7 +229,13 @@ pub(super) fn nodal(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
 pub(super) fn overlaps(placed: &[Placed], all: &mut Vec<String>) {
     for shape in placed.iter().filter(|shape| shape.phase != Phase::Wall) {
         let whole = shape.particles + shape.lost;
-        if shape.lost as f64 > LOST * whole as f64 {
+        if shape.particles == 0 && shape.lost > 0 {
+            all.push(format!(
+                "`{}` has none of its {whole} particles, and what it says acts nowhere: shapes that it overlaps take \
+                 their places (of two shapes of solid the one that is listed first has them)",
+                shape.name
+            ));
+        } else if shape.lost as f64 > LOST * whole as f64 {
             all.push(format!(
                 "`{}` has {} of its {whole} particles: the others' places are taken by shapes that it overlaps",
                 shape.name, shape.particles

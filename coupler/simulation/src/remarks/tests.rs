@@ -385,3 +385,73 @@ fn a_wall_that_slides_along_the_fluid_does_not_push_it() {
     let pushed = text("[-4.0, 0.0]");
     assert!(pushed.iter().any(|r| r.contains("can come to 4.00 m/s")), "{pushed:?}");
 }
+
+#[test]
+fn settings_that_cannot_act() {
+    let probe = |keys: &str| format!("[[probe]]\nname = \"p\"\n{keys}\n");
+    let beach = |rate: f64| format!("[fluid.beach]\nfrom = 0.0\nto = 0.4\nrate = {rate}\n");
+    let sine = |more: &str| {
+        TANK.replace(
+            "phase = \"wall\"",
+            &format!("phase = \"wall\"\nmotion = {{ amplitude = [0.01, 0.0], period = 1.0, {more} }}"),
+        )
+    };
+    let said = |parts: &[&str], text: &str| {
+        let found = scene(0.005, &parts.concat());
+        found.iter().any(|remark| remark.contains(text))
+    };
+    assert!(said(&[&sine("start = 2.0"), WATER, PLATE], "does not move until the run ends at 1 s"));
+    assert!(said(&[&sine("ramp = 2.0"), WATER, PLATE], "reaches its amplitude at 2 s"));
+    assert!(!said(&[&sine("ramp = 0.5"), WATER, PLATE], "the run ends"));
+    for (x, beside) in [(0.05, false), (0.6, true)] {
+        let level = probe(&format!("kind = \"water-level\"\nx = [{x}]"));
+        assert_eq!(said(&[TANK, WATER, PLATE, &level], "`p` looks beside all shapes"), beside, "{x}");
+        let speed = probe(&format!("kind = \"velocity\"\nat = [{x}, 0.05]"));
+        assert_eq!(said(&[TANK, WATER, PLATE, &speed], "`p` looks beside all shapes"), beside, "{x}");
+    }
+    for (interval, none) in [(0.5, false), (2.0, true)] {
+        let output = format!("[output]\ncheckpoint_interval = {interval}\n");
+        assert_eq!(said(&[TANK, WATER, PLATE, &output], "makes no checkpoint"), none);
+    }
+    assert!(said(&[TANK, WATER, PLATE, "[effects]\nbeach = \"on\"\n"], "without fluid.beach there is none"));
+    // exp(-rate 0.4 m / (3 sqrt(9.81 0.1) m/s)) = exp(-0.1346 rate).
+    for (rate, little) in [(0.5, true), (10.0, false)] {
+        assert_eq!(said(&[&beach(rate), TANK, WATER, PLATE], "the beach leaves long waves 0.93"), little);
+    }
+}
+
+#[test]
+fn a_solitary_wave_the_wrong_way() {
+    for (toward, wrong) in [("right", false), ("left", true)] {
+        let text = format!(
+            "resolution = 0.02\nend_time = 3.0\n[fluid]\ndensity = 1000.0\n[[shape]]\nname = \"water\"\n\
+             phase = \"fluid\"\nbox = {{ min = [0.0, 0.0], max = [3.0, 0.2] }}\n[[shape]]\nname = \"piston\"\n\
+             phase = \"wall\"\nbox = {{ min = [-0.1, 0.0], max = [0.0, 0.5] }}\n\
+             motion = {{ wave = \"solitary\", height = 0.05, depth = 0.2, toward = \"{toward}\" }}\n"
+        );
+        let found = remarks(&parse(&text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}")));
+        assert_eq!(found.iter().any(|text| text.contains("its wave is a trough")), wrong, "{found:?}");
+    }
+}
+
+#[test]
+fn ballast_is_of_its_body() {
+    let shape = |name: &str, more: &str, to: &str| {
+        format!(
+            "[[shape]]\nname = \"{name}\"\nphase = \"solid\"\n{more}box = {{ min = [0.0, 0.0], max = {to} }}\n"
+        )
+    };
+    let barge = shape("barge", "", "[0.4, 0.2]");
+    let ballast = shape("ballast", "body = \"barge\"\ndensity = 2000.0\n", "[0.4, 0.04]");
+    let of = |shapes: [&String; 2]| {
+        let text = format!(
+            "resolution = 0.02\nend_time = 1.0\n[solid]\nmodel = \"rigid\"\ndensity = 500.0\n{}{}",
+            shapes[0], shapes[1]
+        );
+        remarks(&parse(&text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}")))
+    };
+    let late = of([&barge, &ballast]);
+    assert!(late.len() == 1 && late[0].starts_with("`ballast` has none of its 40 particles"), "{late:?}");
+    let first = of([&ballast, &barge]);
+    assert!(!first.iter().any(|text| text.contains("none") || text.contains("apart")), "{first:?}");
+}

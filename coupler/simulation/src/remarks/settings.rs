@@ -1,0 +1,121 @@
+//! Remarks on settings that cannot act in their scene, or act the other way around.
+
+use halfstep_scene::{EffectName, Motion, ProbeKind, Scene, Switch, geometry};
+
+/// Instants of a run at which a motion is looked at.
+const INSTANTS: u32 = 1000;
+
+/// Part of a wave's amplitude from which on a beach takes nothing.
+const KEPT: f64 = 0.9;
+
+/// Motions that begin, or reach their amplitude, after the run.
+pub(super) fn motions(scene: &Scene, all: &mut Vec<String>) {
+    let end = scene.end_time;
+    for shape in &scene.shapes {
+        let Some(motion) = &shape.motion else { continue };
+        let around = geometry::bounding_box(shape, scene);
+        let first = motion.at(0.0);
+        let stays = (0..=INSTANTS).all(|k| {
+            let now = motion.at(end * f64::from(k) / f64::from(INSTANTS));
+            now.displacement == first.displacement && now.velocity == [0.0; 3] && now.turn == first.turn
+        });
+        if stays && motion.fastest(&around) > 0.0 {
+            all.push(format!(
+                "`{}` has a motion and does not move until the run ends at {end} s",
+                shape.name
+            ));
+        } else if let Motion::Oscillating { start, ramp, .. } = motion
+            && start + ramp > end
+        {
+            all.push(format!(
+                "the motion of `{}` reaches its amplitude at {} s, after its `ramp`, and the run ends at {end} s",
+                shape.name,
+                start + ramp
+            ));
+        }
+    }
+}
+
+/// Solitary waves whose maker goes away from all water.
+pub(super) fn solitary_waves(scene: &Scene, all: &mut Vec<String>) {
+    for shape in &scene.shapes {
+        let Some(motion) = &shape.motion else { continue };
+        // A maker of other waves goes both ways.
+        let Some(end) = motion.makes().filter(|makes| makes.reach[1] == 0.0).and_then(|makes| makes.end)
+        else {
+            continue;
+        };
+        let way = motion.at(end).displacement[0];
+        let around = geometry::bounding_box(shape, scene);
+        let middle = 0.5 * (around.min[0] + around.max[0]);
+        let mut water = geometry::fluid_boxes(scene).into_iter().peekable();
+        let behind = |b: &halfstep_scene::Block| (0.5 * (b.min[0] + b.max[0]) - middle) * way < 0.0;
+        if water.peek().is_some() && water.all(|block| behind(&block)) {
+            all.push(format!(
+                "`{}` goes away from the water, and its wave is a trough: `toward` says on which side the waves go",
+                shape.name
+            ));
+        }
+    }
+}
+
+/// A beach that is not there, or takes next to nothing.
+pub(super) fn beach(scene: &Scene, all: &mut Vec<String>) {
+    let Some(fluid) = &scene.fluid else { return };
+    let Some(beach) = fluid.beach else {
+        if scene.switch(EffectName::Beach) == Switch::On {
+            all.push("effects.beach is \"on\", and without fluid.beach there is none".into());
+        }
+        return;
+    };
+    let boxes = geometry::fluid_boxes(scene);
+    let level = boxes.iter().map(|b| b.max[1]).fold(f64::NEG_INFINITY, f64::max);
+    let depth = level - boxes.iter().map(|b| b.min[1]).fold(f64::INFINITY, f64::min);
+    let speed = (scene.gravity[1].abs() * depth).sqrt();
+    let kept = (-beach.rate * (beach.to - beach.from).abs() / (3.0 * speed)).exp();
+    if kept > KEPT {
+        all.push(format!(
+            "the beach leaves long waves {kept:.2} of their amplitude, there and back: a larger fluid.beach.rate, or a \
+             longer beach, takes more"
+        ));
+    }
+}
+
+/// Checkpoints that would be made after the run.
+pub(super) fn checkpoints(scene: &Scene, all: &mut Vec<String>) {
+    let interval = scene.output.checkpoint_interval;
+    if interval > scene.end_time {
+        all.push(format!(
+            "output.checkpoint_interval is {interval} s and the run ends at {} s: it makes no checkpoint",
+            scene.end_time
+        ));
+    }
+}
+
+/// Probes of the fluid beside everything.
+pub(super) fn probes(scene: &Scene, all: &mut Vec<String>) {
+    if scene.shapes.iter().any(|shape| shape.motion.is_some()) {
+        // Where things go is not known.
+        return;
+    }
+    let boxes: Vec<_> = scene.shapes.iter().map(|shape| geometry::bounding_box(shape, scene)).collect();
+    let low = |d: usize| boxes.iter().map(|b| b.min[d]).fold(f64::INFINITY, f64::min);
+    let high = |d: usize| boxes.iter().map(|b| b.max[d]).fold(f64::NEG_INFINITY, f64::max);
+    let beyond = |d: usize, x: f64| x < low(d) || x > high(d);
+    // Water may splash above everything.
+    let beside = |at: &[f64; 3]| beyond(0, at[0]) || at[1] < low(1);
+    for probe in &scene.probes {
+        let nothing = match &probe.kind {
+            ProbeKind::WaterLevel { x } => x.iter().any(|&x| beyond(0, x)),
+            ProbeKind::Velocity { at } | ProbeKind::Pressure { at, to: None, shape: None } => beside(at),
+            ProbeKind::Flux { from, to } => beside(from) && beside(to),
+            _ => false,
+        };
+        if nothing {
+            all.push(format!(
+                "the probe `{}` looks beside all shapes of the scene, where no fluid comes",
+                probe.name
+            ));
+        }
+    }
+}
