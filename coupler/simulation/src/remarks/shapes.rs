@@ -46,7 +46,27 @@ pub(crate) fn placed<const D: usize>(scene: &Scene, layout: &Layout<D>) -> Vec<P
         let [particles, held] = &mut counts[shape as usize];
         (*particles, *held) = (*particles + 1, *held + usize::from(clamped));
     }
-    counts.into_iter().enumerate().map(|(index, counts)| of_shape::<D>(scene, index, counts)).collect()
+    let mut all: Vec<Placed> =
+        counts.into_iter().enumerate().map(|(index, counts)| of_shape::<D>(scene, index, counts)).collect();
+    give_masses(scene, &mut all);
+    all
+}
+
+/// Bodies whose mass the scene says share it among their shapes as these share that of their densities.
+fn give_masses(scene: &Scene, placed: &mut [Placed]) {
+    for (solid, keys) in scene.solids.iter().enumerate().filter_map(|(k, s)| Some((k, s.rigid()?))) {
+        for (body, mass) in keys.bodies.iter().filter_map(|body| Some((&body.name, body.mass?))) {
+            let own = |k: &usize| {
+                let shape = &scene.shapes[*k];
+                shape.solid == Some(solid) && shape.body() == body
+            };
+            let own: Vec<usize> = (0..placed.len()).filter(own).collect();
+            let whole: f64 = own.iter().map(|&k| placed[k].mass).sum();
+            if whole > 0.0 {
+                own.into_iter().for_each(|k| placed[k].mass *= mass / whole);
+            }
+        }
+    }
 }
 
 /// Of so many particles, and so many of them that a clamp holds.

@@ -455,3 +455,34 @@ fn ballast_is_of_its_body() {
     let first = of([&ballast, &barge]);
     assert!(!first.iter().any(|text| text.contains("none") || text.contains("apart")), "{first:?}");
 }
+
+/// A rigid block in a tank, held as `more` says.
+fn hung(more: &str) -> halfstep_scene::Scene {
+    let tank = TANK.replace("phase = \"wall\"", "phase = \"wall\"\ncontact = false");
+    let text = format!(
+        "resolution = 0.01\nend_time = 1.0\n[solid]\nmodel = \"rigid\"\ndensity = 1000.0\n{more}\n{tank}\
+         [[shape]]\nname = \"c\"\nphase = \"solid\"\nbox = {{ min = [0.1, 0.1], max = [0.2, 0.2] }}\n"
+    );
+    parse(&text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}"))
+}
+
+#[test]
+fn a_body_that_hangs_on_a_spring() {
+    let spring = "joints = [{ name = \"s\", kind = \"spring\", body = \"c\", at = [0.15, 0.2], to = [0.15, 0.4], \
+                  stiffness = 2000.0 }]";
+    for (more, held) in [(spring, "a spring alone"), ("", "no clamp")] {
+        let text = format!("`c` is held by {held}, and `tank` does not stop it");
+        assert!(remarks(&hung(more)).iter().any(|remark| remark.starts_with(&text)), "{held}");
+    }
+}
+
+#[test]
+fn a_given_mass_is_shown() {
+    let mass = |more: &str| {
+        let scene = hung(more);
+        super::placed(&scene, &halfstep_scene::geometry::layout::<2>(&scene))[1].to_string()
+    };
+    assert!(mass("").contains(", 10 kg/m"), "{}", mass(""));
+    let given = mass("bodies = [{ name = \"c\", mass = 20.0 }]");
+    assert!(given.contains(", 20 kg/m"), "{given}");
+}
