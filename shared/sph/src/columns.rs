@@ -1,5 +1,6 @@
 //! Columns of vectors: one `Vec` a component.
 
+use crate::lane::WIDEST;
 use crate::neighbours::PADDING;
 
 /// `D` columns.
@@ -25,7 +26,7 @@ pub fn copy<T: Clone>(column: &mut Vec<T>, from: &[T]) {
 
 fn make_room<T>(column: &mut Vec<T>, len: usize) {
     if column.capacity() < len {
-        column.reserve_exact(len + len / 32 + 64 - column.len());
+        column.reserve_exact(len + len / 32 + 16 * WIDEST - column.len());
     }
 }
 

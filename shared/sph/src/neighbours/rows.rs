@@ -62,7 +62,7 @@ impl<const D: usize> Rows<D> {
         // Padding comes and goes with the shape of the whole: some ahead, so that a later sort does not allocate.
         let slots = slots as usize;
         if slots > self.room {
-            self.room = slots + slots / 32 + 64;
+            self.room = slots + slots / 32 + 16 * WIDEST;
         }
         self.permutation.clear();
         reserve(&mut self.permutation, self.room);
