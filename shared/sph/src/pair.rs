@@ -14,7 +14,8 @@ use rayon::prelude::*;
 /// A sum over neighbours.
 pub trait PairLaw<const D: usize>: Sync {
     /// As many targets are computed at once as the processor can; else four: a law with more numbers for a target than
-    /// registers gains nothing by more of them. The list is made for it ([`ClusterList::new`], [`ClusterList::narrow`]).
+    /// registers gains nothing by more of them. Its list is made by [`ClusterList::new`], else by
+    /// [`ClusterList::narrow`].
     const WIDE: bool = true;
     /// What is loaded of the targets before their neighbours are visited.
     type Target<L: Lanes>: Copy;

@@ -3,11 +3,11 @@
 //! The midpoint rule for the way w = u(n+1) - u(n) of each node,
 //!   2 M (w / dt² - v(n) / dt) = f(u(n), w) + load,   v(n+1) = 2 w / dt - v(n),
 //! with the stresses P = F S, F that of the middle and S that of Green's strain E(n) + kappa (E(n+1) - E(n)): turning
-//! does not strain, these stresses keep angular momentum, and a St. Venant-Kirchhoff material with kappa = 1/2 keeps its energy (J.
-//! C. Simo and N. Tarnow, The discrete energy-momentum method, Zeitschrift für angewandte Mathematik und Physik 43,
-//! 1992; for small strains that is Newmark's method, beta = 1/4 and gamma = 1/2). kappa = 1/2 + theta is a viscosity of
-//! theta dt times the stiffness: a mode of the frequency omega loses the part theta (omega dt)² of its energy in a
-//! step where omega dt is small, and the fastest are multiplied by -(1 - 2 theta) / (1 + 2 theta).
+//! does not strain, these stresses keep angular momentum, and a St. Venant-Kirchhoff material with kappa = 1/2 keeps
+//! its energy (J. C. Simo and N. Tarnow, The discrete energy-momentum method, Zeitschrift für angewandte Mathematik
+//! und Physik 43, 1992; for small strains that is Newmark's method, beta = 1/4 and gamma = 1/2). kappa = 1/2 + theta
+//! is a viscosity of theta dt times the stiffness: a mode of the frequency omega loses the part theta (omega dt)² of
+//! its energy in a step where omega dt is small, and the fastest are multiplied by -(1 - 2 theta) / (1 + 2 theta).
 //!
 //! Newton's method, whose matrix a sparse Cholesky factorisation solves: 2 M / dt² makes it definite. Contacts act as
 //! they are in the middle of the step without stresses, and limit it.
