@@ -272,7 +272,7 @@ fn tell(scene: &Scene, out: &Path, (report, error): run::Ended) -> ExitCode {
     if !finished && FOLDERS.iter().any(|folder| out.join(folder).join(MANIFEST).exists()) {
         say::tell(format_args!("halfstep resume '{}' goes on from the last checkpoint", out.display()));
     }
-    let remarked = halfstep::remarks::outcome(&report);
+    let remarked = halfstep::remarks::outcome(scene, &report);
     if !remarked.is_empty() {
         say::warn(format_args!("warning: {}", remarked.join("; ")));
     }

@@ -104,7 +104,7 @@ pub(crate) fn end(
     recorder.finish(&mut report);
     let external: Vec<Name> = external.iter().map(|(name, _)| *name).collect();
     let mut error = conclude(result, scene, clock, &external, &mut report);
-    let remarked = remarks::outcome(&report);
+    let remarked = remarks::outcome(scene, &report);
     remarked.iter().for_each(|warning| tracing::warn!("{warning}"));
     report.warnings.extend(remarked);
     if let Some(folder) = folder {

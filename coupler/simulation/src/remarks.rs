@@ -41,7 +41,6 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     bodies::standing(scene, layout, &bodies, &mut all);
     contacts::overlaps(scene, &mut all);
     contacts::unsaid(scene, &mut all);
-    contacts::counted_as_fluid(scene, &mut all);
     clamp_faces::clamp_faces(scene, &mut all);
     shapes::sizes(scene, placed, &mut all);
     shapes::nodal(scene, placed, &mut all);

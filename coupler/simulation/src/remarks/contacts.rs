@@ -1,8 +1,7 @@
-//! Remarks on what touches: overlaps at the start, pairs of solids of which the scene says nothing, and forces that
-//! hold those of contacts.
+//! Remarks on what touches: overlaps at the start, and pairs of solids of which the scene says nothing.
 
 use halfstep_scene::geometry::Surface;
-use halfstep_scene::{BodyQuantity, Geometry, Phase, ProbeKind, Scene, Shape};
+use halfstep_scene::{Geometry, Phase, Scene, Shape};
 
 /// Part of the spacing that surfaces may lie in each other.
 const OVERLAP: f64 = 1e-3;
@@ -112,26 +111,5 @@ pub(super) fn unsaid(scene: &Scene, all: &mut Vec<String>) {
                  with solids = [\"{a}\", \"{b}\"] says how the two touch)"
             ));
         }
-    }
-}
-
-/// Forces of the fluid on a solid that another one touches are measured together with the contact.
-pub(super) fn counted_as_fluid(scene: &Scene, all: &mut Vec<String>) {
-    let contacts = scene.contacts();
-    let of_fluid = |kind: &ProbeKind| match kind {
-        ProbeKind::Force { .. } | ProbeKind::Moment { .. } => true,
-        ProbeKind::Body { quantity, .. } => matches!(quantity, BodyQuantity::Force | BodyQuantity::Moment),
-        _ => false,
-    };
-    for probe in scene.probes.iter().filter(|probe| of_fluid(&probe.kind)) {
-        let Some(solid) = probe.solid else { continue };
-        let Some(contact) = contacts.iter().find(|contact| contact.solids.contains(&solid)) else { continue };
-        let [a, b] = contact.solids;
-        let other = &scene.solids[if a == solid { b } else { a }].name;
-        all.push(format!(
-            "probe `{}`: the force on `{}` holds that of its contact with the solid `{other}`, too (`touch = false` in \
-             [[contact]] where the two cannot meet)",
-            probe.name, scene.solids[solid].name
-        ));
     }
 }

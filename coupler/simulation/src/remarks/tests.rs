@@ -100,16 +100,6 @@ fn two_solids_whose_own_bodies_rub_and_that_do_not() {
 }
 
 #[test]
-fn a_force_that_holds_a_contact_is_named() {
-    let probe = "[[probe]]\nname = \"push\"\nkind = \"force\"\nsolid = \"a\"\n";
-    let found = rigid(["a", "b"], [0.2, 0.0], &format!("[[contact]]\nsolids = [\"a\", \"b\"]\n{probe}"));
-    let text = "probe `push`: the force on `a` holds that of its contact with the solid `b`, too";
-    assert!(found.len() == 1 && found[0].starts_with(text), "{found:?}");
-    let apart = format!("[[contact]]\nsolids = [\"a\", \"b\"]\ntouch = false\n{probe}");
-    assert_eq!(rigid(["a", "b"], [0.2, 0.0], &apart), [""; 0]);
-}
-
-#[test]
 fn a_rigid_body_in_the_nodal_lattice_lacks_half_a_spacing() {
     let found = rigid(["a", "a"], [0.2, 0.0], "numerics.lattice = \"nodal\"\n");
     let lacks = found.iter().filter(|text| text.contains("has 81 % of the mass that its size asks for"));
