@@ -144,7 +144,7 @@ fn fluid_between_moving_walls() {
 #[test]
 fn viscous_fluid() {
     assert_eq!(alone(&shipped("taylor-green", &[])), 0);
-    let overrides = ["resolution=0.0028575", "fluid.viscosity=1", "effects.viscosity=on"];
+    let overrides = ["resolution=0.002286", "fluid.viscosity=1", "effects.viscosity=on"];
     assert_eq!(alone(&shipped("dam-break", &overrides)), 0);
 }
 
