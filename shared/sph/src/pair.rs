@@ -65,7 +65,7 @@ impl<const D: usize, W: PairLaw<D>> PairLaw<D> for Narrow<W> {
     }
 }
 
-/// Sums of several targets, which are stored by fours; see [`pair_sum`](crate::pair_sum).
+/// Sums of several targets, which are stored by fours; see [`pair_sum`].
 pub trait PairSum<L>: Copy + Send {
     /// The sums of four targets.
     type Four: Copy + Send;
