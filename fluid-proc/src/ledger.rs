@@ -40,12 +40,6 @@ struct Power<L = Lane> {
 
 pair_sum!(Power {} { given, walls });
 
-impl<L: Lanes> Default for Power<L> {
-    fn default() -> Self {
-        Self { given: L::ZERO, walls: L::ZERO }
-    }
-}
-
 /// Pressure and continuity as a share of a pair.
 #[derive(Clone, Copy, Debug)]
 struct Pressure;

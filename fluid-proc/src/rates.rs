@@ -142,12 +142,6 @@ pub struct RateSum<const D: usize, L = Lane> {
     pub density_rate: L,
 }
 
-impl<L: Lanes, const D: usize> Default for RateSum<D, L> {
-    fn default() -> Self {
-        Self { acceleration: [L::ZERO; D], density_rate: L::ZERO }
-    }
-}
-
 pair_sum!(RateSum { D } { acceleration, density_rate });
 
 impl<const D: usize> RateSum<D> {

@@ -194,12 +194,6 @@ pub struct WallSum<const D: usize, L = Lane> {
 
 pair_sum!(WallSum { D } { extrapolated, velocity, lever });
 
-impl<L: Lanes, const D: usize> Default for WallSum<D, L> {
-    fn default() -> Self {
-        Self { extrapolated: ExtrapolationSum::default(), velocity: [L::ZERO; D], lever: [L::ZERO; D] }
-    }
-}
-
 /// The law of the pass over wall particles: the pressure's extrapolation, and the fluid's velocity with the same
 /// weights.
 pub struct WallLaw<'a, K, const D: usize> {

@@ -316,12 +316,6 @@ pub(crate) fn repulsion(pressure_wave_speed: f64, spacing: f64) -> f64 {
 struct WallForce<const D: usize, L = Lane>([L; D]);
 pair_sum!(WallForce { D } { 0 });
 
-impl<L: Lanes, const D: usize> Default for WallForce<D, L> {
-    fn default() -> Self {
-        Self([L::ZERO; D])
-    }
-}
-
 /// The walls push the solid.
 struct Push<'a, K, const D: usize> {
     kernel: K,
@@ -401,12 +395,6 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for Push<'_, K, D> {
 #[derive(Clone, Copy)]
 struct Power<L = Lane>(L);
 pair_sum!(Power {} { 0 });
-
-impl<L: Lanes> Default for Power<L> {
-    fn default() -> Self {
-        Self(L::ZERO)
-    }
-}
 
 /// The power of [`Push`] that comes from the walls' motion.
 struct PushPower<'a, K, const D: usize>(Push<'a, K, D>);

@@ -137,12 +137,6 @@ struct OrderSum<const D: usize, L = Lane> {
 
 pair_sum!(OrderSum { D } { crowd, moment });
 
-impl<L: Lanes, const D: usize> Default for OrderSum<D, L> {
-    fn default() -> Self {
-        Self { crowd: [L::ZERO; D], moment: [[L::ZERO; D]; D] }
-    }
-}
-
 impl<const D: usize> OrderSum<D> {
     // Inlined, its scalar arithmetic would break up the vectors of the loop before it.
     #[inline(never)]
@@ -197,13 +191,7 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for OrderLaw<'_, K, D> {
 /// Least det M within the kernel's support of several particles.
 #[derive(Clone, Copy, Debug)]
 struct LeastSum<L = Lane>(L);
-pair_sum!(LeastSum {} { 0 });
-
-impl<L: Lanes> Default for LeastSum<L> {
-    fn default() -> Self {
-        Self(L::splat(FAR))
-    }
-}
+pair_sum!(LeastSum {} { 0 } from L::splat(FAR));
 
 /// The law of the second pass, over the fluid.
 struct LeastLaw<'a, K, const D: usize> {

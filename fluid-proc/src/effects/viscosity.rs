@@ -24,12 +24,6 @@ pub struct StressTerm<const D: usize>(pub Vec<[[f64; D]; D]>);
 pub struct VelocityGradient<const D: usize, L = Lane>(pub [[L; D]; D]);
 pair_sum!(VelocityGradient { D } { 0 });
 
-impl<L: Lanes, const D: usize> Default for VelocityGradient<D, L> {
-    fn default() -> Self {
-        Self([[L::ZERO; D]; D])
-    }
-}
-
 /// The law of the first pass.
 pub struct GradientLaw<'a, K, const D: usize> {
     /// Kernel.

@@ -44,12 +44,6 @@ struct Target<L, const D: usize> {
 struct Sum<const D: usize, L = Lane>([L; D]);
 pair_sum!(Sum { D } { 0 });
 
-impl<L: Lanes, const D: usize> Default for Sum<D, L> {
-    fn default() -> Self {
-        Self([L::ZERO; D])
-    }
-}
-
 impl<K: Kernel<D>, const D: usize> PairLaw<D> for Law<'_, K, D> {
     type Target<L: Lanes> = Target<L, D>;
     type Sum<L: Lanes> = Sum<D, L>;

@@ -46,7 +46,7 @@ pub use thin_plate::thin_plate_screen;
 use halfstep_scene::geometry::Plate;
 use halfstep_scene::{Decision, Derived, EffectName, KernelName, Phase, Scene, Treatment};
 use halfstep_sph::extrapolation::ExtrapolationSum;
-use halfstep_sph::lane::{Isa, LANES, Lane, Lanes};
+use halfstep_sph::lane::{Isa, LANES, Lane};
 use halfstep_sph::neighbours::ClusterList;
 use halfstep_sph::pair::pair_sum;
 use halfstep_sph::state_equation::StateEquation;
@@ -131,12 +131,6 @@ pub struct FluidSum<const D: usize, L = Lane> {
     pub density_rate: L,
 }
 pair_sum!(FluidSum { D } { acceleration, density_rate });
-
-impl<L: Lanes, const D: usize> Default for FluidSum<D, L> {
-    fn default() -> Self {
-        Self { acceleration: [L::ZERO; D], density_rate: L::ZERO }
-    }
-}
 
 /// Force of the fluid on several solid particles, N (2D: N/m).
 pub type SolidForce<const D: usize, L = Lane> = crate::phase_blind::Vector<D, L>;

@@ -18,12 +18,6 @@ use halfstep_sph::with_kernel;
 pub struct Vector<const D: usize, L = Lane>(pub [L; D]);
 pair_sum!(Vector { D } { 0 });
 
-impl<L: Lanes, const D: usize> Default for Vector<D, L> {
-    fn default() -> Self {
-        Self([L::ZERO; D])
-    }
-}
-
 /// What the fluid adds to the rates of several solid particles.
 #[derive(Clone, Copy, Debug)]
 pub struct SolidRates<const D: usize, L = Lane> {
@@ -34,12 +28,6 @@ pub struct SolidRates<const D: usize, L = Lane> {
 }
 
 pair_sum!(SolidRates { D } { density_rate, gradient });
-
-impl<L: Lanes, const D: usize> Default for SolidRates<D, L> {
-    fn default() -> Self {
-        Self { density_rate: L::ZERO, gradient: [[L::ZERO; D]; D] }
-    }
-}
 
 /// Nothing to prepare: each particle shows its own density and stress.
 pub(super) fn show_stress<const D: usize>(_: &mut Interface<D>) {}

@@ -22,7 +22,7 @@ pub struct Extrapolation<'a, K, const D: usize> {
 }
 
 /// Sums for several boundary particles: four where they are stored.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct ExtrapolationSum<L = Lane> {
     weight: L,
     pressure: L,

@@ -5,11 +5,15 @@
 //! the targets beside it have as neighbours adds zeros to a target's sum, so neither do the bits depend on how many are
 //! computed at once.
 
-use crate::columns::Vectors;
-use crate::kernel::Kernel;
+mod fixed;
+mod sum;
+
 use crate::lane::{Arch, Eight, Fused, Isa, LANES, Lane, Lanes, Unfused};
 use crate::neighbours::{CHUNK_FOURS, ClusterList};
+pub use crate::pair_sum;
+pub use fixed::{FixedLaw, FixedPairs, fixed_pass};
 use rayon::prelude::*;
+pub use sum::PairSum;
 
 /// A sum over neighbours.
 pub trait PairLaw<const D: usize>: Sync {
@@ -64,62 +68,6 @@ impl<const D: usize, W: PairLaw<D>> PairLaw<D> for Narrow<W> {
         self.0.add::<A, L>(i, j, dx, r2, sum);
     }
 }
-
-/// Sums of several targets, which are stored by fours; see [`pair_sum`].
-pub trait PairSum<L>: Copy + Send {
-    /// The sums of four targets.
-    type Four: Copy + Send;
-    /// The k-th four.
-    fn four(&self, k: usize) -> Self::Four;
-    /// From fours.
-    fn of_fours(four: impl Fn(usize) -> Self::Four) -> Self;
-}
-
-impl<L: Lanes> PairSum<L> for L {
-    type Four = Lane;
-    #[inline(always)]
-    fn four(&self, k: usize) -> Lane {
-        Lanes::four(*self, k)
-    }
-    #[inline(always)]
-    fn of_fours(four: impl Fn(usize) -> Lane) -> Self {
-        <L as Lanes>::of_fours(four)
-    }
-}
-
-impl<L, S: PairSum<L>, const N: usize> PairSum<L> for [S; N] {
-    type Four = [S::Four; N];
-    #[inline(always)]
-    fn four(&self, k: usize) -> Self::Four {
-        std::array::from_fn(|n| self[n].four(k))
-    }
-    #[inline(always)]
-    fn of_fours(four: impl Fn(usize) -> Self::Four) -> Self {
-        std::array::from_fn(|n| S::of_fours(|k| four(k)[n]))
-    }
-}
-
-/// Makes a structure a [`PairSum`](crate::pair::PairSum): `pair_sum!(Name { constants } { fields });` for a
-/// `Name<constants, L>` whose fields are sums themselves, `L` or arrays of it.
-#[macro_export]
-macro_rules! pair_sum {
-    ($name:ident { $($constant:ident),* } { $($field:tt),+ }) => {
-        impl<L: $crate::lane::Lanes, $(const $constant: usize),*> $crate::pair::PairSum<L>
-            for $name<$($constant,)* L>
-        {
-            type Four = $name<$($constant,)* $crate::lane::Lane>;
-            #[inline(always)]
-            fn four(&self, k: usize) -> Self::Four {
-                $name { $($field: $crate::pair::PairSum::<L>::four(&self.$field, k)),+ }
-            }
-            #[inline(always)]
-            fn of_fours(four: impl Fn(usize) -> Self::Four) -> Self {
-                $name { $($field: $crate::pair::PairSum::<L>::of_fours(|k| four(k).$field)),+ }
-            }
-        }
-    };
-}
-pub use pair_sum;
 
 /// What becomes of the sum over the neighbours of four targets.
 trait Sink<F>: Copy + Sync {
@@ -207,187 +155,6 @@ impl<const D: usize, W: PairLaw<D>> Work<D> for (&W, &ClusterList) {
         }
         *sum = std::hint::black_box(total);
     }
-}
-
-/// A sum over neighbours that stay where they are to each other: what depends on their distance alone is computed once.
-pub trait FixedLaw<const D: usize>: Sync {
-    /// What is loaded of the targets before their neighbours are visited.
-    type Target<L: Lanes>: Copy;
-    /// What is summed up for the targets.
-    type Sum<L: Lanes>: PairSum<L, Four = Self::Sum<Lane>> + Default;
-
-    /// Loads the targets from `slot` on.
-    fn target<L: Lanes>(&self, slot: usize) -> Self::Target<L>;
-    /// Adds the contribution of source `j`: `dx` = x_i - x_j, `slope` = F(r).
-    fn add<A: Arch, L: Lanes>(
-        &self,
-        target: &Self::Target<L>,
-        j: usize,
-        dx: [L; D],
-        slope: L,
-        sum: &mut Self::Sum<L>,
-    );
-}
-
-/// Positions that do not change, with their neighbours and the kernel's slopes F between them.
-pub struct FixedPairs<const D: usize> {
-    position: Vectors<D>,
-    list: ClusterList,
-    /// By chunk, in the list's order: as many fours for each source as a cluster has.
-    slopes: Vec<Vec<Lane>>,
-}
-
-/// Where the slope of a pair is kept.
-struct Place {
-    chunk: usize,
-    four: usize,
-    lane: usize,
-}
-
-impl<const D: usize> FixedPairs<D> {
-    /// Of a narrow list among these positions.
-    pub fn new<K: Kernel<D>>(isa: Isa, kernel: K, position: Vectors<D>, list: ClusterList) -> Self {
-        let mut pairs = Self { position, list, slopes: Vec::new() };
-        let fused = isa.min(Isa::detect()) != Isa::Baseline;
-        let fours = pairs.list.width() / LANES;
-        for (c, chunk) in pairs.list.chunks().iter().enumerate() {
-            let clusters = pairs.list.clusters_of(c);
-            let slopes = clusters.enumerate().flat_map(|(k, cluster)| {
-                let pairs = &pairs;
-                let all = chunk.of(k).iter().flat_map(move |&j| (0..fours).map(move |four| (four, j)));
-                all.map(move |(four, j)| {
-                    let slot = cluster * pairs.list.width() + four * LANES;
-                    if fused {
-                        pairs.slope::<K, Fused>(kernel, slot, j)
-                    } else {
-                        pairs.slope::<K, Unfused>(kernel, slot, j)
-                    }
-                })
-            });
-            let slopes = slopes.collect();
-            pairs.slopes.push(slopes);
-        }
-        pairs
-    }
-
-    /// Takes the pairs apart, by their slots, for which `apart` holds: their slopes become zero.
-    pub fn part(&mut self, apart: impl Fn(usize, usize) -> bool) {
-        let Self { list, slopes, .. } = self;
-        let width = list.width();
-        for (c, (chunk, slopes)) in list.chunks().iter().zip(slopes).enumerate() {
-            let clusters = list.clusters_of(c).enumerate();
-            let pairs = clusters.flat_map(|(k, cluster)| chunk.of(k).iter().map(move |&j| (cluster, j)));
-            for ((cluster, j), fours) in pairs.zip(slopes.chunks_mut(width / LANES)) {
-                for lane in 0..width {
-                    if apart(cluster * width + lane, j as usize) {
-                        fours[lane / LANES].0[lane % LANES] = 0.0;
-                    }
-                }
-            }
-        }
-    }
-
-    /// Where the slope of a pair is kept, by its slots.
-    fn place(&self, i: usize, j: usize) -> Option<Place> {
-        let (chunk, neighbours, first) = self.list.place(i);
-        let entry = first + neighbours.iter().position(|&k| k as usize == j)?;
-        let (four, lane) = self.four_of(entry, i);
-        Some(Place { chunk, four, lane })
-    }
-
-    /// The four, and the number in it, that keeps the slope of an entry of the list for a slot.
-    fn four_of(&self, entry: usize, slot: usize) -> (usize, usize) {
-        let width = self.list.width();
-        (entry * (width / LANES) + slot % width / LANES, slot % LANES)
-    }
-
-    /// Cuts a pair, by its slots: it has no slope from now on, whichever of the two asks.
-    pub fn cut(&mut self, i: usize, j: usize) {
-        for (i, j) in [(i, j), (j, i)] {
-            if let Some(Place { chunk, four, lane }) = self.place(i, j) {
-                self.slopes[chunk][four].0[lane] = 0.0;
-            }
-        }
-    }
-
-    /// Slots of the neighbours that a slot is not cut off from, in the list's order, with the slopes F.
-    pub fn neighbours(&self, slot: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let (chunk, neighbours, first) = self.list.place(slot);
-        let slopes = &self.slopes[chunk];
-        let pairs = neighbours.iter().enumerate().map(move |(n, &j)| {
-            let (four, lane) = self.four_of(first + n, slot);
-            (j as usize, slopes[four].0[lane])
-        });
-        pairs.filter(move |&(j, slope)| j != slot && slope != 0.0)
-    }
-
-    /// The positions.
-    pub fn position(&self) -> &Vectors<D> {
-        &self.position
-    }
-
-    /// The list.
-    pub fn list(&self) -> &ClusterList {
-        &self.list
-    }
-
-    #[inline(always)]
-    fn apart<L: Lanes>(&self, xi: &[L; D], j: usize) -> [L; D] {
-        std::array::from_fn(|d| xi[d] - L::splat(self.position[d][j]))
-    }
-
-    #[inline(always)]
-    fn at<L: Lanes>(&self, slot: usize) -> [L; D] {
-        std::array::from_fn(|d| L::load(&self.position[d], slot))
-    }
-
-    fn slope<K: Kernel<D>, A: Arch>(&self, kernel: K, slot: usize, j: u32) -> Lane {
-        let dx = self.apart::<Lane>(&self.at(slot), j as usize);
-        let r2 = dx.iter().fold(Lane::ZERO, |r2, &dx| A::mul_add(dx, dx, r2));
-        kernel.gradient_over_r::<A, Lane>(distance(r2, kernel.smoothing_length()))
-    }
-}
-
-struct OverFixed<'a, W, const D: usize>(&'a W, &'a FixedPairs<D>);
-
-impl<W, const D: usize> Clone for OverFixed<'_, W, D> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-impl<W, const D: usize> Copy for OverFixed<'_, W, D> {}
-
-impl<const D: usize, W: FixedLaw<D>> Work<D> for OverFixed<'_, W, D> {
-    // Eight of one row have nearly as long a list as twice four, and eight slopes to load for each entry.
-    const WIDE: bool = false;
-    type Sum<L: Lanes> = W::Sum<L>;
-    fn list(&self) -> &ClusterList {
-        &self.1.list
-    }
-    #[inline(always)]
-    fn gather<A: Arch, L: Lanes>(self, chunk: usize, k: usize, slot: usize, sum: &mut W::Sum<L>) {
-        let Self(law, pairs) = self;
-        let (neighbours, first) = pairs.list.chunks()[chunk].range(k);
-        let target = std::hint::black_box(law.target::<L>(slot));
-        let xi = std::hint::black_box(pairs.at::<L>(slot));
-        let fours = L::TARGETS / LANES;
-        let mut total = *sum;
-        for (&j, slopes) in neighbours.iter().zip(pairs.slopes[chunk][first * fours..].chunks_exact(fours)) {
-            let dx = pairs.apart(&xi, j as usize);
-            law.add::<A, L>(&target, j as usize, dx, L::of_fours(|k| slopes[k]), &mut total);
-        }
-        *sum = std::hint::black_box(total);
-    }
-}
-
-/// Runs a law over all of fixed pairs; `sums` has one entry for each four targets.
-pub fn fixed_pass<const D: usize, W: FixedLaw<D>>(
-    isa: Isa,
-    law: &W,
-    pairs: &FixedPairs<D>,
-    sums: &mut [W::Sum<Lane>],
-) {
-    run_chunks(isa, OverFixed(law, pairs), Replace(|_, sum: &W::Sum<Lane>| *sum), sums);
 }
 
 /// One law over two sets of neighbours; the second goes on from the sum of the first.

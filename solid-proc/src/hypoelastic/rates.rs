@@ -128,12 +128,6 @@ pub(super) struct SolidSum<const D: usize, L = Lane> {
 
 pair_sum!(SolidSum { D } { acceleration, gradient, moment });
 
-impl<L: Lanes, const D: usize> Default for SolidSum<D, L> {
-    fn default() -> Self {
-        Self { acceleration: [L::ZERO; D], gradient: [[L::ZERO; D]; D], moment: [[L::ZERO; D]; D] }
-    }
-}
-
 /// The law.
 pub(super) struct SolidLaw<'a, K, T, M, const D: usize> {
     pub kernel: K,

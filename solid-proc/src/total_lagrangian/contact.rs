@@ -368,12 +368,6 @@ struct Repulsion<const D: usize, L = Lane> {
 
 pair_sum!(Repulsion { D } { force, square });
 
-impl<L: Lanes, const D: usize> Default for Repulsion<D, L> {
-    fn default() -> Self {
-        Self { force: [L::ZERO; D], square: L::ZERO }
-    }
-}
-
 struct Repel<'a, const D: usize> {
     position: &'a Vectors<D>,
     body: &'a [f64],

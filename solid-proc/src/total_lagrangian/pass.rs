@@ -41,12 +41,6 @@ pub(super) struct Moment {
 pub(super) struct MomentSum<const D: usize, L = Lane>(pub [[L; D]; D]);
 pair_sum!(MomentSum { D } { 0 });
 
-impl<L: Lanes, const D: usize> Default for MomentSum<D, L> {
-    fn default() -> Self {
-        Self([[L::ZERO; D]; D])
-    }
-}
-
 impl<const D: usize> FixedLaw<D> for Moment {
     type Target<L: Lanes> = ();
     type Sum<L: Lanes> = MomentSum<D, L>;
@@ -82,12 +76,6 @@ pub(super) struct DeformationSum<const D: usize, L = Lane> {
 }
 
 pair_sum!(DeformationSum { D } { gradient, square });
-
-impl<L: Lanes, const D: usize> Default for DeformationSum<D, L> {
-    fn default() -> Self {
-        Self { gradient: [[L::ZERO; D]; D], square: L::ZERO }
-    }
-}
 
 #[derive(Clone, Copy)]
 pub(super) struct Displaced<L, const D: usize> {
@@ -246,12 +234,6 @@ impl<V: Damping<D>, const D: usize> FixedLaw<D> for Viscosity<'_, V, D> {
 #[derive(Clone, Copy)]
 pub(super) struct Acceleration<const D: usize, L = Lane>(pub [L; D]);
 pair_sum!(Acceleration { D } { 0 });
-
-impl<L: Lanes, const D: usize> Default for Acceleration<D, L> {
-    fn default() -> Self {
-        Self([L::ZERO; D])
-    }
-}
 
 impl<V: Damping<D>, const D: usize> FixedLaw<D> for Momentum<'_, V, D> {
     type Target<L: Lanes> = Stressed<V::Own<L>, L, D>;

@@ -29,12 +29,6 @@ const PART: f64 = 0.9 / STABLE;
 struct Slopes<L = Lane>(L);
 pair_sum!(Slopes {} { 0 });
 
-impl<L: Lanes> Default for Slopes<L> {
-    fn default() -> Self {
-        Self(L::ZERO)
-    }
-}
-
 struct SlopeSum {
     /// V0.
     volume: f64,

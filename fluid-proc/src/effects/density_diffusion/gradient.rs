@@ -20,12 +20,6 @@ pub struct GradientSum<const D: usize, L = Lane> {
 
 pair_sum!(GradientSum { D } { raw, moment });
 
-impl<L: Lanes, const D: usize> Default for GradientSum<D, L> {
-    fn default() -> Self {
-        Self { raw: [L::ZERO; D], moment: [[L::ZERO; D]; D] }
-    }
-}
-
 /// The law of the pass.
 pub struct GradientLaw<'a, K, const D: usize> {
     /// Kernel.
