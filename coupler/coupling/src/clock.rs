@@ -39,6 +39,16 @@ pub struct Limit {
     pub dt: f64,
 }
 
+/// Says that a fixed time step, s, is above a limit, s, of somebody.
+pub fn above_limit(dt: f64, whose: &str, limit: f64) -> String {
+    format!("time_step = {dt:.4e} s is above the {whose}'s stability limit of {limit:.4e} s")
+}
+
+/// The same with what keeps to it.
+pub fn times_above_limit(dt: f64, whose: &str, limit: f64) -> String {
+    format!("{}, {:.2} times (time_step = \"auto\" keeps to it)", above_limit(dt, whose, limit), dt / limit)
+}
+
 #[derive(Clone, Debug)]
 struct Periodic {
     interval: f64,

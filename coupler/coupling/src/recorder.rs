@@ -1,6 +1,6 @@
 //! What a run writes down as it goes: probe log, statistics, progress.
 
-use crate::clock::Tick;
+use crate::clock::{Tick, times_above_limit};
 use crate::energy::{self, Account, EnergyBalance};
 use crate::error::RunError;
 use crate::roles::measured_by;
@@ -202,13 +202,7 @@ impl Recorder {
     pub fn note(&mut self, tick: &Tick, measured: &[Measured<'_>]) -> Result<(), OutputError> {
         self.time = tick.time;
         if let (Some(limit), Some(dt)) = (tick.exceeded, tick.dt) {
-            let warning = format!(
-                "time_step = {dt:.4e} s is above the {}'s stability limit of {:.4e} s, {:.2} times (time_step = \
-                 \"auto\" keeps to it)",
-                limit.participant,
-                limit.dt,
-                dt / limit.dt
-            );
+            let warning = times_above_limit(dt, limit.participant.as_str(), limit.dt);
             tracing::warn!("{warning}");
             self.bar.suspend(|| say::warn(format_args!("warning: {warning}")));
         }

@@ -1,6 +1,6 @@
 //! What to change in a scene whose run diverged.
 
-use halfstep_coupling::clock::Clock;
+use halfstep_coupling::clock::{Clock, above_limit};
 use halfstep_scene::{Scene, TimeStep};
 use halfstep_sph::Phase;
 use halfstep_wire::Name;
@@ -16,11 +16,8 @@ pub(crate) fn advice(diverged: &Diverged, scene: &Scene, clock: &Clock, external
     if let (TimeStep::Fixed(dt), Some(limit)) =
         (scene.time_step, exceeded.max_by_key(|limit| limit.participant == name))
     {
-        return format!(
-            "time_step = {dt:.4e} s is above the {}'s stability limit of {:.4e} s: choose a smaller one or \
-             time_step = \"auto\"",
-            limit.participant, limit.dt
-        );
+        let above = above_limit(dt, limit.participant.as_str(), limit.dt);
+        return format!("{above}: choose a smaller one or time_step = \"auto\"");
     }
     if external.contains(&name) {
         return format!("the {name} is not this program's: look at what its process does");

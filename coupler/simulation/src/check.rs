@@ -4,6 +4,7 @@ use crate::forecast::{self, Forecast, megabytes};
 use crate::remarks::Placed;
 use crate::step_cost::step_cost;
 use crate::{effects, remarks};
+use halfstep_coupling::clock::times_above_limit;
 use halfstep_coupling::roles::{self, ContactAsks};
 use halfstep_output::run_json::EffectReport;
 use halfstep_scene::geometry::{self, Counts};
@@ -168,14 +169,7 @@ fn named(scene: &Scene, body: &scene::Body) -> Body {
 fn too_long(scene: &Scene, limits: &[(String, f64)]) -> Vec<String> {
     let TimeStep::Fixed(dt) = scene.time_step else { return Vec::new() };
     let above = limits.iter().filter(|(_, limit)| dt > limit * (1.0 + 1e-9));
-    let say = |(name, limit): &(String, f64)| {
-        format!(
-            "time_step = {dt:.4e} s is above the {name}'s stability limit of {limit:.4e} s, {:.2} times (time_step = \
-             \"auto\" keeps to it)",
-            dt / limit
-        )
-    };
-    above.map(say).collect()
+    above.map(|(name, limit)| times_above_limit(dt, name, *limit)).collect()
 }
 
 /// Part of the smallest side of two solids into which the weight of the lighter may press the other.
@@ -185,19 +179,14 @@ const SOFT: f64 = 0.1;
 fn too_soft(scene: &Scene, contact: &ContactAsks) -> Vec<String> {
     let gravity = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
     let soft = |(solids, stiffness): &([usize; 2], f64)| {
-        let of = |solid: usize| {
-            let own = scene.shapes.iter().filter(move |s| s.phase == Phase::Solid && s.solid == Some(solid));
-            own.map(move |shape| {
-                let around = geometry::bounding_box(shape, scene);
-                let sides = [0, 1].map(|d| around.max[d] - around.min[d]);
-                let density = shape.density.unwrap_or(scene.solids[solid].density);
-                // What rests on the longer side is as high as the shorter one.
-                (density * gravity * sides[0].min(sides[1]), sides[0].min(sides[1]))
-            })
+        // What rests on the longer side is as high as the shorter one.
+        let pressure = |(shape, side): (&scene::Shape, f64)| {
+            let own = shape.solid.map_or(f64::INFINITY, |solid| scene.solids[solid].density);
+            shape.density.unwrap_or(own) * gravity * side
         };
-        let lightest = solids.map(|k| of(k).map(|(pressure, _)| pressure).fold(f64::INFINITY, f64::min));
-        let smallest = solids.iter().flat_map(|&k| of(k)).map(|(_, side)| side).fold(f64::INFINITY, f64::min);
-        let depth = lightest[0].min(lightest[1]) / stiffness;
+        let lightest = scene.shorter_sides(*solids).map(pressure).fold(f64::INFINITY, f64::min);
+        let smallest = scene.smallest_side(*solids);
+        let depth = lightest / stiffness;
         let [a, b] = solids.map(|k| &scene.solids[k].name);
         (depth > SOFT * smallest).then(|| {
             format!(
@@ -216,9 +205,8 @@ fn pairs(scene: &Scene) -> Option<String> {
     let names = |[a, b]: [usize; 2]| format!("{} and {}", scene.solids[a].name, scene.solids[b].name);
     let count = scene.solids.len();
     let all = (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b]));
-    let in_plane = scene.dimension == 2;
     let (touch, pass): (Vec<_>, Vec<_>) =
-        all.partition(|pair| in_plane && touching.iter().any(|contact| contact.solids == *pair));
+        all.partition(|pair| touching.iter().any(|contact| contact.solids == *pair));
     let say = |list: Vec<[usize; 2]>, what: &str| {
         let named: Vec<String> = list.into_iter().map(names).collect();
         (!named.is_empty()).then(|| format!("{} {what}", named.join(", ")))

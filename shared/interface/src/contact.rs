@@ -83,7 +83,7 @@ impl Contact {
     /// Between the solids of a scene; `None` where no two can touch.
     pub fn new(scene: &Scene) -> Option<Self> {
         let said = scene.contacts();
-        if said.is_empty() || scene.dimension != 2 {
+        if said.is_empty() {
             return None;
         }
         let of = |contact: &PairContact| Pair {

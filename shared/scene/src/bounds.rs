@@ -87,12 +87,8 @@ pub fn flow_speed(scene: &Scene) -> f64 {
     let spins = spins.flat_map(|(solid, keys)| {
         keys.bodies.iter().map(move |body| {
             let own = scene.shapes.iter().filter(|s| s.solid == Some(solid) && s.body() == body.name);
-            let boxes: Vec<_> = own.map(|s| geometry::bounding_box(s, scene)).collect();
-            let extent = |d: usize| {
-                let least = boxes.iter().map(|b| b.min[d]).fold(f64::INFINITY, f64::min);
-                boxes.iter().map(|b| b.max[d]).fold(f64::NEG_INFINITY, f64::max) - least
-            };
-            let across = [0, 1, 2].map(|d| if boxes.is_empty() { 0.0 } else { extent(d) });
+            let across = geometry::around(own.map(|s| geometry::bounding_box(s, scene)))
+                .map_or([0.0; 3], |b| std::array::from_fn(|d| b.max[d] - b.min[d]));
             length(&body.angular_velocity) * length(&across)
         })
     });

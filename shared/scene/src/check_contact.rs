@@ -18,7 +18,7 @@ impl Check<'_> {
         }
         let unknown = |contact: &PairContact| contact.stiffness.is_none();
         let Some(pair) = self.scene.contacts().into_iter().find(unknown) else { return };
-        if self.scene.dimension == 2 && flow_speed(self.scene) == 0.0 {
+        if flow_speed(self.scene) == 0.0 {
             let [a, b] = pair.solids.map(|solid| &self.scene.solids[solid].name);
             self.wrong(
                 "solid",

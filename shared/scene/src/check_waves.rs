@@ -33,12 +33,11 @@ impl Check<'_> {
         if self.report.has_any(&["resolution", "dimension", "shape"]) {
             return;
         }
-        let boxes = geometry::fluid_boxes(self.scene);
-        let least = boxes.iter().map(|b| b.min[0]).fold(f64::INFINITY, f64::min);
-        let largest = boxes.iter().map(|b| b.max[0]).fold(f64::NEG_INFINITY, f64::max);
+        let Some(water) = geometry::around(geometry::fluid_boxes(self.scene)) else { return };
+        let long = water.max[0] - water.min[0];
         for (index, shape) in self.scene.shapes.iter().enumerate() {
             let Some(makes) = shape.motion.as_ref().and_then(Motion::makes) else { continue };
-            if boxes.is_empty() || makes.stroke <= 0.5 * (largest - least) {
+            if makes.stroke <= 0.5 * long {
                 continue;
             }
             self.place(
@@ -46,8 +45,7 @@ impl Check<'_> {
                 format!(
                     "the paddle's stroke is {:.3} m, and the water {:.3} m long: at most half of it, since theory knows \
                      no tank; a lower `height` has a shorter stroke",
-                    makes.stroke,
-                    largest - least
+                    makes.stroke, long
                 ),
             );
         }

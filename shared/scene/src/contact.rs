@@ -1,7 +1,7 @@
 //! Contact between two solids: what `[[contact]]` says of a pair, and what holds where it says nothing.
 
 use crate::bounds::flow_speed;
-use crate::{Phase, Scene, geometry};
+use crate::{Phase, Scene, Shape, geometry};
 use serde::{Deserialize, Serialize};
 
 /// Contact of two solids, as a scene says it.
@@ -32,9 +32,9 @@ impl PairContact {
 const STIFFNESS_SPEED: f64 = 20.0;
 
 impl Scene {
-    /// Contact of each pair of solids that feel each other, in ascending order.
+    /// Contact of each pair of solids that feel each other, in ascending order; in space there is none.
     pub fn contacts(&self) -> Vec<PairContact> {
-        let count = self.solids.len();
+        let count = if self.dimension == 2 { self.solids.len() } else { 0 };
         let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b]));
         let of = |pair: [usize; 2]| {
             let said = self.pair_contacts.iter().find(|contact| contact.solids == pair);
@@ -47,16 +47,24 @@ impl Scene {
     /// speed U that the flow is expected to reach, and the smallest side l of a box around a shape of the two. It does
     /// not know the spacing.
     pub fn contact_stiffness(&self, solids: [usize; 2]) -> f64 {
-        let shapes = || {
-            let own = |shape: &&crate::Shape| shape.solid.is_some_and(|solid| solids.contains(&solid));
-            self.shapes.iter().filter(|shape| shape.phase == Phase::Solid).filter(own)
-        };
-        let sides = shapes().flat_map(|shape| {
-            let around = geometry::bounding_box(shape, self);
-            (0..self.dimension).map(move |d| around.max[d] - around.min[d])
-        });
-        let smallest = sides.fold(f64::INFINITY, f64::min);
         let density = solids.iter().map(|&k| self.lightest_density(k)).fold(f64::INFINITY, f64::min);
-        density * (STIFFNESS_SPEED * flow_speed(self)).powi(2) / smallest
+        density * (STIFFNESS_SPEED * flow_speed(self)).powi(2) / self.smallest_side(solids)
+    }
+
+    /// Shapes of two solids, each with the smallest side of the box around it, m.
+    pub fn shorter_sides(&self, solids: [usize; 2]) -> impl Iterator<Item = (&Shape, f64)> {
+        let own = move |shape: &&Shape| {
+            shape.phase == Phase::Solid && shape.solid.is_some_and(|solid| solids.contains(&solid))
+        };
+        self.shapes.iter().filter(own).map(|shape| {
+            let around = geometry::bounding_box(shape, self);
+            let sides = (0..self.dimension).map(|d| around.max[d] - around.min[d]);
+            (shape, sides.fold(f64::INFINITY, f64::min))
+        })
+    }
+
+    /// The smallest of them, m.
+    pub fn smallest_side(&self, solids: [usize; 2]) -> f64 {
+        self.shorter_sides(solids).map(|(_, side)| side).fold(f64::INFINITY, f64::min)
     }
 }

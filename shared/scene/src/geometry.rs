@@ -249,6 +249,14 @@ pub fn domain(scene: &Scene) -> Block {
     block
 }
 
+/// The box around boxes; `None` around none.
+pub fn around(boxes: impl IntoIterator<Item = Block>) -> Option<Block> {
+    boxes.into_iter().reduce(|a, b| Block {
+        min: std::array::from_fn(|axis| a.min[axis].min(b.min[axis])),
+        max: std::array::from_fn(|axis| a.max[axis].max(b.max[axis])),
+    })
+}
+
 /// The boxes around the shapes of fluid.
 pub fn fluid_boxes(scene: &Scene) -> Vec<Block> {
     let fluid = scene.shapes.iter().filter(|shape| shape.phase == Phase::Fluid);

@@ -1,9 +1,7 @@
 //! Remarks on settings that cannot act in their scene, or act the other way around.
 
+use super::water::{INSTANTS, depth};
 use halfstep_scene::{EffectName, Motion, ProbeKind, Scene, Switch, geometry};
-
-/// Instants of a run at which a motion is looked at.
-const INSTANTS: u32 = 1000;
 
 /// Part of a wave's amplitude from which on a beach takes nothing.
 const KEPT: f64 = 0.9;
@@ -16,7 +14,7 @@ pub(super) fn motions(scene: &Scene, all: &mut Vec<String>) {
         let around = geometry::bounding_box(shape, scene);
         let first = motion.at(0.0);
         let stays = (0..=INSTANTS).all(|k| {
-            let now = motion.at(end * f64::from(k) / f64::from(INSTANTS));
+            let now = motion.at(end * k as f64 / INSTANTS as f64);
             now.displacement == first.displacement && now.velocity == [0.0; 3] && now.turn == first.turn
         });
         if stays && motion.fastest(&around) > 0.0 {
@@ -68,9 +66,7 @@ pub(super) fn beach(scene: &Scene, all: &mut Vec<String>) {
         }
         return;
     };
-    let boxes = geometry::fluid_boxes(scene);
-    let level = boxes.iter().map(|b| b.max[1]).fold(f64::NEG_INFINITY, f64::max);
-    let depth = level - boxes.iter().map(|b| b.min[1]).fold(f64::INFINITY, f64::min);
+    let Some(depth) = depth(scene) else { return };
     let speed = (scene.gravity[1].abs() * depth).sqrt();
     let kept = (-beach.rate * (beach.to - beach.from).abs() / (3.0 * speed)).exp();
     if kept > KEPT {
@@ -98,15 +94,14 @@ pub(super) fn probes(scene: &Scene, all: &mut Vec<String>) {
         // Where things go is not known.
         return;
     }
-    let boxes: Vec<_> = scene.shapes.iter().map(|shape| geometry::bounding_box(shape, scene)).collect();
-    let low = |d: usize| boxes.iter().map(|b| b.min[d]).fold(f64::INFINITY, f64::min);
-    let high = |d: usize| boxes.iter().map(|b| b.max[d]).fold(f64::NEG_INFINITY, f64::max);
-    let beyond = |d: usize, x: f64| x < low(d) || x > high(d);
+    let boxes = scene.shapes.iter().map(|shape| geometry::bounding_box(shape, scene));
+    let Some(around) = geometry::around(boxes) else { return };
+    let beyond = |x: f64| x < around.min[0] || x > around.max[0];
     // Water may splash above everything.
-    let beside = |at: &[f64; 3]| beyond(0, at[0]) || at[1] < low(1);
+    let beside = |at: &[f64; 3]| beyond(at[0]) || at[1] < around.min[1];
     for probe in &scene.probes {
         let nothing = match &probe.kind {
-            ProbeKind::WaterLevel { x } => x.iter().any(|&x| beyond(0, x)),
+            ProbeKind::WaterLevel { x } => x.iter().any(|&x| beyond(x)),
             ProbeKind::Velocity { at } | ProbeKind::Pressure { at, to: None, shape: None } => beside(at),
             ProbeKind::Flux { from, to } => beside(from) && beside(to),
             _ => false,

@@ -53,11 +53,14 @@ pub(super) fn expected_speed(scene: &Scene, all: &mut Vec<String>) {
 /// Part of its depth by which the water may differ from what a wave maker is meant for.
 const DEPTH: f64 = 0.05;
 
+/// Depth of the water, m; `None` where there is none.
+pub(super) fn depth(scene: &Scene) -> Option<f64> {
+    geometry::around(geometry::fluid_boxes(scene)).map(|water| water.max[1] - water.min[1])
+}
+
 /// Wave makers for water of another depth.
 pub(super) fn wave_makers(scene: &Scene, all: &mut Vec<String>) {
-    let boxes = geometry::fluid_boxes(scene);
-    let level = boxes.iter().map(|b| b.max[1]).fold(f64::NEG_INFINITY, f64::max);
-    let lowest = boxes.iter().map(|b| b.min[1]).fold(f64::INFINITY, f64::min);
+    let depth = depth(scene);
     for shape in &scene.shapes {
         let Some(makes) = shape.motion.as_ref().and_then(Motion::makes) else { continue };
         if let Some(end) = makes.end.filter(|end| *end > scene.end_time) {
@@ -66,8 +69,8 @@ pub(super) fn wave_makers(scene: &Scene, all: &mut Vec<String>) {
                 shape.name, scene.end_time
             ));
         }
-        let depth = level - lowest;
-        if depth.is_finite() && (depth - makes.depth).abs() > DEPTH * makes.depth + 0.5 * scene.resolution {
+        let other = |d: &f64| (d - makes.depth).abs() > DEPTH * makes.depth + 0.5 * scene.resolution;
+        if let Some(depth) = depth.filter(other) {
             all.push(format!(
                 "`{}` makes waves for a depth of {} m, and the water is {} m deep: they have another height and length",
                 shape.name, makes.depth as f32, depth as f32
@@ -114,7 +117,7 @@ pub(super) fn walls_that_meet(scene: &Scene, all: &mut Vec<String>) {
 }
 
 /// Instants of a run at which walls are looked at.
-const INSTANTS: usize = 1000;
+pub(super) const INSTANTS: usize = 1000;
 
 /// Whether two boxes have more in common than a face: half a spacing in each direction.
 fn overlap(a: &Block, b: &Block, scene: &Scene) -> bool {
