@@ -24,6 +24,13 @@ pub(super) struct Met {
     driven: f64,
 }
 
+impl Met {
+    /// Two meetings.
+    pub(super) fn and(self, other: Self) -> Self {
+        Self { touched: self.touched || other.touched, driven: self.driven + other.driven }
+    }
+}
+
 impl System {
     /// What happens now is noted.
     pub(super) fn books_open(&self) -> bool {

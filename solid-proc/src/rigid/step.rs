@@ -11,6 +11,10 @@ use nalgebra::Matrix3;
 
 /// Newton steps that bring joints together; each of them wins as many digits as the sub-step is short.
 const JOINT_STEPS: usize = 30;
+/// Most rounds of impacts that follow from each other at one instant.
+const IMPACTS: usize = 1000;
+/// An approach of less than this part of the fastest body's speed, or of what gravity adds in a sub-step, is none.
+const CREEP: [f64; 2] = [1e-6, 1e-3];
 /// Part of a body's size, 1 m or rad, to which joints hold.
 const JOINT_GAP: f64 = 1e-14;
 
@@ -152,17 +156,37 @@ impl System {
         }
     }
 
-    /// Velocities after joints and contacts of the present state. Returns what these gave by themselves moving.
-    fn meet(&mut self, mut touches: Vec<Touch>) -> Met {
-        let rows = self.joint_rows();
-        if rows.is_empty() && touches.is_empty() {
-            self.memory.clear();
-            return Met::default();
+    /// Impacts of the present state. Those that approach bounce together, and what they push against others bounces in
+    /// turn (generalised reflections, Smith, Kaufman, Vouga, Tamstorf and Grinspun 2012), until nothing approaches.
+    fn collide(&mut self, touches: &[Touch], dt: f64) -> Met {
+        let mut met = Met::default();
+        if self.restitution == 0.0 {
+            return met;
         }
+        let rows = self.joint_rows();
         let factors = Factors::of(&rows, &self.bodies, &self.poses);
         let held = Held { rows: &rows, factors: &factors, rates: &vec![0.0; rows.len()] };
-        self.recall(&mut touches);
-        let impulses = solve(&self.bodies, &mut self.poses, &held, &mut touches, self.friction);
+        let speed = |pose: &Pose| pose.velocity.norm_squared().sqrt();
+        let fastest = self.poses.iter().map(speed).fold(0.0, f64::max);
+        let creep = (CREEP[0] * fastest).max(CREEP[1] * dt * self.gravity.norm_squared().sqrt());
+        for _ in 0..IMPACTS {
+            let rate = |touch: &Touch| touch.normal.rate(&self.bodies, &self.poses);
+            let mut hit: Vec<Touch> = touches.iter().filter(|touch| rate(touch) < -creep).cloned().collect();
+            if hit.is_empty() {
+                break;
+            }
+            for touch in hit.iter_mut().filter(|touch| touch.is_contact()) {
+                touch.target = -self.restitution * touch.normal.rate(&self.bodies, &self.poses);
+            }
+            let impulses = solve(&self.bodies, &mut self.poses, &held, &mut hit, self.friction);
+            self.note(&hit);
+            met = met.and(self.book_meeting(&rows, &impulses, &hit));
+        }
+        met
+    }
+
+    /// Adds the impulses of contacts to what the bodies feel in this stage.
+    fn note(&mut self, touches: &[Touch]) {
         for touch in touches.iter().filter(|touch| touch.is_contact()) {
             let all = std::iter::once((&touch.normal, touch.impulse));
             for (row, impulse) in all.chain(touch.tangents.iter().zip(touch.friction.iter().copied())) {
@@ -174,6 +198,20 @@ impl System {
                 }
             }
         }
+    }
+
+    /// Velocities after joints and contacts of the present state. Returns what these gave by themselves moving.
+    fn meet(&mut self, mut touches: Vec<Touch>) -> Met {
+        let rows = self.joint_rows();
+        if rows.is_empty() && touches.is_empty() {
+            self.memory.clear();
+            return Met::default();
+        }
+        let factors = Factors::of(&rows, &self.bodies, &self.poses);
+        let held = Held { rows: &rows, factors: &factors, rates: &vec![0.0; rows.len()] };
+        self.recall(&mut touches);
+        let impulses = solve(&self.bodies, &mut self.poses, &held, &mut touches, self.friction);
+        self.note(&touches);
         self.memory = touches.iter().map(Remembered::of).collect();
         self.book_meeting(&rows, &impulses, &touches)
     }
@@ -251,21 +289,20 @@ impl System {
         let half = 0.5 * dt;
         let before = self.driven_before();
         let energy = self.kinetic_energy();
-        let kick = self.kick(half, Half::First);
+        // Impacts whose bodies the last sub-step pushed apart and against others.
         let resting = self.touches::<D>();
-        let met = self.meet(resting);
+        let met = self.collide(&resting, dt);
+        let kick = self.kick(half, Half::First);
+        let met = met.and(self.meet(resting));
         let driven = self.drift(dt, time + dt);
         let drifting = self.kinetic_energy();
         self.book_kick(&kick);
         self.book_contacts(&met, drifting - energy - driven - self.work(&kick, &self.poses));
-        let mut touches = self.touches::<D>();
-        for touch in touches.iter_mut().filter(|touch| touch.is_contact()) {
-            let approach = touch.normal.rate(&self.bodies, &self.poses).min(0.0);
-            touch.target = -self.restitution * approach;
-        }
+        let touches = self.touches::<D>();
         let halfway = self.poses.clone();
+        let met = self.collide(&touches, dt);
         let kick = self.kick(half, Half::Second);
-        let met = self.meet(touches.clone());
+        let met = met.and(self.meet(touches.clone()));
         let end = std::mem::replace(&mut self.poses, halfway);
         self.book_kick(&kick);
         let work = self.work(&kick, &self.poses);
