@@ -36,7 +36,7 @@ soak: setup
 CARGO_FUZZ_VERSION := 0.13.2
 CARGO_FUZZ := target/tools/cargo-fuzz-$(CARGO_FUZZ_VERSION)/bin/cargo-fuzz
 fuzz: setup $(CARGO_FUZZ)
-	for target in scene curve outline message checkpoint; do \
+	for target in scene curve outline drawing message checkpoint; do \
 		mkdir -p target/corpus/$$target; \
 		RUSTC_BOOTSTRAP=1 $(CARGO_FUZZ) run --fuzz-dir tests/fuzz --features libfuzzer --target-dir target/fuzz \
 			$$target target/corpus/$$target tests/fuzz/corpus/$$target -- \

@@ -28,6 +28,7 @@ mod check_waves;
 mod contact;
 mod dimension;
 mod document;
+mod drawing;
 mod effect;
 mod energy;
 mod error;

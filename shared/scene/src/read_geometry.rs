@@ -1,6 +1,7 @@
 //! Where a shape is: polygons, outlines from files, and what turns, shifts and repeats any geometry.
 
 use super::document::{Node, Value};
+use super::drawing::{self, Region};
 use super::geometry::{Fault, MAX_CORNERS, Moved, Polygon};
 use super::read_probe::read_csv;
 use super::section::Section;
@@ -13,9 +14,9 @@ pub(crate) const MAX_COPIES: u32 = 100_000;
 /// The polygon that a shape's `polygon` or `outline` with its `holes` says; `None` with errors.
 pub(super) fn polygon(section: &Section<'_>, key: &'static str, folder: &Path) -> Option<Polygon> {
     let node = section.node(key)?;
-    let outline = match key {
+    let region = match key {
         "outline" => from_file(section, folder),
-        _ => corners(section, key, node),
+        _ => corners(section, key, node).map(|outline| Region { outline, holes: Vec::new() }),
     };
     let holes_node = section.node("holes");
     let holes = match holes_node {
@@ -28,10 +29,21 @@ pub(super) fn polygon(section: &Section<'_>, key: &'static str, folder: &Path) -
             }
         },
     };
-    match Polygon::new(outline?, holes?) {
+    let (region, mut holes) = (region?, holes?);
+    let own = holes.len();
+    holes.extend(region.holes);
+    match Polygon::new(region.outline, holes) {
         Ok(polygon) => Some(polygon),
         Err(Fault { hole: None, reason }) => {
             section.wrong(key, node, reason);
+            None
+        }
+        Err(Fault { hole: Some(index), reason }) if index >= own => {
+            section.wrong(
+                key,
+                node,
+                format!("has a part that {reason}: a path is one region with its holes"),
+            );
             None
         }
         Err(Fault { hole: Some(index), reason }) => {
@@ -67,7 +79,7 @@ fn open(mut corners: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     corners
 }
 
-fn from_file(section: &Section<'_>, folder: &Path) -> Option<Vec<[f64; 2]>> {
+fn from_file(section: &Section<'_>, folder: &Path) -> Option<Region> {
     let table = section.section("outline");
     let node = table.node("file");
     let file = table.string("file");
@@ -75,15 +87,26 @@ fn from_file(section: &Section<'_>, folder: &Path) -> Option<Vec<[f64; 2]>> {
         table.missing("file");
     }
     let scale = table.number("scale", Some(1.0));
+    let (id_node, id) = (table.node("id"), table.string("id"));
     let (node, file) = (node?, folder.join(file?));
-    let found = read_csv(&file, "x", "y").and_then(|corners| {
-        let corners: Vec<_> = corners.into_iter().map(|corner| corner.map(|x| x * scale)).collect();
-        match corners.iter().flatten().find(|x| x.abs() > 1e12) {
+    let drawing = file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg"));
+    if let (Some(id_node), false) = (id_node, drawing) {
+        table.wrong("id", id_node, "only a drawing, a file that ends in .svg, has paths with ids");
+    }
+    let found = if drawing {
+        file::read(&file).and_then(|text| drawing::read(&text, id))
+    } else {
+        read_csv(&file, "x", "y").map(|outline| Region { outline, holes: Vec::new() })
+    };
+    let found = found.and_then(|Region { outline, holes }| {
+        let scaled =
+            |line: Vec<[f64; 2]>| open(line.into_iter().map(|corner| corner.map(|x| x * scale)).collect());
+        let region = Region { outline: scaled(outline), holes: holes.into_iter().map(scaled).collect() };
+        let all = region.holes.iter().chain([&region.outline]).flatten().flatten();
+        let far = all.copied().find(|x| x.abs() > 1e12);
+        match far {
             Some(x) => Err(format!("{x:e} m is farther than 1e12 m from the origin")),
-            None if corners.len() > MAX_CORNERS + 1 => {
-                Err(format!("has {} corners; at most {MAX_CORNERS}", corners.len()))
-            }
-            None => Ok(open(corners)),
+            None => Ok(region),
         }
     });
     let found = found.map_err(|reason| table.wrong("file", node, format!("{}: {reason}", file.display())));

@@ -9,4 +9,4 @@ mod scene;
 
 pub use checkpoint::checkpoint;
 pub use message::message;
-pub use scene::{curve, outline, scene};
+pub use scene::{curve, drawing, outline, scene};

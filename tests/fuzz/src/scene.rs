@@ -57,6 +57,18 @@ motion = { file = "curve.csv", columns = { time = "t", x = "x", angle = "x" }, p
 /// # Panics
 /// As [`curve`].
 pub fn outline(bytes: &[u8]) {
+    shapes("outline.csv", bytes);
+}
+
+/// The same as a drawing, an SVG file.
+///
+/// # Panics
+/// As [`curve`].
+pub fn drawing(bytes: &[u8]) {
+    shapes("outline.svg", bytes);
+}
+
+fn shapes(file: &str, bytes: &[u8]) {
     const SCENE: &str = r#"
 resolution = 0.05
 end_time = 1.0
@@ -69,12 +81,12 @@ box = { min = [0.0, 0.0], max = [0.5, 0.5] }
 [[shape]]
 name = "own"
 phase = "PHASE"
-outline = { file = "outline.csv", scale = 0.5 }
+outline = { file = "FILE", scale = 0.5 }
 rotate = { angle = 30 }
 "#;
     const SOLID: &str = "[solid]\nmodel = \"rigid\"\ndensity = 500.0\n";
-    let of = |phase: &str| SCENE.replace("PHASE", phase);
-    beside("outline.csv", bytes, &[of("wall"), of("fluid"), of("void"), of("solid") + SOLID]);
+    let of = |phase: &str| SCENE.replace("PHASE", phase).replace("FILE", file);
+    beside(file, bytes, &[of("wall"), of("fluid"), of("void"), of("solid") + SOLID]);
 }
 
 /// Judges scenes that stand beside a file of this name.

@@ -64,6 +64,11 @@ fn outlines() {
 }
 
 #[test]
+fn drawings() {
+    replay("drawing", halfstep_fuzz::drawing);
+}
+
+#[test]
 fn messages() {
     replay("message", halfstep_fuzz::message);
 }

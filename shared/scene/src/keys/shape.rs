@@ -146,11 +146,12 @@ static RING: Table = Table::new(
 
 static OUTLINE: Table = Table::new(
     "outline",
-    "Corners from a CSV file with the columns x and y.",
+    "Corners from a CSV file with the columns x and y, or a closed path of a drawing (.svg).",
     &[
         Key::new("file", Kind::Text, "The file, its path relative to the scene's folder.").required(),
         Key::number("scale", Range::positive().up_to(1e9), "What makes the file's coordinates metres.")
             .default("1.0"),
+        Key::new("id", Kind::Text, "Which path of a drawing.").default("its only one"),
     ],
 );
 
