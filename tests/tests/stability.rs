@@ -4,7 +4,9 @@
 //! prints the table: `make stability` puts it into docs/stability.md.
 
 use halfstep_tests::run::repository;
-use halfstep_tests::stability::{Family, check, families, replace_between_markers, table};
+use halfstep_tests::stability::{
+    Family, check, courant_table, families, replace_between_markers, room, table,
+};
 
 fn family(name: &str) -> Family {
     let found = families().into_iter().find(|(stem, _)| stem == name);
@@ -71,10 +73,34 @@ fn the_long_form() {
         total += seconds;
     }
     println!("{total:.0} s");
+    renew("table", &page);
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Puts a table into docs/stability.md if HALFSTEP_PAGE is set.
+fn renew(name: &str, text: &str) {
     if std::env::var_os("HALFSTEP_PAGE").is_some() {
         let path = repository().join("docs/stability.md");
         let old = std::fs::read_to_string(&path).expect("the page");
-        std::fs::write(&path, replace_between_markers(&old, &page).expect("markers")).expect("the page");
+        std::fs::write(&path, replace_between_markers(&old, name, text).expect("markers")).expect("the page");
     }
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+#[ignore = "minutes: every case with larger and larger Courant numbers; a table of docs/stability.md if HALFSTEP_PAGE is set"]
+fn room_of_the_courant_number() {
+    let only = std::env::var("HALFSTEP_CASE").unwrap_or_default();
+    let mut rooms = Vec::new();
+    for (_, family) in families() {
+        for case in family.case.iter().filter(|case| case.name.contains(&only)) {
+            let own = room(&family.title, case);
+            own.iter().for_each(|room| println!("{room:?}"));
+            rooms.extend(own);
+        }
+    }
+    let none: Vec<_> = rooms.iter().filter(|room| room.largest.is_none()).collect();
+    assert!(none.is_empty(), "{none:?}");
+    if only.is_empty() {
+        renew("courant", &courant_table(rooms));
+    }
 }

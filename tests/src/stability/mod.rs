@@ -5,11 +5,13 @@
 //! holds without the remedy, too, says so (`holds = true`), and that is asserted as well.
 
 mod case;
+mod courant;
 mod criteria;
 mod runner;
 mod table;
 
 pub use case::{Case, Family, families};
+pub use courant::{Room, courant_table, room};
 pub use criteria::{Criterion, Measured, evaluate};
 pub use runner::{Row, check};
 pub use table::{replace_between_markers, table};

@@ -31,14 +31,12 @@ pub fn table(title: &str, rows: &[Row]) -> String {
     text
 }
 
-const BEGIN: &str = "<!-- table: begin -->";
-const END: &str = "<!-- table: end -->";
-
-/// A page with the text between its two markers replaced; `None` where it has no markers.
-pub fn replace_between_markers(page: &str, text: &str) -> Option<String> {
-    let (head, rest) = page.split_once(BEGIN)?;
-    let (_, tail) = rest.split_once(END)?;
-    Some(format!("{head}{BEGIN}\n\n{}\n\n{END}{tail}", text.trim()))
+/// A page with the text between the two markers of this name replaced; `None` where it has no such markers.
+pub fn replace_between_markers(page: &str, name: &str, text: &str) -> Option<String> {
+    let (begin, end) = (format!("<!-- {name}: begin -->"), format!("<!-- {name}: end -->"));
+    let (head, rest) = page.split_once(&begin)?;
+    let (_, tail) = rest.split_once(&end)?;
+    Some(format!("{head}{begin}\n\n{}\n\n{end}{tail}", text.trim()))
 }
 
 #[cfg(test)]
@@ -48,8 +46,8 @@ mod tests {
     #[test]
     fn only_what_is_between_the_markers_changes() {
         let page = "a\n<!-- table: begin -->\nold\n<!-- table: end -->\nb\n";
-        let new = replace_between_markers(page, "new\n").unwrap();
+        let new = replace_between_markers(page, "table", "new\n").unwrap();
         assert_eq!(new, "a\n<!-- table: begin -->\n\nnew\n\n<!-- table: end -->\nb\n");
-        assert_eq!(replace_between_markers("a", "b"), None);
+        assert_eq!(replace_between_markers(page, "other", "b"), None);
     }
 }
