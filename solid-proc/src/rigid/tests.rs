@@ -502,8 +502,8 @@ fn cradle(gap: f64, restitution: f64, dt: f64) -> Vec<f64> {
 }
 
 /// With gaps above and below what a sub-step goes, and without: by collisions of two after two. With e = 1/2 the first
-/// keeps (1 - e) / 2 = 1/4 and the second takes 3/4, of which it keeps 3/16 and gives 9/16 on; then the first catches up
-/// with the second, at 1/16: 3/64 of it go over.
+/// keeps (1 - e) / 2 = 1/4 and the second takes 3/4, of which it keeps 3/16 and gives 9/16 on; then the first catches
+/// up with the second, at 1/16: 3/64 go over.
 #[test]
 fn a_cradle_hands_the_momentum_on() {
     for (restitution, right) in
