@@ -9,6 +9,7 @@ use crate::ledger::FluidLedger;
 use crate::midpoint::{self, Conditions, Extremes};
 use crate::probes::{self, Gauge};
 use crate::rates::RateSum;
+use crate::riders::Riders;
 use crate::time_step::StepLimits;
 use crate::walls::Walls;
 use crate::walls::moving::motions;
@@ -45,6 +46,8 @@ pub struct Fluid<const D: usize, X: FluidEffect<D> = ()> {
     pub(crate) kernel: KernelName,
     pub(crate) gravity: [f64; D],
     pub(crate) probes: Vec<Gauge<D>>,
+    /// Points of probes that go with solids.
+    pub(crate) riders: Riders<D>,
 
     bounds: Bounds,
     pub(crate) isa: Isa,
@@ -100,6 +103,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         let domain = geometry::domain(scene);
         let coupled =
             (0..scene.solids.len()).filter_map(|solid| Parameters::new(scene, solid, isa)).collect();
+        let (probes, riders) = probes::of_fluid(scene, &layout);
         Some(
             Self {
                 number_of_particles: columns.particles,
@@ -113,7 +117,8 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
                 resolution: scene.resolution,
                 kernel: scene.numerics.kernel,
                 gravity: std::array::from_fn(|d| scene.gravity[d]),
-                probes: probes::of_fluid(scene, &layout.wall),
+                probes,
+                riders,
 
                 bounds: Bounds::of_fluid(scene)?,
                 isa,
@@ -272,6 +277,9 @@ impl<const D: usize, X: FluidEffect<D>> Role for Fluid<D, X> {
 
     fn cross_sums(&mut self, own: &[StateRecord], peers: &[Peer]) -> Result<(), CoverageError> {
         let Some(coupling) = &mut self.coupling else { return Ok(()) };
+        if self.stage == Stage::First {
+            self.riders.ride(peers);
+        }
         let ledger = self.ledger.as_mut().filter(|_| self.stage == Stage::Second);
         coupling.add_rates(&mut self.sums, own, peers, self.displacement, ledger)?;
         self.pair_evaluations += coupling.pairs() as u64;

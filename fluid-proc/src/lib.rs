@@ -36,6 +36,9 @@ mod probe_tests;
 mod probes;
 pub mod rates;
 #[cfg(test)]
+mod rider_tests;
+mod riders;
+#[cfg(test)]
 mod separation_tests;
 #[cfg(test)]
 mod shifting_tests;

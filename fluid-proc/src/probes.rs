@@ -2,18 +2,16 @@
 
 use crate::effects::FluidEffect;
 use crate::fluid::Fluid;
-use halfstep_scene::geometry::{WallPoint, holds};
+use crate::riders::Riders;
+use halfstep_scene::geometry::{Layout, WallPoint, holds};
 use halfstep_scene::{Block, EnergyPart, Phase, ProbeKind, Scene};
 use halfstep_sph::kernel;
 use halfstep_sph::neighbours::PADDING;
 
 /// A probe of the fluid, or of what the fluid does to walls.
 pub(crate) enum Gauge<const D: usize> {
-    /// Mean pressure over points that move with the wall of that shape, or stay where they are.
-    Pressure {
-        points: Vec<[f64; D]>,
-        shape: Option<usize>,
-    },
+    /// Mean pressure over points.
+    Pressure(Points<D>),
     Velocity([f64; D]),
     /// Mean velocity across a line, times its length.
     Flux {
@@ -34,17 +32,34 @@ pub(crate) enum Gauge<const D: usize> {
     Energy(Option<EnergyPart>),
 }
 
-/// The fluid's probes in the scene's order, with the scene's wall particles.
-pub(crate) fn of_fluid<const D: usize>(scene: &Scene, walls: &[WallPoint<D>]) -> Vec<Gauge<D>> {
+/// Where a probe of pressure looks.
+pub(crate) enum Points<const D: usize> {
+    /// At points that stay where they are.
+    Still(Vec<[f64; D]>),
+    /// At points that move with the wall of that shape.
+    OnWall(usize, Vec<[f64; D]>),
+    /// At some of the points that ride on solids.
+    OnSolid(std::ops::Range<usize>),
+}
+
+/// The fluid's probes in the scene's order, and the points of theirs that ride on solids.
+pub(crate) fn of_fluid<const D: usize>(scene: &Scene, layout: &Layout<D>) -> (Vec<Gauge<D>>, Riders<D>) {
+    let walls = &layout.wall;
+    let mut riders = Riders::new();
     let chosen = |shape: Option<usize>, within: &Option<Block>| {
         let of_shape = |w: &WallPoint<D>| shape.is_none_or(|shape| w.shape as usize == shape);
         let inside = |w: &WallPoint<D>| within.is_none_or(|block| holds(&block, &w.position, 0.0));
         walls.iter().map(|w| of_shape(w) && inside(w)).collect()
     };
-    let gauge = |kind: &ProbeKind| match kind {
+    let mut gauge = |kind: &ProbeKind| match kind {
         ProbeKind::Pressure { at, to, shape } => {
             let points = to.map_or(vec![narrow(*at)], |to| along(scene, at, &to));
-            Some(Gauge::Pressure { points, shape: *shape })
+            let on_solid = shape.and_then(|shape| riders.add(scene, layout, shape, &points));
+            Some(Gauge::Pressure(match (on_solid, shape) {
+                (Some(places), _) => Points::OnSolid(places),
+                (None, Some(shape)) => Points::OnWall(*shape, points),
+                (None, None) => Points::Still(points),
+            }))
         }
         ProbeKind::Velocity { at } => Some(Gauge::Velocity(narrow(*at))),
         ProbeKind::Flux { from, to } => {
@@ -66,7 +81,8 @@ pub(crate) fn of_fluid<const D: usize>(scene: &Scene, walls: &[WallPoint<D>]) ->
         _ => None,
     };
     let of_fluid = scene.probes.iter().filter(|probe| probe.phase() == Phase::Fluid);
-    of_fluid.filter_map(|probe| gauge(&probe.kind)).collect()
+    let gauges = of_fluid.filter_map(|probe| gauge(&probe.kind)).collect();
+    (gauges, riders)
 }
 
 fn narrow<const D: usize>(point: [f64; 3]) -> [f64; D] {
@@ -123,6 +139,11 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         self.average(at).map_or(0.0, |average| average.pressure)
     }
 
+    fn mean_pressure(&self, points: impl ExactSizeIterator<Item = [f64; D]>) -> f64 {
+        let count = points.len() as f64;
+        points.map(|at| self.pressure_at(at)).sum::<f64>() / count
+    }
+
     /// Highest fluid particle within a spacing of x, with half a spacing.
     fn level(&self, x: f64) -> f64 {
         let half = 0.5 * self.resolution;
@@ -140,14 +161,17 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         let loads = if loads { self.wall_loads() } else { Vec::new() };
         for probe in &self.probes {
             match probe {
-                Gauge::Pressure { points, shape } => {
-                    let moved = |&at: &[f64; D]| match (&self.walls, shape) {
-                        (Some(walls), Some(shape)) => walls.carry(*shape, at),
-                        _ => at,
-                    };
-                    let sum: f64 = points.iter().map(|at| self.pressure_at(moved(at))).sum();
-                    out.push(sum / points.len() as f64);
-                }
+                Gauge::Pressure(points) => out.push(match points {
+                    Points::Still(points) => self.mean_pressure(points.iter().copied()),
+                    Points::OnWall(shape, points) => self.mean_pressure(
+                        points
+                            .iter()
+                            .map(|&at| self.walls.as_ref().map_or(at, |walls| walls.carry(*shape, at))),
+                    ),
+                    Points::OnSolid(places) => {
+                        self.mean_pressure(self.riders.now[places.clone()].iter().copied())
+                    }
+                }),
                 Gauge::Velocity(at) => {
                     out.extend(self.average(*at).map_or([0.0; D], |average| average.velocity));
                 }

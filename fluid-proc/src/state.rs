@@ -28,6 +28,9 @@ impl<const D: usize, X: FluidEffect<D>> State for Fluid<D, X> {
         if let Some(coupling) = &mut self.coupling {
             fields.part("coupling", coupling)?;
         }
+        if !self.riders.now.is_empty() {
+            fields.part("riders", &mut self.riders)?;
+        }
         if let Some(own) = &mut self.ledger {
             fields.part("energy", &mut own.ledger)?;
         }
@@ -47,6 +50,7 @@ impl<const D: usize, X: FluidEffect<D>> State for Fluid<D, X> {
             coupling.restored()?;
             coupling.check_slots(&self.columns)?;
         }
+        self.riders.restored()?;
         fit(&mut self.sums, self.fluid_list.fours(), RateSum::default());
         self.effects.resize(self.columns.slots(), self.walls.as_ref());
         self.stage = Stage::First;

@@ -68,8 +68,12 @@ impl Check<'_> {
                     self.wrong(&format!("{key}.at"), "is in or beside no solid shape");
                 }
             }
-            ProbeKind::Pressure { at, to, .. } => {
+            ProbeKind::Pressure { at, to, shape } => {
                 let first = if to.is_some() { "from" } else { "at" };
+                if let Some(shape) = shape.map(|shape| &self.scene.shapes[shape]) {
+                    self.rides(key, first, at, shape);
+                    to.iter().for_each(|to| self.rides(key, "to", to, shape));
+                }
                 self.in_domain(&format!("{key}.{first}"), at);
                 to.iter().for_each(|to| self.in_domain(&format!("{key}.to"), to));
                 self.line(key, at, to.as_ref());
@@ -101,6 +105,34 @@ impl Check<'_> {
                 }
             }
             _ => (),
+        }
+    }
+
+    /// A point that goes with a solid lies where the solid says how it moves, and where water may come.
+    fn rides(&self, key: &str, end: &str, at: &[f64; 3], shape: &Shape) {
+        let Some(solid) = shape.solid.and_then(|k| self.scene.solids.get(k)) else { return };
+        if solid.fracture().is_some() {
+            let reason =
+                "is of a solid that may break: a crack would part the particles that take the point along";
+            return self.wrong(&format!("{key}.shape"), reason);
+        }
+        let reach = 2.0 * self.scene.smoothing_ratio * self.scene.resolution;
+        let mut depth = f64::INFINITY;
+        let mut visit = |distance: f64| depth = depth.min(distance);
+        let surface = geometry::Surface::new(&shape.geometry, None);
+        match self.scene.dimension {
+            2 => surface.nearest([at[0], at[1]], &mut |distance, _: [f64; 2]| visit(distance)),
+            _ => surface.nearest(*at, &mut |distance, _: [f64; 3]| visit(distance)),
+        }
+        if depth.abs() > reach {
+            let side = if depth > 0.0 { "outside" } else { "inside" };
+            let [away, reach] = [depth.abs(), reach].map(|x| x / self.scene.resolution);
+            let reason = format!(
+                "is {away:.1} dx {side} of `{}`: what rides on a solid lies within the reach of the water's kernel, \
+                 2h = {reach:.1} dx, from its surface",
+                shape.name
+            );
+            self.wrong(&format!("{key}.{end}"), reason);
         }
     }
 

@@ -48,7 +48,7 @@ pub enum ProbeKind {
         /// Where the line ends, m.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         to: Option<[f64; 3]>,
-        /// Index of the wall in [`crate::Scene::shapes`] that the point or line moves with.
+        /// Index of the wall or the shape of a solid in [`crate::Scene::shapes`] that the point or line moves with.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         shape: Option<usize>,
     },

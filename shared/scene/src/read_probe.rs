@@ -133,7 +133,7 @@ pub(super) fn probe(
     Some(probe)
 }
 
-/// Pressure at a point `at`, or its mean between `from` and `to`; `shape` is the wall that takes them along.
+/// Pressure at a point `at`, or its mean between `from` and `to`; `shape` is what takes them along.
 fn pressure(section: &Section<'_>, dimension: usize, shapes: &[Shape]) -> Option<ProbeKind> {
     let line = ["from", "to"].into_iter().any(|key| section.node(key).is_some());
     if let (true, Some(node)) = (line, section.node("at")) {
@@ -142,8 +142,10 @@ fn pressure(section: &Section<'_>, dimension: usize, shapes: &[Shape]) -> Option
     }
     let vector = |key| section.vector(key, dimension, None);
     let (at, to) = if line { (vector("from"), Some(vector("to"))) } else { (vector("at"), None) };
-    let wall = |shape: &Shape| (shape.phase != Phase::Wall).then_some("only a wall takes a point along");
-    let shape = which_shape(section, shapes, wall)?;
+    let flows = |shape: &Shape| {
+        (shape.phase == Phase::Fluid).then_some("is of phase \"fluid\": walls and solids take a point along")
+    };
+    let shape = which_shape(section, shapes, flows)?;
     Some(ProbeKind::Pressure { at, to, shape })
 }
 
