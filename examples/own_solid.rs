@@ -46,6 +46,8 @@ const BASIN: &str = r#"
 struct SpringBlock {
     /// N/m for a metre of the body.
     stiffness: f64,
+    /// Gravity along x, m/s².
+    gravity: f64,
     /// Displacement and velocity at n, m and m/s.
     at_n: [f64; 2],
     /// The same now.
@@ -69,6 +71,7 @@ impl SpringBlock {
         let start = [0.0, velocity[0]];
         Self {
             stiffness,
+            gravity: 0.0,
             at_n: start,
             now: start,
             position: reference.clone(),
@@ -104,6 +107,10 @@ impl SolidModel<2> for SpringBlock {
         &self.all
     }
 
+    fn set_gravity(&mut self, gravity: [f64; 2]) {
+        self.gravity = gravity[0];
+    }
+
     fn records(&self, particles: &[u32], out: &mut Vec<StateRecord>) {
         out.extend(particles.iter().map(|&p| StateRecord {
             id: p,
@@ -128,7 +135,7 @@ impl SolidModel<2> for SpringBlock {
         let mass: f64 = self.mass.iter().sum();
         let thrust: f64 = load.force.iter().map(|force| force[0]).sum();
         let [x, v] = self.now;
-        let rates = [v, (thrust - self.stiffness * x) / mass];
+        let rates = [v, (thrust - self.stiffness * x) / mass + self.gravity];
         self.now = std::array::from_fn(|k| self.at_n[k] + half_step.span() * rates[k]);
         self.place();
         Ok(())

@@ -77,6 +77,8 @@ pub struct Neighbourhood<'a, K, const D: usize> {
     pub kernel: K,
     /// Instruction set of the passes.
     pub isa: Isa,
+    /// Gravity, m/s².
+    pub gravity: [f64; D],
     /// The fluid.
     pub fluid: &'a PairParticles<D>,
     /// The fluid around the fluid.

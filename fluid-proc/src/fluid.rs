@@ -18,7 +18,7 @@ use halfstep_role::ledger::Ledger;
 use halfstep_role::role::{Costs, CoverageError, Peer, Role};
 use halfstep_scene::bounds::Bounds;
 use halfstep_scene::geometry;
-use halfstep_scene::{KernelName, Phase, Scene};
+use halfstep_scene::{Gravity, KernelName, Phase, Scene};
 use halfstep_sph::lane::{Isa, LANES};
 use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_sph::state_equation::StateEquation;
@@ -44,6 +44,8 @@ pub struct Fluid<const D: usize, X: FluidEffect<D> = ()> {
     pub(crate) skin: f64,
     pub(crate) resolution: f64,
     pub(crate) kernel: KernelName,
+    gravity_in_time: Gravity,
+    /// At the instant of the next sums, m/s².
     pub(crate) gravity: [f64; D],
     pub(crate) probes: Vec<Gauge<D>>,
     /// Points of probes that go with solids.
@@ -103,6 +105,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         let domain = geometry::domain(scene);
         let coupled =
             (0..scene.solids.len()).filter_map(|solid| Parameters::new(scene, solid, isa)).collect();
+        let gravity_in_time = Gravity::of(scene);
         let (probes, riders) = probes::of_fluid(scene, &layout);
         Some(
             Self {
@@ -116,7 +119,8 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
                 skin,
                 resolution: scene.resolution,
                 kernel: scene.numerics.kernel,
-                gravity: std::array::from_fn(|d| scene.gravity[d]),
+                gravity: gravity_in_time.at(0.0),
+                gravity_in_time,
                 probes,
                 riders,
 
@@ -239,6 +243,10 @@ impl<const D: usize, X: FluidEffect<D>> Role for Fluid<D, X> {
     }
 
     fn set_time(&mut self, time: f64) {
+        self.gravity = self.gravity_in_time.at(time);
+        if let Some(coupling) = &mut self.coupling {
+            coupling.set_gravity(self.gravity);
+        }
         if let Some(walls) = &mut self.walls {
             walls.set_time(time);
         }

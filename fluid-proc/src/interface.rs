@@ -46,6 +46,11 @@ impl<const D: usize> Coupling<D> {
         })
     }
 
+    /// Gravity in what solids show, m/s².
+    pub(crate) fn set_gravity(&mut self, gravity: [f64; D]) {
+        self.interfaces.iter_mut().for_each(|interface| interface.parameters.gravity = gravity);
+    }
+
     /// The present set's number.
     pub fn epoch(&self) -> u64 {
         self.epoch

@@ -37,7 +37,8 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
     ) -> T {
         let walls = self.walls.as_ref().map(|walls| (walls, &self.wall_list));
         let (fluid, list) = (&self.columns.now, &self.fluid_list);
-        act(&mut self.effects, &Neighbourhood { kernel, isa: self.isa, fluid, list, walls })
+        let (isa, gravity) = (self.isa, self.gravity);
+        act(&mut self.effects, &Neighbourhood { kernel, isa, gravity, fluid, list, walls })
     }
 
     /// Pressure and velocity that the walls show.

@@ -65,6 +65,9 @@ fn derive(scene: &Scene, k: usize, effect: EffectName) -> Derived {
         EffectName::SleepingSolid if !shapes(scene, k).all(begins_at_rest) => Derived::Impossible(
             "a solid that is not clamped, or that starts with a velocity, moves by itself".into(),
         ),
+        EffectName::SleepingSolid if scene.frame.is_some() => {
+            Derived::Impossible("gravity changes with `frame`, and would not wake it".into())
+        }
         EffectName::SleepingSolid if shapes(scene, k).any(|s| s.load.is_some()) => {
             Derived::Impossible("the scene loads it".into())
         }

@@ -153,6 +153,9 @@ pub trait SolidModel<const D: usize>: Send {
     /// # Errors
     /// The particle that is farthest out of bounds.
     fn advance(&mut self, half_step: &HalfStep, sub_steps: u32, load: &Load<D>) -> Result<(), OutOfBounds>;
+    /// Takes over gravity, m/s², for all evaluations until the next call: before each advance that of the instant of
+    /// the stage's own state.
+    fn set_gravity(&mut self, gravity: [f64; D]);
     /// Takes over what neighbours outside of the model add to its strain rates, by particle number, for all
     /// evaluations until the next call; an empty slice stands for nothing. A model whose strain does not count such
     /// neighbours ignores it.

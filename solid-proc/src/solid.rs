@@ -10,7 +10,7 @@ use crate::sub_steps::SubStepping;
 use halfstep_interface::{Interface, Parameters};
 use halfstep_role::ledger::Ledger;
 use halfstep_role::role::{Costs, CoverageError, Peer, Role};
-use halfstep_scene::{EffectName, Phase, Scene, Treatment};
+use halfstep_scene::{EffectName, Gravity, Phase, Scene, Treatment};
 use halfstep_sph::lane::Isa;
 use halfstep_wire::failure::Diverged;
 use halfstep_wire::frame::{Frame, FramePoint};
@@ -24,6 +24,7 @@ use xxhash_rust::xxh3::Xxh3;
 pub struct Solid<const D: usize> {
     name: Name,
     model: Box<dyn SolidModel<D>>,
+    gravity: Gravity,
     /// Phase-blind coupling: the fluid's share in density and velocity gradient.
     interface: Option<Interface<D>>,
     load: Load<D>,
@@ -67,6 +68,7 @@ impl<const D: usize> Solid<D> {
         let name = material.and_then(|solid| solid.name.parse().ok()).unwrap_or(Name::SOLID);
         Self {
             name,
+            gravity: Gravity::of(scene),
             sleep,
             load: Load::none(particles.len()),
             outer: Vec::new(),
@@ -138,6 +140,14 @@ impl<const D: usize> Role for Solid<D> {
 
     fn dt_limit(&self) -> f64 {
         self.limit * f64::from(self.sub_steps.most())
+    }
+
+    fn set_time(&mut self, time: f64) {
+        let gravity = self.gravity.at(time);
+        self.model.set_gravity(gravity);
+        if let Some(interface) = &mut self.interface {
+            interface.parameters.gravity = gravity;
+        }
     }
 
     fn publish(&mut self, _peers: &[Peer], out: &mut Vec<StateRecord>) -> u64 {

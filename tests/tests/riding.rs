@@ -87,7 +87,8 @@ fn the_underside_of_a_floating_box_carries_it() {
     let found = mean(&run, "under.pressure", 0.8);
     // Its weight over its width.
     println!("{found:.1} Pa of {:.1} Pa", 500.0 * 9.81 * 0.1);
-    assert!((found - 500.0 * 9.81 * 0.1).abs() < 0.02 * RHO_G * 0.3, "{found}");
+    // What is left of its heave.
+    assert!((found / (500.0 * 9.81 * 0.1) - 1.0).abs() < 0.05, "{found}");
 }
 
 /// A soft plate on the floor's place, clamped at both ends, sags under 0.3 m of water.

@@ -356,7 +356,7 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
             header.frame = self.frame;
             self.frame += 1;
         }
-        self.pair_evaluations += self.solids.evaluate(&self.states);
+        self.pair_evaluations += self.solids.evaluate(&self.states, self.half_step.before());
         self.compute += start.elapsed();
         for (place, forces) in self.solids.answers() {
             let epoch = self.states[place].header().epoch;

@@ -16,7 +16,7 @@
 
 use halfstep_output::run_json::EnergyGrowth;
 use halfstep_scene::bounds::flow_speed;
-use halfstep_scene::{Phase, Scene, Treatment};
+use halfstep_scene::{Gravity, Phase, Scene, Treatment};
 use halfstep_wire::Name;
 use halfstep_wire::failure::{Diverged, Quantity};
 use halfstep_wire::half_step::Stage;
@@ -91,7 +91,7 @@ pub struct Account<'a> {
 /// The ledgers of a run.
 #[derive(Clone, Debug)]
 pub struct EnergyBalance {
-    gravity: [f64; 3],
+    gravity: Gravity,
     speed: f64,
     /// Both phases as one.
     joint: bool,
@@ -122,7 +122,7 @@ impl EnergyBalance {
     pub fn new(scene: &Scene) -> Self {
         let moves = |s: &halfstep_scene::Shape| s.motion.is_some() || s.velocity != [0.0; 3];
         Self {
-            gravity: scene.gravity,
+            gravity: Gravity::of(scene),
             speed: flow_speed(scene),
             joint: scene.interface.treatment == Treatment::PhaseBlind,
             walls_rest: !scene.shapes.iter().any(|s| s.phase == Phase::Wall && moves(s)),
@@ -136,8 +136,9 @@ impl EnergyBalance {
     /// explains, and how much of it, J.
     pub fn note(&mut self, time: f64, accounts: &[Account<'_>]) -> Option<(Name, f64)> {
         let dt = time - self.time;
+        let gravity = self.gravity.at(self.time + 0.5 * dt);
         self.time = time;
-        let (gravity, speed) = (self.gravity, self.speed);
+        let speed = self.speed;
         if let (true, [Account { audit: Some(f), .. }, Account { audit: Some(s), .. }]) =
             (self.joint, accounts)
         {

@@ -96,6 +96,7 @@ impl Recorder {
         let now = Instant::now();
         // Momentum is kept only where nothing outside acts: no gravity, no walls, no clamps.
         let isolated = scene.gravity == [0.0; 3]
+            && scene.frame.is_none()
             && scene.shapes.iter().all(|s| s.phase != Phase::Wall && s.clamp.is_empty());
         Self {
             log,

@@ -7,7 +7,7 @@ use halfstep_interface::contact::{Booked, Contact, PairLaw};
 use halfstep_interface::cross_viscosity::CrossViscosity;
 use halfstep_interface::{Interface, Parameters};
 use halfstep_link::{FLUID, StateMessage};
-use halfstep_scene::Scene;
+use halfstep_scene::{Gravity, Scene};
 use halfstep_sph::lane::Isa;
 use halfstep_wire::half_step::Stage;
 use halfstep_wire::protocol::{ForceRecord, StateRecord};
@@ -54,6 +54,7 @@ pub(crate) struct Solids<const D: usize> {
     solids: Vec<CoupledSolid<D>>,
     cross: CrossViscosity<D>,
     fluid_forces: Vec<ForceRecord>,
+    gravity: Gravity,
     /// What solids do to each other; `None` where there is one.
     contact: Option<Contact>,
 }
@@ -93,6 +94,7 @@ impl<const D: usize> Solids<D> {
             solids: external.into_iter().enumerate().map(side).collect(),
             cross: CrossViscosity::default(),
             fluid_forces: Vec::new(),
+            gravity: Gravity::of(scene),
             contact: Contact::new(scene),
         }
     }
@@ -220,12 +222,15 @@ impl<const D: usize> Solids<D> {
         work
     }
 
-    /// Evaluates the forces on both sides; returns the pairs listed for it.
-    pub(crate) fn evaluate(&mut self, states: &[impl StateMessage]) -> u64 {
+    /// Evaluates the forces on both sides at the states' instant, s; returns the pairs listed for it.
+    pub(crate) fn evaluate(&mut self, states: &[impl StateMessage], time: f64) -> u64 {
         let touching = self.contact.is_some();
         if self.solids.is_empty() || (self.first == 0 && !touching) {
             return 0;
         }
+        let gravity = self.gravity.at(time);
+        let interfaces = self.solids.iter_mut().filter_map(|side| side.interface.as_mut());
+        interfaces.for_each(|interface| interface.parameters.gravity = gravity);
         let blank = |id| ForceRecord { id, ..ForceRecord::default() };
         let mut pairs = 0;
         self.fluid_forces.clear();

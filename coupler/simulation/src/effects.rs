@@ -29,9 +29,14 @@ pub(crate) fn row(decision: Decision) -> EffectReport {
 pub(crate) fn reports(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
     let row = |name, on, why| row(Decision { name, on, why });
     let (fluid, solid) = (scene.fluid.is_some(), !scene.solids.is_empty());
-    let moving = scene.gravity.iter().any(|&g| g != 0.0);
+    let (moving, frame) = (scene.gravity.iter().any(|&g| g != 0.0), scene.frame.is_some());
+    let why = match (moving, frame) {
+        (_, true) => "`frame` moves: gravity is less its acceleration, and turned back by its angle",
+        (true, false) => "gravity is not zero",
+        (false, false) => "gravity is zero",
+    };
     let mut list = vec![
-        row("gravity", moving, if moving { "gravity is not zero" } else { "gravity is zero" }.into()),
+        row("gravity", moving || frame, why.into()),
         row(
             FLUID,
             fluid,

@@ -5,6 +5,7 @@
 mod bodies;
 mod clamp_faces;
 mod contacts;
+mod frame;
 mod magnitudes;
 mod outcome;
 mod settings;
@@ -51,6 +52,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     water::wave_makers(scene, &mut all);
     water::walls_that_meet(scene, &mut all);
     settings::motions(scene, &mut all);
+    frame::frame(scene, &mut all);
     settings::solitary_waves(scene, &mut all);
     settings::beach(scene, &mut all);
     settings::checkpoints(scene, &mut all);

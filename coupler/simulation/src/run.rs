@@ -148,6 +148,10 @@ fn check_external(scene: &Scene, options: &RunOptions) -> Result<(), RunError> {
     if !options.external.is_empty() && (scene.fluid.is_none() || scene.solids.is_empty()) {
         return Err(RunError::System("--solid needs a scene with [fluid] and [solid]".into()));
     }
+    if let (Some(name), Some(_)) = (options.external_names().first(), &scene.frame) {
+        let reason = "is computed by another program, which is told one `gravity`, and `frame` changes it";
+        return Err(RunError::System(format!("the {name} {reason}")));
+    }
     for name in options.external_names() {
         known_solid(scene, name.as_str()).map_err(RunError::System)?;
     }

@@ -65,7 +65,9 @@ pub enum Diffusion<'a, const D: usize> {
 pub struct DensityDiffusion<const D: usize> {
     variant: Variant,
     strength: Strength,
-    /// rho0 g / c0²: the density gradient at rest, kg/m⁴.
+    /// rho0 / c0², kg s²/m⁵.
+    compliance: f64,
+    /// That times g: the density gradient at rest, kg/m⁴.
     at_rest: [f64; D],
     /// Renormalised density gradient of each cluster's particles, kg/m⁴; only delta-SPH has it.
     gradient: Vec<[[f64; D]; LANES]>,
@@ -79,11 +81,12 @@ impl<const D: usize> Listed<D> for DensityDiffusion<D> {
     fn of(scene: &Scene) -> Option<Self> {
         let fluid = scene.fluid.as_ref()?;
         let h = scene.smoothing_ratio * scene.resolution;
-        let scale = fluid.density / fluid.sound_speed.powi(2);
+        let compliance = fluid.density / fluid.sound_speed.powi(2);
         Some(Self {
             variant: fluid.density_diffusion,
             strength: Strength(fluid.density_diffusion_coefficient * h * fluid.sound_speed),
-            at_rest: std::array::from_fn(|d| scale * scene.gravity[d]),
+            compliance,
+            at_rest: std::array::from_fn(|d| compliance * scene.gravity[d]),
             gradient: Vec::new(),
             frozen: FrozenDiffusion::<D>::decide(scene).on,
             known: false,
@@ -124,6 +127,7 @@ impl<const D: usize> FluidEffect<D> for DensityDiffusion<D> {
         }
     }
     fn prepare<K: Kernel<D>>(&mut self, stage: Stage, around: &Neighbourhood<'_, K, D>) -> u64 {
+        self.at_rest = around.gravity.map(|g| self.compliance * g);
         let stays = self.frozen && self.known && stage == Stage::Second;
         if self.variant != Variant::DeltaSph || stays {
             return 0;

@@ -78,7 +78,7 @@ impl<const D: usize> FluidEffect<D> for ParticleShifting<D> {
         if stage == Stage::First {
             return 0;
         }
-        let Neighbourhood { kernel, isa, fluid, list, walls } = *around;
+        let Neighbourhood { kernel, isa, fluid, list, walls, .. } = *around;
         let at_spacing = 1.0 / kernel.at(self.spacing);
         let law = OrderLaw { kernel, at_spacing, targets: fluid, sources: fluid };
         let (order, _) = self.order.as_chunks_mut();

@@ -93,6 +93,8 @@ pub fn flow_speed(scene: &Scene) -> f64 {
         })
     });
     let swing = swings.chain(spins).fold(0.0, f64::max);
+    // What stays behind a frame that moves is that fast in it.
+    let swing = swing + scene.frame.as_ref().map_or(0.0, |frame| frame.motion.fastest(&domain));
     scene
         .shapes
         .iter()

@@ -35,6 +35,7 @@ impl Check<'_> {
         self.times();
         self.wave_makers();
         self.beach();
+        self.frame();
         self.probes();
         self.references();
         self.metrics();

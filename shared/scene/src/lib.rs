@@ -19,6 +19,7 @@ pub mod bounds;
 mod brackets;
 mod check;
 mod check_contact;
+mod check_frame;
 mod check_lattice;
 mod check_metric;
 mod check_probe;
@@ -33,6 +34,7 @@ mod effect;
 mod energy;
 mod error;
 mod file;
+mod frame;
 pub mod geometry;
 mod keys;
 mod load;
@@ -67,6 +69,7 @@ pub use contact::PairContact;
 pub use effect::{Decision, Derived, EffectName, Switch};
 pub use energy::{EnergyEntry, EnergyPart};
 pub use error::{Place, SceneError, SceneErrors};
+pub use frame::{Frame, Gravity};
 pub use halfstep_sph::Phase;
 pub use halfstep_sph::kernel::KernelName;
 pub use load::{load, load_with, parse, parse_with};
@@ -106,8 +109,11 @@ pub struct Scene {
     pub end_time: f64,
     /// How the time step is chosen.
     pub time_step: TimeStep,
-    /// Gravity, m/s².
+    /// Gravity, m/s²: in space, see [`Gravity`].
     pub gravity: [f64; 3],
+    /// The frame of reference, where it moves.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frame: Option<Frame>,
     /// The liquid, where the scene has one.
     pub fluid: Option<Fluid>,
     /// The solids, in the file's order. As JSON `solid`: an object for `[solid]`, a list for `[[solid]]`.

@@ -6,7 +6,7 @@ use super::preset::Defaults;
 use super::read_motion::Around;
 use super::section::{Range, Section};
 use super::*;
-use super::{read_contact, read_metric, read_probe, read_shape, read_solid};
+use super::{read_contact, read_metric, read_motion, read_probe, read_shape, read_solid};
 use std::path::Path;
 
 /// What a scene's file holds, before the sound speed `auto` is resolved.
@@ -98,6 +98,7 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&s
             None => TimeStep::Auto,
         },
         gravity,
+        frame: frame(top.section("frame"), &around),
         fluid,
         solids,
         interface,
@@ -122,6 +123,19 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&s
     top.node("parameters");
     top.finish();
     Draft { scene, sound_speed_auto, linear_auto, contact_said }
+}
+
+/// `[frame]`.
+fn frame(section: Section<'_>, around: &Around<'_>) -> Option<Frame> {
+    if !section.is_present() {
+        return None;
+    }
+    if section.node("motion").is_none() {
+        section.missing("motion");
+    }
+    let motion = read_motion::motion(&section, around);
+    section.finish();
+    Some(Frame { motion: motion? })
 }
 
 fn fixed(step: TimeStep) -> Option<f64> {

@@ -177,7 +177,9 @@ fn speed_with(scene: &Scene, pushes: impl Fn(&Shape) -> bool) -> f64 {
         None => 0.0,
     };
     let fastest = scene.shapes.iter().map(|s| speed(&s.velocity) + field(s) + moving(s)).fold(0.0, f64::max);
-    (2.0 * g * height).sqrt().max(fastest)
+    let frame = scene.frame.as_ref().zip(geometry::around(geometry::fluid_boxes(scene)));
+    let frame = frame.map_or(0.0, |(frame, water)| frame.motion.fastest(&water));
+    (2.0 * g * height).sqrt().max(fastest + frame)
 }
 
 /// The sound speed that keeps a fluid weakly compressible: ten times the expected speed.

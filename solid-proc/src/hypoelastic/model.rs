@@ -297,6 +297,10 @@ impl<const D: usize> SolidModel<D> for Hypoelastic<D> {
         &self.interface_set
     }
 
+    fn set_gravity(&mut self, gravity: [f64; D]) {
+        self.gravity = gravity;
+    }
+
     fn records(&self, particles: &[u32], out: &mut Vec<StateRecord>) {
         out.extend(particles.iter().map(|&p| self.record(p)));
     }

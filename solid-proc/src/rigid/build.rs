@@ -96,10 +96,11 @@ pub(super) fn system<const D: usize>(
     (system, names)
 }
 
-/// A bound of the speed of a shape that moves by prescription, m/s.
+/// A bound of the speed of a shape that moves by prescription, m/s, and of what stays behind a frame that does.
 fn fastest(scene: &Scene, shape: &Shape) -> f64 {
     let around = geometry::bounding_box(shape, scene);
-    shape.motion.as_ref().map_or(0.0, |motion| motion.fastest(&around))
+    let motions = shape.motion.iter().chain(scene.frame.as_ref().map(|frame| &frame.motion));
+    motions.map(|motion| motion.fastest(&around)).fold(0.0, |sum, speed| sum + speed)
 }
 
 fn link(joint: &Joint, ends: [usize; 2], bodies: &[Body]) -> Link {

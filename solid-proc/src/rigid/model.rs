@@ -177,6 +177,10 @@ impl<const D: usize> SolidModel<D> for Rigid<D> {
         &self.interface_set
     }
 
+    fn set_gravity(&mut self, gravity: [f64; D]) {
+        self.system.gravity = wide(gravity).into();
+    }
+
     fn records(&self, particles: &[u32], out: &mut Vec<StateRecord>) {
         out.extend(particles.iter().map(|&p| self.record(p)));
     }

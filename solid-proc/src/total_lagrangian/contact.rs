@@ -45,7 +45,7 @@ pub(crate) struct Contact<const D: usize> {
     wall_spacing: f64,
     smoothing_length: f64,
     domain: ([f64; D], [f64; D]),
-    gravity: [f64; D],
+    pub(crate) gravity: [f64; D],
     stiffness: f64,
     mass: f64,
     /// What a wall particle's cell holds of the solid's material, kg (2D: kg/m).

@@ -353,6 +353,13 @@ impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {
         &self.interface_set
     }
 
+    fn set_gravity(&mut self, gravity: [f64; D]) {
+        self.gravity = gravity;
+        if let Some(contact) = &mut self.contact {
+            contact.gravity = gravity;
+        }
+    }
+
     fn records(&self, particles: &[u32], out: &mut Vec<StateRecord>) {
         out.extend(particles.iter().map(|&p| self.record(p)));
     }

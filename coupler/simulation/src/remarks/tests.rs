@@ -476,3 +476,15 @@ fn a_given_mass_is_shown() {
     let given = mass("bodies = [{ name = \"c\", mass = 20.0 }]");
     assert!(given.contains(", 20 kg/m"), "{given}");
 }
+
+#[test]
+fn a_frame_that_changes_nothing_or_leaves_much_out() {
+    let seen = |motion: &str| plain(&[&format!("[frame]\nmotion = {motion}\n"), TANK, WATER, PLATE]);
+    assert_eq!(seen("{ amplitude = [0.01, 0.0], period = 1.0, ramp = 0.5 }"), [""; 0]);
+    let nothing = seen("{ velocity = [0.1, 0.0] }");
+    assert!(nothing.iter().any(|remark| remark.contains("changes gravity at no time")), "{nothing:?}");
+    // 0.1 rad/s over 0.5 m is nothing; 0.2 rad at 2 pi rad/s is 7.9 rad/s2, half of gravity.
+    assert_eq!(seen("{ angular_velocity = 0.1, pivot = [0.0, 0.0] }"), [""; 0]);
+    let much = seen("{ angle = 0.2, period = 1.0, ramp = 0.5, pivot = [0.0, 0.0] }");
+    assert!(much.iter().any(|remark| remark.contains("Coriolis forces are left out")), "{much:?}");
+}

@@ -21,6 +21,7 @@ pub(crate) fn scene() -> Scene {
         end_time: 0.4,
         time_step: TimeStep::Auto,
         gravity: [0.0, -9.81, 0.0],
+        frame: None,
         fluid: gate.fluid,
         solids: gate.solids,
         interface: Interface {

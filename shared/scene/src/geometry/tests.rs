@@ -65,6 +65,7 @@ fn scene(shapes: Vec<Shape>) -> Scene {
             lattice: Lattice::Centred,
             domain: None,
         },
+        frame: None,
         unused_parameters: Vec::new(),
     }
 }

@@ -2,6 +2,7 @@
 
 use super::material::{CONTACT, SOLID};
 use super::measure::{METRIC, PROBE, REFERENCE};
+use super::motion::MOTION;
 use super::shape::{BOX, SHAPE};
 use super::{Key, Kind, Table, words};
 use crate::read::{self, COEFFICIENT, DENSITY, MAX_THREADS, SMOOTHING};
@@ -29,6 +30,7 @@ pub(crate) static SCENE: Table = Table::new(
         .unit("s")
         .default("\"auto\", or the preset's"),
         Key::new("gravity", Kind::Vector, "Acceleration of gravity.").unit("m/s2").default("[0.0, -9.81]"),
+        Key::new("frame", Kind::Table(&FRAME), "A frame of reference that moves."),
         Key::new(
             "parameters",
             Kind::Parameters,
@@ -46,6 +48,17 @@ pub(crate) static SCENE: Table = Table::new(
         Key::new("reference", Kind::Tables(&REFERENCE), "Curves of the literature."),
         Key::new("metric", Kind::Tables(&METRIC), "Numbers that a study compares."),
     ],
+);
+
+static FRAME: Table = Table::new(
+    "frame",
+    "The scene is seen from something that moves, such as a tank that is shaken.",
+    &[Key::new(
+        "motion",
+        Kind::TableOrTables(&MOTION),
+        "How the frame moves in space: gravity is less its acceleration, and turned back by its angle.",
+    )
+    .required()],
 );
 
 static FLUID: Table = Table::new(

@@ -89,6 +89,16 @@ impl Course {
         }
     }
 
+    /// When it begins and ends, s; twice the start where it goes on.
+    pub(crate) fn ends(&self) -> [f64; 2] {
+        match self {
+            Self::Steady { start, end, .. } => [*start, *end],
+            Self::Sine { start, .. } => [*start; 2],
+            Self::Points(spline) => spline.ends(),
+            Self::Solitary(_) => [0.0; 2],
+        }
+    }
+
     /// Least and largest s until a time.
     fn extent(&self, end_time: f64) -> (f64, f64) {
         match self {

@@ -59,6 +59,11 @@ impl Spline {
         [self.values[k], rate, bend, (next - bend) / h]
     }
 
+    /// Times of the first and the last point, s.
+    pub(crate) fn ends(&self) -> [f64; 2] {
+        [self.times[0], self.times[self.times.len() - 1]]
+    }
+
     /// Least and largest value.
     pub fn extent(&self) -> (f64, f64) {
         let mut extent = (f64::INFINITY, f64::NEG_INFINITY);
