@@ -43,6 +43,23 @@ fn blocks_of_all_models_stay_behind_a_shaken_frame() {
     }
 }
 
+/// X along x from a file whose rows are 10 ms apart, along y as a sum of two sines.
+#[test]
+fn a_block_stays_behind_a_recorded_frame() {
+    let folder = tempfile::tempdir().unwrap();
+    let x = |t: f64| 0.02 * (PI * t).sin().powi(2) * (8.0 * PI * t).sin();
+    let rows: Vec<String> = (0..=100).map(|k| 0.01 * f64::from(k)).map(|t| format!("{t},{}", x(t))).collect();
+    std::fs::write(folder.path().join("x.csv"), format!("t,x\n{}\n", rows.join("\n"))).unwrap();
+    let frame = "[{ file = \"x.csv\", columns = { time = \"t\", x = \"x\" } }, \
+        { amplitude = [0.0, 0.02], period = 0.1, ramp = 0.1 }, { amplitude = [0.0, 0.01], period = 0.15, ramp = 0.1 }]";
+    let found = at_end(&block(folder.path(), "total-lagrangian", frame, ""));
+    let y = 0.02 * (20.0 * PI * 0.2).sin() + 0.01 * (2.0 * PI * 0.2 / 0.15).sin();
+    let expected = [0.05 - x(0.2), 0.05 - y - 0.5 * 9.81 * 0.04];
+    println!("{found:?}, {expected:?}");
+    // 1 um along x by the splines, 24 um along y by the steps: the sines are ten times as fast.
+    assert!((0..2).all(|d| (found[d] - expected[d]).abs() < 5e-5), "{found:?} {expected:?}");
+}
+
 /// Steps of half the length have a quarter of the error: gravity is that of each stage's instant.
 #[test]
 fn gravity_is_of_second_order_in_time() {
