@@ -56,7 +56,7 @@ fn a_block_stays_behind_a_recorded_frame() {
     let y = 0.02 * (20.0 * PI * 0.2).sin() + 0.01 * (2.0 * PI * 0.2 / 0.15).sin();
     let expected = [0.05 - x(0.2), 0.05 - y - 0.5 * 9.81 * 0.04];
     println!("{found:?}, {expected:?}");
-    // 1 um along x by the splines, 24 um along y by the steps: the sines are ten times as fast.
+    // 1 um along x by the splines, 24 um along y by the steps, whose sines are 2.5 times as fast.
     assert!((0..2).all(|d| (found[d] - expected[d]).abs() < 5e-5), "{found:?} {expected:?}");
 }
 
