@@ -10,6 +10,7 @@ use crate::ledger::Measuring;
 use crate::rates::PairEffect;
 use crate::walls::Walls;
 use halfstep_role::role::fastest;
+use halfstep_role::timeline;
 use halfstep_scene::{Decision, EnergyPart, Scene};
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::Isa;
@@ -125,7 +126,7 @@ pub trait Effects<const D: usize>: Send + Sync {
     /// Measures the power of each share of a pair of a fluid and a wall particle.
     fn measure_walls<K: Kernel<D>>(&self, measuring: &mut Measuring<'_, K, D>);
     /// Gives each effect that acts on single particles, by its name, to a function.
-    fn on_particles(&self, act: &mut dyn FnMut(&str, OnParticle<'_, D>));
+    fn on_particles(&self, act: &mut dyn FnMut(&'static str, OnParticle<'_, D>));
     /// Bytes allocated.
     fn bytes(&self) -> usize;
 }
@@ -142,7 +143,7 @@ impl<const D: usize> Effects<D> for () {
     }
     fn pairs_without(&self, _: &str) {}
     fn at_walls(&self) {}
-    fn on_particles(&self, _: &mut dyn FnMut(&str, OnParticle<'_, D>)) {}
+    fn on_particles(&self, _: &mut dyn FnMut(&'static str, OnParticle<'_, D>)) {}
     fn drift(&self) -> Option<&[[f64; D]]> {
         None
     }
@@ -171,7 +172,10 @@ impl<const D: usize, E: FluidEffect<D>, R: Effects<D>> Effects<D> for (Option<E>
         self.1.resize(slots, walls);
     }
     fn prepare<K: Kernel<D>>(&mut self, stage: Stage, around: &Neighbourhood<'_, K, D>) -> u64 {
-        let own = self.0.as_mut().map_or(0, |effect| effect.prepare(stage, around));
+        let own = self.0.as_mut().map_or(0, |effect| {
+            let _phase = timeline::phase(E::NAME);
+            effect.prepare(stage, around)
+        });
         own + self.1.prepare(stage, around)
     }
     fn pairs_without(&self, name: &str) -> Self::Pairs<'_> {
@@ -210,7 +214,7 @@ impl<const D: usize, E: FluidEffect<D>, R: Effects<D>> Effects<D> for (Option<E>
         }
         self.1.measure_walls(measuring);
     }
-    fn on_particles(&self, act: &mut dyn FnMut(&str, OnParticle<'_, D>)) {
+    fn on_particles(&self, act: &mut dyn FnMut(&'static str, OnParticle<'_, D>)) {
         if let Some(effect) = self.0.as_ref().filter(|_| E::ON_PARTICLES) {
             act(E::NAME, &|position, velocity| effect.on_particle(position, velocity));
         }

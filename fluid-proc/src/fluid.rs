@@ -16,6 +16,7 @@ use crate::walls::moving::motions;
 use halfstep_interface::Parameters;
 use halfstep_role::ledger::Ledger;
 use halfstep_role::role::{Costs, CoverageError, Peer, Role};
+use halfstep_role::timeline;
 use halfstep_scene::bounds::Bounds;
 use halfstep_scene::geometry;
 use halfstep_scene::{Gravity, KernelName, Phase, Scene};
@@ -258,11 +259,13 @@ impl<const D: usize, X: FluidEffect<D>> Role for Fluid<D, X> {
         let stale = self.displacement + self.displacement.max(walls) > self.skin
             || self.coupling.as_ref().is_some_and(|c| c.is_stale(peers));
         if stale && !self.published {
+            let _phase = timeline::phase("neighbour lists");
             self.sort();
         }
         self.published = false;
         let Some(coupling) = &mut self.coupling else { return 0 };
         if self.sorted {
+            let _phase = timeline::phase("interface selection");
             coupling.choose(&self.columns, peers);
             self.sorted = false;
         }
@@ -307,6 +310,7 @@ impl<const D: usize, X: FluidEffect<D>> Role for Fluid<D, X> {
         if half_step.stage == Stage::Second {
             self.measure_cross_viscosity(forces);
             if let Some(drift) = self.effects.drift() {
+                let _phase = timeline::phase("drift");
                 midpoint::shift(&mut self.columns, drift, half_step.dt);
             }
         }

@@ -12,6 +12,7 @@ use crate::fluid::Fluid;
 use crate::momentum::pressure_and_continuity;
 use crate::rates::{FluidPair, PairEffect, PairRates, Target};
 use halfstep_role::ledger::Ledger;
+use halfstep_role::timeline;
 use halfstep_scene::{EnergyPart, Phase};
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::{Arch, Isa, LANES, Lane, Lanes};
@@ -148,6 +149,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
     /// Notes the powers of all shares at n + 1/2.
     pub(crate) fn measure_powers<K: Kernel<D>>(&mut self, kernel: K) {
         let Some(FluidLedger { powers, sums, .. }) = &mut self.ledger else { return };
+        let _phase = timeline::phase("energy ledger");
         powers.fill(0.0);
         let fluid = &self.columns.now;
         let (id, isa) = (self.columns.id.as_slice(), self.isa);

@@ -6,6 +6,7 @@ use crate::fluid::Fluid;
 use crate::rates::{PairEffect, RateLaw, RateSum};
 use crate::walls::{WallLaw, Walls};
 use halfstep_role::role::{Costs, fastest};
+use halfstep_role::timeline;
 use halfstep_scene::EffectName;
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::LANES;
@@ -18,9 +19,13 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         let stage = self.stage;
         self.pair_evaluations += self.among(kernel, |effects, around| effects.prepare(stage, around));
         let mut sums = std::mem::take(&mut self.sums);
-        self.rates(kernel, self.effects.pairs(), &mut sums);
+        {
+            let _phase = timeline::phase("pair pass");
+            self.rates(kernel, self.effects.pairs(), &mut sums);
+        }
         self.wall_rates(kernel, &mut sums);
-        self.effects.on_particles(&mut |_, of| {
+        self.effects.on_particles(&mut |name, of| {
+            let _phase = timeline::phase(name);
             for (slot, particle) in self.columns.now.sources.iter().enumerate() {
                 sums[slot / LANES].add(slot % LANES, of(&particle.position, &particle.velocity), 0.0);
             }
@@ -44,6 +49,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
     /// Pressure and velocity that the walls show.
     fn extrapolate<K: Kernel<D>>(&mut self, kernel: K) {
         let Some(walls) = &mut self.walls else { return };
+        let _phase = timeline::phase("walls: extrapolation");
         let mut sources = std::mem::take(&mut walls.shown.sources);
         let law = WallLaw::new(kernel, self.gravity, walls, &self.columns);
         let (fours, _) = sources.as_chunks_mut();
@@ -61,6 +67,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
     /// Adds the rates by the walls.
     fn wall_rates<K: Kernel<D>>(&self, kernel: K, sums: &mut [RateSum<D>]) {
         let Some(walls) = &self.walls else { return };
+        let _phase = timeline::phase("walls: rates");
         self.effects.at_walls().run(OverWalls { kernel, fluid: self, walls, sums });
     }
 

@@ -3,6 +3,7 @@
 use crate::fake_fluid::FakeFluidArguments;
 use crate::helpers::{self, Kind};
 use clap::{Parser, Subcommand};
+use halfstep_role::timeline::Window;
 use halfstep_study::command::StudyArguments;
 use halfstep_study::compare_command::CompareArguments;
 use std::path::PathBuf;
@@ -99,6 +100,14 @@ pub(crate) struct RunArguments {
     /// Removes an earlier run in the folder
     #[arg(long)]
     pub(crate) force: bool,
+    /// Writes a timeline of half-steps, who does what and waits for whom: a trace event file (JSON), which Perfetto
+    /// and chrome://tracing open, and trace.png in the run's folder
+    #[arg(long, value_name = "FILE")]
+    pub(crate) trace: Option<PathBuf>,
+    /// Steps in the timeline: FROM and those after it, but not TO; 1000 at most. What a killed process did in a window
+    /// that had not passed is lost; a run that ends otherwise within it has its part
+    #[arg(long, value_name = "FROM..TO", default_value = "100..120", requires = "trace")]
+    pub(crate) trace_steps: Window,
     #[command(flatten)]
     pub(crate) how: HowArguments,
 }

@@ -9,7 +9,7 @@ use arguments::{
 };
 use clap::{CommandFactory, Parser};
 use halfstep::Launcher;
-use halfstep::options::{RunOptions, SolidSource, known_solid};
+use halfstep::options::{RunOptions, SolidSource, Trace, known_solid};
 use halfstep::{isa, run};
 use halfstep_coupling::say;
 use halfstep_coupling::supervise::StopFlags;
@@ -165,6 +165,8 @@ fn run_scene(arguments: RunArguments, isa: Isa) -> ExitCode {
         Ok(options) => options,
         Err(error) => return usage(&error),
     };
+    let trace = arguments.trace.map(|file| Trace { file, window: arguments.trace_steps });
+    let options = RunOptions { trace, ..options };
     match run::run(&scene, &options) {
         Err(error) => usage(&error),
         Ok(ended) => tell(&scene, &options.out, ended),

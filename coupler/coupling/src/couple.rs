@@ -10,6 +10,7 @@ pub use crate::solids::ContactSummary;
 use crate::solids::{Jump, Solids, Work};
 use halfstep_link::{CouplerPort, Expect, StateMessage};
 use halfstep_output::run_json::RoleSeconds;
+use halfstep_role::timeline::{self, Kind, Watch};
 use halfstep_scene::Scene;
 use halfstep_sph::Phase;
 use halfstep_sph::lane::Isa;
@@ -19,7 +20,7 @@ use halfstep_wire::half_step::HalfStep;
 use halfstep_wire::protocol::{ForceHeader, StateHeader, ability, order, status};
 use halfstep_wire::state::{Fields, Group, State, StateError};
 use std::sync::atomic::Ordering;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Half-steps between two checks that action equals reaction.
 const AUDIT_INTERVAL: u64 = 50;
@@ -131,6 +132,8 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
     /// # Errors
     /// As for [`Self::run`].
     pub fn first(&mut self, course: &mut Course) -> Result<bool, RunError> {
+        let began = timeline::begin(&self.half_step, 1);
+        let _turn = timeline::turn(Name::COUPLER);
         self.receive(&course.progress, &Expect::of(&self.half_step))?;
         if self.abilities.is_empty() {
             self.abilities = self.states.iter().map(|state| state.header().abilities).collect();
@@ -145,6 +148,7 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
         }
         self.complete_checkpoint(course)?;
         self.stopped = course.stop.load(Ordering::Relaxed);
+        let checks = timeline::phase("balance and time step");
         let limit = |(k, state): (usize, &P::State)| Limit {
             participant: self.port.name(k),
             dt: state.header().dt_limit,
@@ -165,9 +169,11 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
             }
             _ => None,
         };
+        drop(checks);
         self.half_step = tick.half_step();
         self.tick = Some(tick);
         self.answer(&tick, checkpoint)?;
+        timeline::end(Name::COUPLER, began);
         Ok(tick.dt.is_some())
     }
 
@@ -178,7 +184,9 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
     /// As for [`Self::run`].
     pub fn note(&mut self, course: &mut Course) -> Result<(), RunError> {
         let Some(tick) = self.tick else { return Ok(()) };
+        let _turn = timeline::turn(Name::COUPLER);
         self.measure(&tick)?;
+        let _phase = timeline::phase_of(Kind::Output, "recorder");
         let of = self.phases.iter().zip(&self.states).zip(&self.probes);
         let measured: Vec<Measured<'_>> =
             of.map(|((phase, state), probes)| Measured::of(*phase, state.header(), probes)).collect();
@@ -194,11 +202,14 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
     pub fn second(&mut self, course: &mut Course) -> Result<(), RunError> {
         let Some(tick) = self.tick else { return Ok(()) };
         self.half_step = self.half_step.next();
+        let began = timeline::begin(&self.half_step, 1);
+        let _turn = timeline::turn(Name::COUPLER);
         self.receive(&course.progress, &Expect::of(&self.half_step))?;
         self.complete_checkpoint(course)?;
         self.answer(&tick, None)?;
         self.states.clear();
         course.clock.advance(&tick);
+        timeline::end(Name::COUPLER, began);
         self.half_step = self.half_step.next();
         Ok(())
     }
@@ -208,6 +219,7 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
     /// # Errors
     /// As for [`Self::run`].
     pub fn end(&mut self, course: &mut Course) -> Result<Outcome, RunError> {
+        timeline::finish();
         self.receive(&course.progress, &Expect::last(self.half_step.step))?;
         self.solids.finish()?;
         // All frames of external solids are on disk.
@@ -223,6 +235,7 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
 
     fn complete_checkpoint(&self, course: &mut Course) -> Result<(), RunError> {
         let Some(checkpoints) = &mut course.checkpoints else { return Ok(()) };
+        let _phase = timeline::phase_of(Kind::Output, "checkpoint");
         let safe = |(place, state): (usize, &P::State)| {
             let header = state.header();
             let frames = if self.solids.is_external(place) {
@@ -243,6 +256,7 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
         if !checkpoints.is_due(clock, limits, self.stopped) {
             return Ok(None);
         }
+        let _phase = timeline::phase_of(Kind::Output, "checkpoint");
         recorder.synchronise()?;
         self.solids.note_saved(&self.states);
         let mut group = Group::default();
@@ -281,7 +295,9 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
         self.states.clear();
         for place in (first_solid..participants).chain(0..first_solid) {
             progress.await_message(place);
-            let state = self.port.receive_state(place, expect)?;
+            let (from, times) = (self.port.name(place), P::times);
+            let take = |port: &mut P| port.receive_state(place, expect);
+            let state = timeline::receive(&mut self.port, "wait for state", from, times, take)?;
             progress.note_message();
             self.reject_failure(place, state.header())?;
             self.states.push(state);
@@ -290,6 +306,7 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
         if expect.is_last() {
             return Ok(());
         }
+        let _phase = timeline::phase("checks");
         let (step, name) = (expect.step, |place| self.port.name(place));
         if let Some((place, first, now)) = self.solids.recounted(&self.states) {
             let solid = name(place);
@@ -337,14 +354,16 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
                 }
             }
             if tick.row {
-                self.port.receive_probes(place, tick.step, values)?;
+                let (from, times) = (self.port.name(place), P::times);
+                let take = |port: &mut P| port.receive_probes(place, tick.step, values);
+                timeline::receive(&mut self.port, "wait for probes", from, times, take)?;
             }
         }
         Ok(())
     }
 
     fn answer(&mut self, tick: &Tick, checkpoint: Option<u64>) -> Result<(), RunError> {
-        let start = Instant::now();
+        let watch = Watch::start(Kind::Compute, "cross force");
         self.checks += self.states.len() as u64;
         let mut header = self.half_step.force_header();
         header.order = tick.orders(self.half_step.stage);
@@ -357,12 +376,13 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
             self.frame += 1;
         }
         self.pair_evaluations += self.solids.evaluate(&self.states, self.half_step.before());
-        self.compute += start.elapsed();
+        self.compute += watch.stop();
         for (place, forces) in self.solids.answers() {
             let epoch = self.states[place].header().epoch;
+            let _phase = timeline::phase_of(Kind::Message, "send");
             self.port.send_forces(place, &ForceHeader { epoch, ..header }, forces)?;
         }
-        let start = Instant::now();
+        let watch = Watch::start(Kind::Compute, "audit");
         if self.half_steps.is_multiple_of(AUDIT_INTERVAL)
             && let Some(mismatch) = self.solids.audit(&self.states)
         {
@@ -370,7 +390,7 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
             self.checks += 1;
         }
         self.half_steps += 1;
-        self.compute += start.elapsed();
+        self.compute += watch.stop();
         Ok(())
     }
 

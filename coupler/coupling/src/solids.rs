@@ -7,6 +7,7 @@ use halfstep_interface::contact::{Booked, Contact, PairLaw};
 use halfstep_interface::cross_viscosity::CrossViscosity;
 use halfstep_interface::{Interface, Parameters};
 use halfstep_link::{FLUID, StateMessage};
+use halfstep_role::timeline;
 use halfstep_scene::{Gravity, Scene};
 use halfstep_sph::lane::Isa;
 use halfstep_wire::half_step::Stage;
@@ -262,6 +263,7 @@ impl<const D: usize> Solids<D> {
     /// Adds the forces of contacts to those of the fluid.
     fn touch(&mut self, states: &[impl StateMessage]) {
         let Some(contact) = &mut self.contact else { return };
+        let _phase = timeline::phase("contact");
         let whole = states[self.first].header().stage == Stage::First.number();
         contact.evaluate(|solid| states[solid + self.first].records(), whole);
         contact.forces(|solid, record, force| {

@@ -39,6 +39,7 @@ mod session;
 mod silence;
 mod simulation;
 mod step_cost;
+mod timeline;
 
 pub use error::Error;
 pub use halfstep_fluid::effects::FluidEffect;

@@ -1,6 +1,7 @@
 //! How a scene is run.
 
 use halfstep_coupling::supervise::StopFlags;
+use halfstep_role::timeline::Window;
 use halfstep_scene::Scene;
 use halfstep_sph::lane::Isa;
 use halfstep_wire::Name;
@@ -21,6 +22,15 @@ pub struct Launcher {
     /// A program that serves a process of participants when it is started with the arguments `role NAME`: `halfstep`,
     /// or any program that calls [`crate::role_main`] first.
     pub program: PathBuf,
+}
+
+/// A timeline of half-steps.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Trace {
+    /// Trace event file.
+    pub file: PathBuf,
+    /// The steps whose half-steps are recorded.
+    pub window: Window,
 }
 
 /// How to run.
@@ -51,6 +61,8 @@ pub struct RunOptions {
     pub retries: u32,
     /// Instruction set of every role; one that the processor has.
     pub isa: Isa,
+    /// Writes a timeline; `None`: nothing is recorded.
+    pub trace: Option<Trace>,
 }
 
 impl RunOptions {
@@ -69,6 +81,7 @@ impl RunOptions {
             patience: 600.0,
             retries: 0,
             isa: Isa::detect(),
+            trace: None,
         }
     }
 

@@ -1,6 +1,7 @@
 //! The process of a role: what a program becomes that a [`crate::Launcher`] starts.
 
 use crate::isa;
+use crate::timeline;
 use halfstep_coupling::supervise::abort_flag;
 use halfstep_coupling::{no_room, say};
 use halfstep_coupling::{reports, roles};
@@ -53,6 +54,7 @@ pub fn serve_role(name: &str, isa: Isa) -> u8 {
                 abort,
                 |scene, places, folder, checkpoint| roles::members(scene, places, isa, folder, checkpoint),
                 |folder, report| Ok(reports::write(folder, report)?),
+                move |folder, part| timeline::keep(folder, process, &part),
             )
         });
     match result {

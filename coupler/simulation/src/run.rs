@@ -3,7 +3,7 @@
 use crate::checkpoint::Checkpoint;
 use crate::options::{RunOptions, known_solid};
 use crate::session::Session;
-use crate::{course, effects, forecast, remarks};
+use crate::{course, effects, forecast, remarks, timeline};
 use halfstep_coupling::course::Course;
 use halfstep_coupling::error::RunError;
 use halfstep_coupling::local::LocalRun;
@@ -15,6 +15,7 @@ use halfstep_role::serve;
 use halfstep_scene::geometry::{self, Layout};
 use halfstep_scene::{Scene, dispatch};
 use halfstep_sph::lane::Isa;
+use halfstep_wire::Name;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -29,9 +30,20 @@ pub fn run(scene: &Scene, options: &RunOptions) -> Result<Ended, RunError> {
     check_external(scene, options)?;
     // Before an earlier run is removed.
     check_resources(scene, options)?;
+    if let Some(trace) = &options.trace {
+        timeline::check(trace, &options.out, options.force)?;
+    }
     let directory = RunDirectory::create(&options.out, options.force)?;
+    if let Some(trace) = &options.trace {
+        // An earlier one, which may be replaced, would pass for this run's where nothing is recorded.
+        let _ = std::fs::remove_file(&trace.file);
+    }
     let ended = execute(scene, options, &directory, None)?;
-    retry(scene, options, &directory, ended, 1.0)
+    let ended = retry(scene, options, &directory, ended, 1.0)?;
+    if let Some(trace) = &options.trace {
+        timeline::finish(scene, directory.path(), trace, ended.0.steps);
+    }
+    Ok(ended)
 }
 
 /// Lets a run that has diverged go on from its last checkpoint with half the time step, as often as the options say.
@@ -276,6 +288,8 @@ fn local<const D: usize>(
         let from = checkpoint.map(|checkpoint| checkpoint.folder.as_path());
         let members = roles::members(scene, &places, options.isa, Some(directory.path()), from)?;
         let coupler = checkpoint.map(|checkpoint| &checkpoint.coupler);
+        let traced = options.trace.as_ref();
+        let _recording = traced.map(|to| timeline::record(to.window, directory.path(), Name::COUPLER));
         let mut run = LocalRun::<D>::new(members, scene, course, options.isa, coupler)?;
         let result = run.run().map(|ended| course::report_local(scene, &options.external, ended, report));
         Ok((run.into_course(), result))

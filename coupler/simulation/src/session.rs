@@ -7,6 +7,7 @@ use crate::options::{Launcher, RunOptions, SolidSource};
 use crate::participants::{participants, report_outcome, report_participants};
 use crate::particles::{self, PARTICLES_VARIABLE};
 use crate::silence::{Ended, Silence, TICK, TOLD};
+use crate::timeline;
 use halfstep_coupling::couple::{Coupler, Outcome};
 use halfstep_coupling::course::Course;
 use halfstep_coupling::error::RunError;
@@ -21,7 +22,10 @@ use halfstep_output::run_json::{Percentiles, RunStatus};
 use halfstep_output::{self as output, RunDirectory, RunReport};
 use halfstep_role::lockstep::RoleError;
 use halfstep_role::report::Report;
-use halfstep_role::serve::{self, CHECKPOINT_VARIABLE, FOLDER_VARIABLE, SCENE_VARIABLE, THREADS_VARIABLE};
+use halfstep_role::serve::{
+    self, CHECKPOINT_VARIABLE, FOLDER_VARIABLE, SCENE_VARIABLE, THREADS_VARIABLE, TIMELINE_VARIABLE,
+};
+use halfstep_role::timeline::Recording;
 use halfstep_scene::Scene;
 use halfstep_scene::geometry::Layout;
 use halfstep_wire::Name;
@@ -186,6 +190,9 @@ impl<'a, const D: usize> Session<'a, D> {
                 .envs(told.iter().copied())
                 .env(THREADS_VARIABLE, self.threads(process).to_string())
                 .env(ISA_VARIABLE, isa::name(self.options.isa));
+            if let Some(trace) = &self.options.trace {
+                command.env(TIMELINE_VARIABLE, trace.window.to_string());
+            }
             children.spawn(process, command)?;
         }
         let (abort, progress) = (Arc::new(AtomicBool::new(false)), Arc::clone(&course.progress));
@@ -307,7 +314,14 @@ impl<'a, const D: usize> Session<'a, D> {
         if let Some(checkpoint) = self.checkpoint {
             coupler.resume(&mut course.clock, &checkpoint.coupler)?;
         }
+        let _recording = self.record(Name::COUPLER);
         coupler.run(course)
+    }
+
+    /// Records the half-steps of this thread, which is a process of the scene or the coupler, if that is asked for.
+    fn record(&self, process: Name) -> Option<Recording> {
+        let trace = self.options.trace.as_ref()?;
+        Some(timeline::record(trace.window, self.directory.path(), process))
     }
 
     fn as_threads(&self, course: &mut Course) -> Result<Outcome, RunError> {
@@ -355,6 +369,7 @@ impl<'a, const D: usize> Session<'a, D> {
             let from = self.checkpoint.map(|checkpoint| checkpoint.folder.as_path());
             let members = roles::members(self.scene, &places, self.options.isa, Some(folder), from)?;
             let mut deliver = |report: &Report| Ok(reports::write(folder, report)?);
+            let _recording = self.record(process);
             serve::serve::<Threads>(members, &self.config, process, abort, &mut deliver)
         });
         let result = result.and_then(|served| served);

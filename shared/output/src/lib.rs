@@ -7,6 +7,7 @@
 //! | `run.json` | [`RunReport`] |
 //! | `checkpoint-a/`, `checkpoint-b/` | [`checkpoint`] |
 //! | `plot.png`, `contact.png` | [`draw_plot`], [`draw_contact`] |
+//! | `trace.json`, `trace.png` | [`timeline`], [`draw_timeline`] |
 //!
 //! A file that a reader can see is whole: except for `probes.csv`, which grows line by line, every file is written
 //! under a temporary name (`.NAME.tmp`), synchronised with the disk and renamed. Killing the program at any moment
@@ -34,12 +35,13 @@ pub mod probes;
 pub mod run_dir;
 pub mod run_json;
 pub mod series;
+pub mod timeline;
 pub mod vtkhdf;
 pub mod writer;
 
 pub use halfstep_wire::frame::{Frame, FramePoint};
 #[cfg(feature = "pictures")]
-pub use pictures::{draw_contact, draw_plot, draw_start};
+pub use pictures::{draw_contact, draw_plot, draw_start, draw_timeline};
 pub use probes::{ProbeLog, Table, read_probes};
 pub use run_dir::RunDirectory;
 pub use run_json::RunReport;

@@ -10,8 +10,17 @@ mod lock;
 use lock::Lock;
 
 /// Files that a run leaves in its folder, beside the frames.
-pub const FILES: [&str; 7] =
-    ["run.json", "probes.csv", "plot.png", "contact.png", "log.txt", "scene.json", "solid.env"];
+pub const FILES: [&str; 9] = [
+    "run.json",
+    "probes.csv",
+    "plot.png",
+    "contact.png",
+    "trace.json",
+    "trace.png",
+    "log.txt",
+    "scene.json",
+    "solid.env",
+];
 
 /// Whether a file in the run's folder is one that a run leaves.
 fn is_run_file(name: &str) -> bool {
@@ -20,6 +29,7 @@ fn is_run_file(name: &str) -> bool {
         || between("report-", ".json")
         || between("solid-", ".env")
         || between("particles-", ".csv")
+        || between("timeline-", ".json")
 }
 
 /// Whether a file in the folder of a checkpoint is part of one.

@@ -19,6 +19,7 @@ mod published;
 pub mod report;
 pub mod role;
 pub mod serve;
+pub mod timeline;
 mod track;
 
 pub use member::Member;

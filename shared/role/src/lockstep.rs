@@ -3,9 +3,11 @@
 use crate::member::Member;
 use crate::report::Report;
 use crate::role::{Peer, Role};
+use crate::timeline::{self, Kind};
 use crate::track::{Track, Written};
 use halfstep_link::{Expect, Port};
 use halfstep_sph::Phase;
+use halfstep_wire::Name;
 use halfstep_wire::frame::SinkError;
 use halfstep_wire::half_step::HalfStep;
 use halfstep_wire::protocol::{LAST_STAGE, StateHeader, order, status};
@@ -92,6 +94,8 @@ impl Lockstep {
     /// # Errors
     /// Something could not be written, or a message not be sent.
     pub fn end(&mut self, port: &mut dyn Port, deliver: Deliver<'_>) -> Result<(), RoleError> {
+        // What costs are measured by is no half-step.
+        timeline::finish();
         let written: Vec<Result<Written, SinkError>> = self.tracks.iter_mut().map(Track::finish).collect();
         for (k, written) in written.into_iter().enumerate() {
             // The last message says what is on disk.
@@ -133,17 +137,24 @@ impl Lockstep {
         mut part: impl FnMut(usize, &mut Track) -> Result<(), RoleError>,
     ) -> Result<(), Failed> {
         let mut all = self.tracks.iter_mut().enumerate();
-        all.try_for_each(|(k, track)| part(k, track).map_err(|error| (k, error)))
+        all.try_for_each(|(k, track)| {
+            let _turn = timeline::turn(track.member.role.name());
+            part(k, track).map_err(|error| (k, error))
+        })
     }
 
     fn exchange_and_advance(&mut self, port: &mut dyn Port) -> Result<bool, Failed> {
         let half_step = self.half_step;
+        let began = timeline::begin(&half_step, self.tracks.len());
         let expect = Expect::of(&half_step);
         match std::mem::replace(&mut self.begun, true) {
             true => self.each(|k, track| track.publish_to(port, k, &half_step))?,
             false => self.begin(port)?,
         }
-        self.tracks.iter_mut().for_each(Track::own_sums);
+        self.each(|_, track| {
+            track.own_sums();
+            Ok(())
+        })?;
         self.each(|k, track| {
             if !std::mem::take(&mut track.have_peers) {
                 track.receive_peers(port, k, &expect)?;
@@ -153,7 +164,13 @@ impl Lockstep {
         let (mut told, mut stopped, mut at) = (half_step, false, self.at);
         let answered = self.each(|k, track| {
             // At the first stage the answer brings the time step.
-            let answer = port.receive_forces(k, &expect, &mut track.forces)?;
+            let answer = timeline::receive(
+                port,
+                "wait for forces",
+                Name::COUPLER,
+                |port| port.times(),
+                |port| port.receive_forces(k, &expect, &mut track.forces),
+            )?;
             track.latency.add(track.sent.elapsed());
             told = half_step.with_step(answer.dt, answer.next_time);
             at = told.after();
@@ -161,6 +178,7 @@ impl Lockstep {
                 track.write_frame(answer.frame as u32, told.time).map_err(RoleError::Output)?;
             }
             if answer.order & order::SEND_PROBES != 0 {
+                let _phase = timeline::phase_of(Kind::Output, "probes");
                 track.probes.clear();
                 track.member.role.probes(&mut track.probes);
                 port.send_probes(k, told.step, told.time, &track.probes)?;
@@ -170,7 +188,11 @@ impl Lockstep {
             }
             // All participants are stopped at the same state.
             stopped = answer.order & order::STOP != 0;
-            if stopped { Ok(()) } else { track.advance(&told) }
+            if !stopped {
+                track.advance(&told)?;
+            }
+            timeline::end(track.member.role.name(), began);
+            Ok(())
         });
         self.at = at;
         answered?;

@@ -3,6 +3,7 @@
 use crate::lockstep::{Deliver, RoleError, drive};
 use crate::member::Member;
 use crate::report::Report;
+use crate::timeline::{self, Part, Window};
 use halfstep_link::{LinkConfig, ProcessLink, Processes, Transport};
 use halfstep_scene::Scene;
 use halfstep_wire::Name;
@@ -20,6 +21,8 @@ pub const FOLDER_VARIABLE: &str = "HALFSTEP_OUT";
 pub const CHECKPOINT_VARIABLE: &str = "HALFSTEP_CHECKPOINT";
 /// Environment variable with the number of worker threads.
 pub const THREADS_VARIABLE: &str = "HALFSTEP_THREADS";
+/// Environment variable with the steps whose half-steps are recorded, `FROM..TO`; without it nothing is.
+pub const TIMELINE_VARIABLE: &str = "HALFSTEP_TIMELINE";
 
 /// Drives the participants of `process` until the coupler says stop.
 ///
@@ -42,7 +45,7 @@ pub fn serve<S: Transport>(
 
 /// Serves the participants of this process: what the `main` of such a process calls. `build` makes them from the scene,
 /// given their places among the scene's participants, the run's folder, and that of the checkpoint that they go on
-/// from.
+/// from. `keep` takes the part of the timeline that the process recorded.
 ///
 /// # Errors
 /// The environment is not that of a run, or the run failed.
@@ -51,6 +54,7 @@ pub fn serve_process(
     abort: Arc<AtomicBool>,
     build: impl FnOnce(&Scene, &[usize], Option<&Path>, Option<&Path>) -> Result<Vec<Member>, RoleError> + Send,
     deliver: impl Fn(&Path, &Report) -> Result<(), SinkError> + Send,
+    keep: impl FnOnce(&Path, Part) + Send + 'static,
 ) -> Result<(), RoleError> {
     let start = |reason: String| RoleError::Start(reason);
     let config = LinkConfig::from_env()?;
@@ -60,11 +64,17 @@ pub fn serve_process(
         .map_err(|e| start(format!("cannot read {}: {e}", Path::new(&scene).display())))?;
     let scene = Scene::from_json(&text).map_err(|e| start(format!("not a resolved scene: {e}")))?;
     let threads = variable(THREADS_VARIABLE).and_then(|v| v.to_str()?.parse().ok()).unwrap_or(1);
+    let window = variable(TIMELINE_VARIABLE).map(|text| text.to_string_lossy().parse::<Window>()).transpose();
+    let window = window.map_err(|error| start(format!("{TIMELINE_VARIABLE}: {error}")))?;
     let folder = variable(FOLDER_VARIABLE);
     let folder = folder.as_deref().map(Path::new);
     let checkpoint = variable(CHECKPOINT_VARIABLE);
     on_threads(threads, move || {
         let members = build(&scene, &config.members(process), folder, checkpoint.as_deref().map(Path::new))?;
+        let _recording = window.zip(folder).map(|(window, folder)| {
+            let folder = folder.to_owned();
+            timeline::record(window, Box::new(move |part| keep(&folder, part)))
+        });
         let mut deliver = |report: &Report| folder.map_or(Ok(()), |folder| deliver(folder, report));
         serve::<Processes>(members, &config, process, abort, &mut deliver)
     })?

@@ -7,6 +7,7 @@ use crate::member::Member;
 use crate::published::Published;
 use crate::report::Report;
 use crate::role::{CoverageError, Peer};
+use crate::timeline::{self, Kind, Watch};
 use halfstep_link::{Expect, Port};
 use halfstep_scene::EffectName;
 use halfstep_sph::Phase;
@@ -66,7 +67,7 @@ impl Track {
     }
 
     fn publish(&mut self, half_step: &HalfStep) {
-        let start = Instant::now();
+        let watch = Watch::start(Kind::Compute, "publish");
         self.member.role.set_time(half_step.before());
         let epoch = self.member.role.publish(&self.peers, &mut self.own);
         let mut header = StateHeader {
@@ -93,7 +94,7 @@ impl Track {
             header = published.header(header);
         }
         self.header = header;
-        self.compute += start.elapsed();
+        self.compute += watch.stop();
         self.sent = Instant::now();
     }
 
@@ -104,6 +105,7 @@ impl Track {
         half_step: &HalfStep,
     ) -> Result<(), RoleError> {
         self.publish(half_step);
+        let _phase = timeline::phase_of(Kind::Message, "send");
         Ok(port.send_state(k, &self.header, &self.own)?)
     }
 
@@ -113,10 +115,11 @@ impl Track {
     }
 
     pub(crate) fn own_sums(&mut self) {
-        let start = Instant::now();
+        let watch = Watch::start(Kind::Compute, "sums");
         self.member.role.own_sums();
-        self.sums += start.elapsed();
-        self.compute += start.elapsed();
+        let took = watch.stop();
+        self.sums += took;
+        self.compute += took;
     }
 
     pub(crate) fn receive_peers(
@@ -126,7 +129,13 @@ impl Track {
         expect: &Expect,
     ) -> Result<(), RoleError> {
         for (place, peer) in self.peers.iter_mut().enumerate() {
-            let header = port.receive_peer(k, place, expect, &mut peer.records)?;
+            let header = timeline::receive(
+                port,
+                "wait for state",
+                port.peers(k)[place],
+                |port| port.times(),
+                |port| port.receive_peer(k, place, expect, &mut peer.records),
+            )?;
             if header.status != status::OK {
                 let (step, stage) = (header.step, header.stage);
                 return Err(RoleError::PeerEnded { peer: port.peers(k)[place], step, stage });
@@ -142,10 +151,11 @@ impl Track {
         k: usize,
         half_step: &HalfStep,
     ) -> Result<(), RoleError> {
-        let start = Instant::now();
+        let watch = Watch::start(Kind::Compute, "interface");
         let result = self.member.role.cross_sums(&self.own, &self.peers);
-        self.cross += start.elapsed();
-        self.compute += start.elapsed();
+        let took = watch.stop();
+        self.cross += took;
+        self.compute += took;
         result.map_err(|lost| self.fastest(port.peers(k), &lost, half_step).into())
     }
 
@@ -173,18 +183,18 @@ impl Track {
     }
 
     pub(crate) fn advance(&mut self, half_step: &HalfStep) -> Result<(), RoleError> {
-        let start = Instant::now();
+        let watch = Watch::start(Kind::Compute, "integrate");
         self.member.role.advance(half_step, &self.forces)?;
-        self.compute += start.elapsed();
+        self.compute += watch.stop();
         Ok(())
     }
 
     pub(crate) fn write_frame(&mut self, number: u32, time: f64) -> Result<(), SinkError> {
         let Some(frames) = &mut self.member.frames else { return Ok(()) };
-        let start = Instant::now();
+        let watch = Watch::start(Kind::Output, "frame");
         frames.submit(number, &mut |frame| self.member.role.fill_frame(time, frame))?;
         self.frame = number + 1;
-        self.output += start.elapsed();
+        self.output += watch.stop();
         Ok(())
     }
 
@@ -194,11 +204,11 @@ impl Track {
         else {
             return Ok(());
         };
-        let start = Instant::now();
+        let watch = Watch::start(Kind::Output, "checkpoint");
         let mut group = Published::of(&self.header).save();
         group.groups.insert("role".into(), state.save());
         checkpoints.submit(number, group)?;
-        self.output += start.elapsed();
+        self.output += watch.stop();
         Ok(())
     }
 

@@ -18,6 +18,7 @@ use super::model::{FiniteElement, add_to_nodes};
 use crate::account;
 use crate::columns::{Vectors, vectors};
 use crate::total_lagrangian::material::Matrix;
+use halfstep_role::timeline;
 use halfstep_scene::bounds::Excess;
 use halfstep_scene::{EnergyPart, Motion};
 use halfstep_sph::quantity::Quantity;
@@ -56,6 +57,7 @@ impl<const D: usize> FiniteElement<D> {
     pub(super) fn implicit_steps(&mut self, equations: &mut Equations<D>, count: u32, dt: f64, time: f64) {
         let each = dt / f64::from(count);
         for k in 0..count {
+            let _phase = timeline::phase("sub-step");
             self.implicit_step(equations, each, time + f64::from(k) * each, 0);
             self.evaluate();
         }

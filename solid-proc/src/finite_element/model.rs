@@ -19,6 +19,7 @@ use crate::total_lagrangian::contact::{Contact, Present};
 use crate::total_lagrangian::material::{Law, Matrix};
 use crate::total_lagrangian::step_limit::{squared_stretches, sub_step};
 use crate::verlet::Kinematics;
+use halfstep_role::timeline;
 use halfstep_scene::bounds::Excess;
 use halfstep_scene::geometry::{self, SolidPoint};
 use halfstep_scene::{
@@ -224,6 +225,7 @@ impl<const D: usize> FiniteElement<D> {
     fn sub_step(&mut self, count: u32, dt: f64, time: f64) {
         let each = dt / f64::from(count);
         for k in 1..=count {
+            let _phase = timeline::phase("sub-step");
             if let Some(contact) = &mut self.contact {
                 contact.set_time(time + f64::from(k) * each);
             }

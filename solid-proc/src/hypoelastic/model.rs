@@ -12,6 +12,7 @@ use crate::side_friction;
 use crate::surface::surface_set;
 use crate::wall::Walls;
 use halfstep_role::role::Costs;
+use halfstep_role::timeline;
 use halfstep_scene::bounds::Bounds;
 use halfstep_scene::geometry::{self, SolidPoint};
 use halfstep_scene::{ArtificialStress, EffectName, EnergyPart, KernelName, ModelKeys, Scene, Solid};
@@ -248,6 +249,7 @@ impl<const D: usize> Hypoelastic<D> {
     fn sub_step(&mut self, count: u32, dt: f64, time: f64, load: &Load<D>) {
         let each = dt / f64::from(count);
         for k in 0..count {
+            let _phase = timeline::phase("sub-step");
             self.at_n.copy_from(&self.now);
             self.midpoint(each, time + f64::from(k) * each, load);
         }

@@ -9,6 +9,7 @@ use crate::columns::ParticleColumns;
 use crate::model::{Load, OutOfBounds, Particles, RigidState, SolidModel};
 use crate::shown_velocity::ShownVelocity;
 use crate::surface::surface_set;
+use halfstep_role::timeline;
 use halfstep_scene::geometry::{self, SolidPoint};
 use halfstep_scene::{EnergyPart, Scene};
 use halfstep_sph::lane::Isa;
@@ -106,6 +107,7 @@ impl<const D: usize> Rigid<D> {
     fn sub_steps(&mut self, count: u32, dt: f64, time: f64) {
         let each = dt / f64::from(count);
         for k in 0..count {
+            let _phase = timeline::phase("sub-step");
             self.system.sub_step::<D>(each, time + f64::from(k) * each);
         }
     }

@@ -21,6 +21,7 @@ use crate::side_friction;
 use crate::surface::surface_set;
 use crate::verlet::Kinematics;
 use halfstep_role::role::Costs;
+use halfstep_role::timeline;
 use halfstep_scene::bounds::Excess;
 use halfstep_scene::geometry::{self, SolidPoint};
 use halfstep_scene::{EffectName, EnergyPart, KernelName, ModelKeys, Motion, Plane, Scene, Solid};
@@ -283,6 +284,7 @@ impl<const D: usize> TotalLagrangian<D> {
     fn sub_step(&mut self, count: u32, dt: f64, time: f64) {
         let each = dt / f64::from(count);
         for k in 1..=count {
+            let _phase = timeline::phase("sub-step");
             if let Some(contact) = &mut self.contact {
                 contact.set_time(time + f64::from(k) * each);
             }
