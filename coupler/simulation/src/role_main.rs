@@ -54,7 +54,7 @@ pub fn serve_role(name: &str, isa: Isa) -> u8 {
                 abort,
                 |scene, places, folder, checkpoint| roles::members(scene, places, isa, folder, checkpoint),
                 |folder, report| Ok(reports::write(folder, report)?),
-                move |folder, part| timeline::keep(folder, process, &part),
+                move |folder, part| timeline::keep(folder, process, process.as_str(), &part),
             )
         });
     match result {

@@ -289,7 +289,7 @@ fn local<const D: usize>(
         let members = roles::members(scene, &places, options.isa, Some(directory.path()), from)?;
         let coupler = checkpoint.map(|checkpoint| &checkpoint.coupler);
         let traced = options.trace.as_ref();
-        let _recording = traced.map(|to| timeline::record(to.window, directory.path(), Name::COUPLER));
+        let _recording = traced.map(|to| timeline::record(to.window, directory.path(), Name::COUPLER, false));
         let mut run = LocalRun::<D>::new(members, scene, course, options.isa, coupler)?;
         let result = run.run().map(|ended| course::report_local(scene, &options.external, ended, report));
         Ok((run.into_course(), result))

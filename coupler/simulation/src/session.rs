@@ -321,7 +321,8 @@ impl<'a, const D: usize> Session<'a, D> {
     /// Records the half-steps of this thread, which is a process of the scene or the coupler, if that is asked for.
     fn record(&self, process: Name) -> Option<Recording> {
         let trace = self.options.trace.as_ref()?;
-        Some(timeline::record(trace.window, self.directory.path(), process))
+        let own = self.options.launcher.is_some();
+        Some(timeline::record(trace.window, self.directory.path(), process, own))
     }
 
     fn as_threads(&self, course: &mut Course) -> Result<Outcome, RunError> {

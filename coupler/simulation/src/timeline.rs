@@ -45,24 +45,28 @@ pub(crate) fn check(trace: &Trace, out: &Path, force: bool) -> Result<(), RunErr
     }
 }
 
-/// Records the half-steps of this thread, which is what a process of the scene or the coupler runs in; what it recorded
-/// goes to the run's folder.
-pub(crate) fn record(window: Window, folder: &Path, process: Name) -> Recording {
+/// The process of participants and coupler that are threads of one.
+const ONE: &str = "halfstep";
+
+/// Records the half-steps of this thread, which does what a process of the scene or the coupler does; what it recorded
+/// goes to the run's folder. `own`: it has a process of its own.
+pub(crate) fn record(window: Window, folder: &Path, process: Name, own: bool) -> Recording {
     let folder = folder.to_owned();
-    timeline::record(window, Box::new(move |part| keep(&folder, process, &part)))
+    let shown = if own { process.to_string() } else { ONE.to_owned() };
+    timeline::record(window, Box::new(move |part| keep(&folder, process, &shown, &part)))
 }
 
-/// Writes the part of a process. A run does not end because its timeline cannot be written.
-pub(crate) fn keep(folder: &Path, process: Name, part: &Part) {
+/// Writes the part of a process, `shown` under a name. A run does not end because its timeline cannot be written.
+pub(crate) fn keep(folder: &Path, process: Name, shown: &str, part: &Part) {
     if part.events.is_empty() {
         return;
     }
-    if let Err(error) = of_part(process, part).write(&path(folder, process.as_str())) {
+    if let Err(error) = of_part(shown, part).write(&path(folder, process.as_str())) {
         tracing::warn!("{process}: its part of the timeline is missing: {error}");
     }
 }
 
-fn of_part(process: Name, part: &Part) -> Timeline {
+fn of_part(process: &str, part: &Part) -> Timeline {
     let mut tracks: Vec<Track> = Vec::new();
     let own = (process.to_string(), std::process::id());
     for event in &part.events {

@@ -220,6 +220,7 @@ impl Lockstep {
     /// The last states show where the trouble is; that they could not be written is not the reason why the run ended.
     fn last_frames(&mut self) {
         for track in &mut self.tracks {
+            let _turn = timeline::turn(track.member.role.name());
             let written = track.write_frame(track.frame, self.at);
             written.unwrap_or_else(|error| tracing::warn!("the last frame is missing: {error}"));
         }

@@ -2,7 +2,9 @@
 
 use super::plot::{CURVES, HEAD, REFERENCES};
 use super::stamp::{Scale, WALL, palette};
+use super::timeline::{COMPUTE, WAIT};
 use super::*;
+use crate::timeline::{HALF_STEP, Span, Timeline, Track};
 use crate::{ProbeLog, series};
 use std::collections::HashMap;
 use std::io::BufReader;
@@ -174,4 +176,39 @@ fn a_scene_is_drawn_before_its_run() {
     assert!(pixels(WALL) > 1000.0 * 0.9 * particle);
     let empty = halfstep_scene::Scene { shapes: Vec::new(), ..scene };
     assert!(draw_start(&empty, &picture).unwrap_err().to_string().ends_with("the scene has no particles"));
+}
+
+#[test]
+fn the_timeline_shows_each_phase_as_long_as_it_was() {
+    let span = |name: &str, category: &str, stage, start, duration| Span {
+        name: name.into(),
+        category: category.into(),
+        start,
+        duration,
+        step: 7,
+        stage,
+        with: None,
+    };
+    let spans = vec![
+        span("half-step", HALF_STEP, 0, 0.0, 100.0),
+        span("sums", "compute", 0, 0.0, 100.0),
+        span("half-step", HALF_STEP, 1, 100.0, 300.0),
+        span("wait for state", "wait", 1, 100.0, 300.0),
+    ];
+    let track =
+        |k: u32| Track { process: ("fluid".into(), k), name: format!("fluid-{k}"), spans: spans.clone() };
+    let path = folder("timeline").join("trace.png");
+    for tracks in [1, 3, 12] {
+        let timeline = Timeline { tracks: (0..tracks).map(track).collect(), lost: 0 };
+        draw_timeline(&fixture::scene(), &timeline, &path).unwrap();
+        let (width, _, colors) = decode(&path);
+        // The width without margins and names; each bar is 36 pixels high, a colour of the table 22 by 14.
+        let bars = f64::from((width - 198) * 36 * tracks);
+        for (color, share) in [(COMPUTE[0], 0.25), (WAIT[0], 0.75)] {
+            let found = f64::from(colors[&rgb(color)]) - 22.0 * 14.0;
+            // Names and lines take some of them.
+            assert!((0.93..1.001).contains(&(found / (share * bars))), "{tracks}: {share} {found} of {bars}");
+        }
+    }
+    draw_timeline(&fixture::scene(), &Timeline::default(), &path).unwrap();
 }

@@ -20,16 +20,18 @@ const MARGIN: i32 = 24;
 const TRACK: i32 = 46;
 const AXIS: i32 = 52;
 const ROW: i32 = 21;
-const COLUMN: i32 = 110;
+const COLUMN: i32 = 100;
 /// Width of the column with the phases' names.
-const PHASES: i32 = 300;
-/// Phases with a smaller share in all tracks are added up.
+const PHASES: i32 = 240;
+/// Between two tables.
+const GAP: i32 = 60;
+/// Phases with a smaller share in all tracks are part of everything else.
 const SMALLEST_SHARE: f64 = 5e-4;
 
 const INK: RGBColor = RGBColor(40, 40, 40);
 const FAINT: RGBColor = RGBColor(225, 225, 225);
 /// Colours of what other phases do, by category: neighbours differ.
-const COMPUTE: [RGBColor; 12] = [
+pub(crate) const COMPUTE: [RGBColor; 14] = [
     RGBColor(0, 90, 181),
     RGBColor(20, 140, 90),
     RGBColor(120, 70, 160),
@@ -42,8 +44,10 @@ const COMPUTE: [RGBColor; 12] = [
     RGBColor(40, 60, 110),
     RGBColor(110, 150, 130),
     RGBColor(150, 120, 220),
+    RGBColor(60, 110, 60),
+    RGBColor(160, 40, 60),
 ];
-const WAIT: [RGBColor; 4] =
+pub(crate) const WAIT: [RGBColor; 4] =
     [RGBColor(212, 212, 212), RGBColor(190, 190, 190), RGBColor(228, 228, 220), RGBColor(200, 205, 215)];
 const MESSAGE: [RGBColor; 3] = [RGBColor(230, 130, 30), RGBColor(245, 190, 80), RGBColor(200, 90, 20)];
 const OUTPUT: [RGBColor; 3] = [RGBColor(140, 90, 50), RGBColor(190, 150, 100), RGBColor(110, 110, 40)];
@@ -61,10 +65,10 @@ struct Row {
 /// The picture cannot be drawn or written.
 pub fn draw_timeline(scene: &Scene, timeline: &Timeline, path: &Path) -> Result<(), OutputError> {
     let rows = rows(timeline);
-    let tracks = timeline.tracks.len() as i32;
-    let table = HEAD + tracks * TRACK + AXIS;
-    let width = WIDTH.max(MARGIN * 2 + PHASES + tracks * COLUMN);
-    let height = table + ROW * (rows.len() as i32 + 4);
+    let tracks = timeline.tracks.len();
+    let table = HEAD + tracks as i32 * TRACK + AXIS;
+    let width = WIDTH.max(MARGIN * 2 + block_width(tracks));
+    let height = table + ROW * ((rows.len() + 1).div_ceil(blocks(tracks)) as i32 + 3);
     let mut canvas = Canvas::new((width * OVERSAMPLING) as u32, (height * OVERSAMPLING) as u32);
     canvas
         .draw(|area| {
@@ -108,6 +112,7 @@ fn rows(timeline: &Timeline) -> Vec<Row> {
         }
         let largest = |shares: &[f64]| shares.iter().copied().fold(0.0, f64::max);
         own.sort_by(|a, b| largest(&b.1).total_cmp(&largest(&a.1)));
+        own.retain(|(_, shares)| largest(shares) >= SMALLEST_SHARE);
         let colors = colors.iter().cycle();
         rows.extend(own.into_iter().zip(colors).map(|((name, shares), color)| Row {
             name,
@@ -136,10 +141,10 @@ fn draw_tracks(area: &Area<'_>, timeline: &Timeline, rows: &[Row], width: i32) -
     for (k, track) in timeline.tracks.iter().enumerate() {
         let top = HEAD + k as i32 * TRACK;
         let (high, low) = (top + 4, top + TRACK - 6);
-        let whole =
-            if track.process.0 == track.name { String::new() } else { format!(" in {}", track.process.0) };
+        let (process, number) = &track.process;
+        let named = if *process == track.name { String::new() } else { format!(", {process}") };
+        let process = format!("process {number}{named}");
         write(area, &track.name, [MARGIN, top + TRACK / 2 - 8], 15, HPos::Left, INK)?;
-        let process = format!("process {}{whole}", track.process.1);
         write(area, &process, [MARGIN, top + TRACK / 2 + 9], 11, HPos::Left, INK)?;
         fill(area, [left, right], [high, low], RGBColor(250, 250, 250))?;
         // What lies within a span follows it, and is drawn over it.
@@ -182,36 +187,40 @@ fn draw_tracks(area: &Area<'_>, timeline: &Timeline, rows: &[Row], width: i32) -
 }
 
 fn draw_table(area: &Area<'_>, timeline: &Timeline, rows: &[Row], top: i32) -> Drawn {
-    let column = |k: usize| MARGIN + PHASES + (k as i32 + 1) * COLUMN;
-    let steps = timeline.steps().map_or(String::new(), |(a, b)| format!("steps {a} to {b}: share of time"));
-    write(area, &steps, [MARGIN, top + ROW], 14, HPos::Left, INK)?;
-    for (k, track) in timeline.tracks.iter().enumerate() {
-        write(area, &track.name, [column(k), top + ROW], 14, HPos::Right, INK)?;
-    }
-    let seen = |row: &&Row| row.shares.iter().any(|share| *share >= SMALLEST_SHARE);
-    let mut y = top + 2 * ROW;
-    fill(
-        area,
-        [f64::from(MARGIN), f64::from(column(timeline.tracks.len().saturating_sub(1)))],
-        [y - ROW / 2, y - ROW / 2 + 1],
-        FAINT,
-    )?;
-    let mut line = |name: &str, color: Option<RGBColor>, shares: &[f64]| -> Drawn {
-        if let Some(color) = color {
-            let left = f64::from(MARGIN);
-            fill(area, [left, left + 22.0], [y - 7, y + 7], color)?;
+    let tracks = timeline.tracks.len();
+    let named = |track: usize| rows.iter().map(|row| row.shares[track]).sum::<f64>();
+    let shares = (0..tracks).map(|track| 1.0 - named(track)).collect();
+    let rest = Row { name: "everything else".into(), color: WHITE, shares };
+    let all: Vec<&Row> = rows.iter().chain([&rest]).collect();
+    let (first, last) = timeline.steps().unwrap_or_default();
+    let told = format!("steps {first} to {last}: share of time");
+    for (block, rows) in all.chunks(all.len().div_ceil(blocks(tracks)).max(1)).enumerate() {
+        let left = MARGIN + block as i32 * (block_width(tracks) + GAP);
+        let column = |k: usize| left + PHASES + (k as i32 + 1) * COLUMN;
+        write(area, &told, [left, top + ROW], 14, HPos::Left, INK)?;
+        for (k, track) in timeline.tracks.iter().enumerate() {
+            write(area, &track.name, [column(k), top + ROW], 14, HPos::Right, INK)?;
         }
-        write(area, name, [MARGIN + 32, y], 13, HPos::Left, INK)?;
-        for (k, share) in shares.iter().enumerate().filter(|(_, share)| **share >= SMALLEST_SHARE) {
-            write(area, &format!("{:.1} %", 100.0 * share), [column(k), y], 13, HPos::Right, INK)?;
+        let line = top + ROW + ROW / 2 + 1;
+        fill(area, [left, left + block_width(tracks)].map(f64::from), [line, line + 1], FAINT)?;
+        for (k, row) in rows.iter().enumerate() {
+            let y = top + (k as i32 + 2) * ROW + 4;
+            fill(area, [left, left + 22].map(f64::from), [y - 7, y + 7], row.color)?;
+            write(area, &row.name, [left + 32, y], 13, HPos::Left, INK)?;
+            for (k, share) in row.shares.iter().enumerate().filter(|(_, share)| **share >= SMALLEST_SHARE) {
+                write(area, &format!("{:.1} %", 100.0 * share), [column(k), y], 13, HPos::Right, INK)?;
+            }
         }
-        y += ROW;
-        Ok(())
-    };
-    for row in rows.iter().filter(seen) {
-        line(&row.name, Some(row.color), &row.shares)?;
     }
-    let named = |k: usize| rows.iter().filter(seen).map(|row| row.shares[k]).sum::<f64>();
-    let rest: Vec<f64> = (0..timeline.tracks.len()).map(|k| 1.0 - named(k)).collect();
-    line("everything else", None, &rest)
+    Ok(())
+}
+
+/// Width of the table of so many tracks, pixels.
+fn block_width(tracks: usize) -> i32 {
+    PHASES + tracks as i32 * COLUMN
+}
+
+/// How often it stands beside itself.
+fn blocks(tracks: usize) -> usize {
+    if 2 * (block_width(tracks) + MARGIN) + GAP <= WIDTH { 2 } else { 1 }
 }

@@ -27,7 +27,7 @@ pub enum BadWindow {
     },
     /// It holds too many.
     #[error(
-        "{from}..{to} holds {} steps, more than the {} of a timeline that can be looked at (a tenth of a megabyte each)",
+        "{from}..{to} holds {} steps, more than the {} of a timeline that can be looked at",
         to - from,
         Window::MOST_STEPS
     )]
