@@ -1,7 +1,7 @@
 //! The timeline of half-steps as a trace event file, the JSON that chrome://tracing and Perfetto read.
 //!
 //! The format: "Trace Event Format" of the Chromium project, JSON object format, with complete events (`ph` is `X`) and
-//! metadata (`M`). A process that takes part is a process of the trace, a participant or the coupler one of its threads.
+//! metadata (`M`). A process of the run is a process of the trace, a participant or the coupler one of its threads.
 
 use crate::{OutputError, atomic};
 use serde::{Deserialize, Serialize};
