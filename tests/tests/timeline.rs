@@ -176,7 +176,8 @@ fn refused(run: RunBuilder, told: &[&str]) {
 fn wrong_arguments_are_told_before_anything_starts() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("gate.json");
-    refused(traced(gate(), &file, 30..20), &["--trace-steps", "30..20 holds no step"]);
+    let backwards = gate().argument("--trace").argument(&file).argument("--trace-steps").argument("30..20");
+    refused(backwards, &["--trace-steps", "30..20 holds no step"]);
     refused(traced(gate(), &file, 0..1001), &["holds 1001 steps, more than the 1000"]);
     let alone = gate().argument("--trace-steps").argument("1..2");
     refused(alone, &["--trace <FILE>"]);
