@@ -60,6 +60,11 @@ fn a_solid_that_fails_says_why() {
         (line.as_str(), &["--force=1,0"][..], "the solid failed at step 3: ValueError: no convergence"),
         ("exit 3", &["--force=1,0"], "before the run had begun"),
         (&line, &["--force=1,0", "--within=5,5,6,6"], "none of the solid's particles begins in the box"),
+        (
+            &line,
+            &["--force=1,0", "--set", "frame.motion={ amplitude = [0.01, 0.0], period = 1.0 }"],
+            "another program, which is told one `gravity`, and `frame` changes it",
+        ),
     ] {
         let output = trial("spring-block.toml", line, folder.path(), more);
         let error = String::from_utf8_lossy(&output.stderr).into_owned();

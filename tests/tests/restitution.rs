@@ -89,8 +89,8 @@ fn cradle(gap: f64) -> String {
 }
 
 /// The last ball rises as high as the first one was, and the others stay. Gaps of 0.2 mm are a fifth of what a sub-step
-/// may go, so impacts go on through them within one. Bands: the height to 1 %, of which 0.1 % is measured; what overlaps
-/// is moved apart, by up to half of a sub-step's 1 mm (0.0025 rad) at each of the three impacts on a ball.
+/// may go, so impacts go on through them within one. Bands: the height to 1 %, of which 0.1 % is measured; what
+/// overlaps is moved apart, by up to half of a sub-step's 1 mm (0.0025 rad) at each of the three impacts on a ball.
 #[test]
 fn a_cradle_swings_on_at_its_end() {
     for gap in [0.0, 2e-4] {

@@ -3,6 +3,7 @@
 
 use crate::cause::Cause;
 use crate::particles::{self, PARTICLES_VARIABLE};
+use crate::run::check_gravity;
 use crate::session::watch;
 use halfstep_coupling::error::RunError;
 use halfstep_coupling::external::ExternalSolid;
@@ -76,6 +77,7 @@ pub struct Tried {
 /// # Errors
 /// The solid did not come, ended early, or sent what a run would refuse; the folder cannot be written.
 pub fn run(scene: &Scene, trial: &Trial) -> Result<Tried, RunError> {
+    check_gravity(scene, trial.solid.as_str())?;
     let place =
         1 + scene.solids.iter().position(|solid| solid.name == trial.solid.as_str()).unwrap_or_default();
     let particles = dispatch!(scene.dimension, D => {

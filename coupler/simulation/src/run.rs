@@ -156,13 +156,24 @@ fn check_resources(scene: &Scene, options: &RunOptions) -> Result<(), RunError> 
     checked.unwrap_or_else(|| Err(unknown_dimension(scene)))
 }
 
+/// Another program is told one gravity.
+///
+/// # Errors
+/// The scene's frame changes it.
+pub(crate) fn check_gravity(scene: &Scene, solid: &str) -> Result<(), RunError> {
+    if scene.frame.is_none() {
+        return Ok(());
+    }
+    let reason = "is computed by another program, which is told one `gravity`, and `frame` changes it";
+    Err(RunError::System(format!("the {solid} {reason}")))
+}
+
 fn check_external(scene: &Scene, options: &RunOptions) -> Result<(), RunError> {
     if !options.external.is_empty() && (scene.fluid.is_none() || scene.solids.is_empty()) {
         return Err(RunError::System("--solid needs a scene with [fluid] and [solid]".into()));
     }
-    if let (Some(name), Some(_)) = (options.external_names().first(), &scene.frame) {
-        let reason = "is computed by another program, which is told one `gravity`, and `frame` changes it";
-        return Err(RunError::System(format!("the {name} {reason}")));
+    if let Some(name) = options.external_names().first() {
+        check_gravity(scene, name.as_str())?;
     }
     for name in options.external_names() {
         known_solid(scene, name.as_str()).map_err(RunError::System)?;
