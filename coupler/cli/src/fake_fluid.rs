@@ -80,7 +80,10 @@ pub(crate) fn try_solid(arguments: FakeFluidArguments) -> ExitCode {
         }
         Err(error) => {
             let log = trial.out.join("log.txt");
-            say::warn(format_args!("error: {error}\nthe log has more: {}", log.display()));
+            say::warn(format_args!("error: {error}"));
+            if log.exists() {
+                say::warn(format_args!("the log has more: {}", log.display()));
+            }
             ExitCode::from(2)
         }
     }

@@ -2,7 +2,7 @@
 //!
 //! A thread that drives participants or couples them has one recorder or none. Without one a phase costs a branch and
 //! nothing is allocated. Times are those of the system's monotonic clock, which all processes of a machine share, so
-//! that their parts fit into one picture; the library `tracing-chrome` counts from the start of each process.
+//! that their parts fit into one picture.
 
 mod window;
 pub use window::{BadWindow, Window};

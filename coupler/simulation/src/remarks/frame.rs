@@ -16,7 +16,7 @@ pub(super) fn frame(scene: &Scene, all: &mut Vec<String>) {
     let size = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
     let g = size(scene.gravity);
     let change = |t: f64| {
-        let now = gravity.at::<3>(t);
+        let now: [f64; 3] = gravity.at(t);
         size(std::array::from_fn(|d| now[d] - scene.gravity[d]))
     };
     let most = instants.clone().map(change).fold(0.0, f64::max);
