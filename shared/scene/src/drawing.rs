@@ -1,7 +1,7 @@
 //! Outlines from drawings: one closed path of an SVG file.
 
 use super::error::listed;
-use super::geometry::MAX_CORNERS;
+use super::geometry::{MAX_CORNERS, twice_area};
 use kurbo::{BezPath, PathEl, Point};
 use usvg::tiny_skia_path::PathSegment;
 use usvg::{Group, ImageHrefResolver, Node, Options, Tree};
@@ -135,15 +135,10 @@ fn region(path: &BezPath) -> Result<Region, String> {
     if many {
         return Err(format!("has a path of more than {MAX_CORNERS} corners"));
     }
-    let largest = (0..parts.len()).max_by(|&a, &b| area(&parts[a]).total_cmp(&area(&parts[b])));
+    let size = |k: usize| twice_area(&parts[k]).abs();
+    let largest = (0..parts.len()).max_by(|&a, &b| size(a).total_cmp(&size(b)));
     let outline = parts.remove(largest.ok_or("has a path without a size")?);
     Ok(Region { outline, holes: parts })
-}
-
-/// Area inside of a closed line, m².
-fn area(corners: &[[f64; 2]]) -> f64 {
-    let next = corners.iter().cycle().skip(1);
-    0.5 * corners.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>().abs()
 }
 
 #[cfg(test)]
@@ -156,6 +151,10 @@ mod tests {
         format!(
             r#"<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="50mm" viewBox="0 0 100 50">{inside}</svg>"#
         )
+    }
+
+    fn area(corners: &[[f64; 2]]) -> f64 {
+        0.5 * twice_area(corners).abs()
     }
 
     fn close(found: &[[f64; 2]], expected: &[[f64; 2]]) {

@@ -35,7 +35,7 @@ pub use pieces::{pieces, touching};
 pub use plate::Plate;
 pub(crate) use plate::least_thickness;
 use points::Spacing;
-pub(crate) use polygon::Fault;
+pub(crate) use polygon::{Fault, twice_area};
 pub use polygon::{MAX_CORNERS, Polygon};
 use region::{Region, voids_before};
 pub use surface::Surface;

@@ -160,29 +160,39 @@ impl System {
     /// turn (generalised reflections, Smith, Kaufman, Vouga, Tamstorf and Grinspun 2012), until nothing approaches.
     fn collide(&mut self, touches: &[Touch], dt: f64) -> Met {
         let mut met = Met::default();
-        if self.restitution == 0.0 {
+        if self.restitution == 0.0 || touches.is_empty() {
+            return met;
+        }
+        let speed = |pose: &Pose| pose.velocity.norm_squared().sqrt();
+        let fastest = self.poses.iter().map(speed).fold(0.0, f64::max);
+        let creep = (CREEP[0] * fastest).max(CREEP[1] * dt * self.gravity.norm_squared().sqrt());
+        let mut hit = self.approaching(touches, creep);
+        if hit.is_empty() {
             return met;
         }
         let rows = self.joint_rows();
         let factors = Factors::of(&rows, &self.bodies, &self.poses);
         let held = Held { rows: &rows, factors: &factors, rates: &vec![0.0; rows.len()] };
-        let speed = |pose: &Pose| pose.velocity.norm_squared().sqrt();
-        let fastest = self.poses.iter().map(speed).fold(0.0, f64::max);
-        let creep = (CREEP[0] * fastest).max(CREEP[1] * dt * self.gravity.norm_squared().sqrt());
         for _ in 0..IMPACTS {
-            let rate = |touch: &Touch| touch.normal.rate(&self.bodies, &self.poses);
-            let mut hit: Vec<Touch> = touches.iter().filter(|touch| rate(touch) < -creep).cloned().collect();
-            if hit.is_empty() {
-                break;
-            }
-            for touch in hit.iter_mut().filter(|touch| touch.is_contact()) {
-                touch.target = -self.restitution * touch.normal.rate(&self.bodies, &self.poses);
-            }
             let impulses = solve(&self.bodies, &mut self.poses, &held, &mut hit, self.friction);
             self.note(&hit);
             met = met.and(self.book_meeting(&rows, &impulses, &hit));
+            hit = self.approaching(touches, creep);
+            if hit.is_empty() {
+                break;
+            }
         }
         met
+    }
+
+    /// Those touches that approach faster than `creep`, m/s; contacts have the speed of the bounce as their target.
+    fn approaching(&self, touches: &[Touch], creep: f64) -> Vec<Touch> {
+        let hit = |touch: &Touch| {
+            let rate = touch.normal.rate(&self.bodies, &self.poses);
+            let target = if touch.is_contact() { -self.restitution * rate } else { touch.target };
+            (rate < -creep).then(|| Touch { target, ..touch.clone() })
+        };
+        touches.iter().filter_map(hit).collect()
     }
 
     /// Adds the impulses of contacts to what the bodies feel in this stage.

@@ -87,6 +87,11 @@ impl Case {
         if self.processes { run } else { run.in_process() }
     }
 
+    /// Whether what is measured in this place, the end of the run first and then the criteria, is known to fail.
+    pub(super) fn is_known_limit(&self, place: usize) -> bool {
+        place.checked_sub(1).is_some_and(|k| !self.criteria[k].limit.is_empty())
+    }
+
     /// Models to run it with; `None` for a fluid alone.
     pub fn each_model(&self) -> Vec<Option<&str>> {
         match &self.models[..] {

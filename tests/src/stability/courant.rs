@@ -2,6 +2,7 @@
 
 use super::case::Case;
 use super::criteria::{evaluate, short};
+use super::table::brief;
 use halfstep_output::run_json::RunStatus;
 
 /// The numbers that are tried, the default first.
@@ -54,11 +55,10 @@ fn of_model(family: &str, case: &Case, model: Option<&str>) -> Room {
             case.criteria.iter().map(|c| (!c.to_run.is_empty()).then(|| with(&c.to_run))).collect();
         let outcome = with(&[]);
         let measured = evaluate(&case.criteria, &outcome, dx, &others);
-        let known_limit = |k: usize| k > 0 && !case.criteria[k - 1].limit.is_empty();
         let failed: Vec<String> = measured
             .iter()
             .enumerate()
-            .filter(|(k, m)| !m.holds && !known_limit(*k))
+            .filter(|(k, m)| !m.holds && !case.is_known_limit(*k))
             .map(|(_, m)| format!("{} {}", m.label, short(m.value)))
             .collect();
         let report = outcome.report();
@@ -79,18 +79,14 @@ fn of_model(family: &str, case: &Case, model: Option<&str>) -> Room {
 pub fn courant_table(mut rooms: Vec<Room>) -> String {
     rooms.sort_by(|a, b| {
         let order = a.largest.partial_cmp(&b.largest).expect("no NaN");
-        order.then(b.fails.is_empty().cmp(&a.fails.is_empty()).reverse())
+        order.then(a.fails.is_empty().cmp(&b.fails.is_empty()))
     });
     let mut text = String::from(
         "| family | case | solid | holds up to | steps, times fewer | fails with |\n|---|---|---|---|---|---|\n",
     );
     for room in &rooms {
         let largest = room.largest.map_or("-".to_owned(), |number| number.to_string());
-        let model = match room.model.as_str() {
-            "hypoelastic" => "HE",
-            "total-lagrangian" => "TL",
-            _ => "",
-        };
+        let model = brief(&room.model);
         text += &format!(
             "| {} | {} | {model} | {largest} | {:.2} | {} |\n",
             room.family, room.case, room.fewer, room.fails

@@ -68,9 +68,8 @@ fn at(case: &Case, model: Option<&str>, dx: f64, long: bool, rows: &mut Vec<Row>
         Result { measured: evaluate(&case.criteria, &outcome, dx, &others), outcome }
     };
     let with = run(&[]);
-    let limit = |k: usize| k > 0 && !case.criteria[k - 1].limit.is_empty();
     for (k, m) in with.measured.iter().enumerate() {
-        if m.holds == limit(k) {
+        if m.holds == case.is_known_limit(k) {
             let now = if m.holds { "holds, although it is a known limit" } else { "fails" };
             wrong.push(format!("{what}: {} {now}: {} {}", m.label, short(m.value), with.outcome.stderr));
         }
@@ -93,7 +92,7 @@ fn at(case: &Case, model: Option<&str>, dx: f64, long: bool, rows: &mut Vec<Row>
         } else {
             (format!("{} {}", m.label, case.criteria[k - 1].bounds()), short(m.value))
         };
-        let limit = if limit(k) {
+        let limit = if case.is_known_limit(k) {
             format!("; **known limit**: {}", case.criteria[k - 1].limit)
         } else {
             String::new()

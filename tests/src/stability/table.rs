@@ -14,12 +14,7 @@ pub fn table(title: &str, rows: &[Row]) -> String {
             new_case || before.is_none_or(|b| b.model != row.model || b.resolution != row.resolution);
         let name = if new_case { row.case.as_str() } else { "" };
         let (model, dx) = if new_run {
-            let model = match row.model.as_str() {
-                "hypoelastic" => "HE",
-                "total-lagrangian" => "TL",
-                _ => "",
-            };
-            (model, format!("{}", (row.resolution * 1e7).round() / 1e4))
+            (brief(&row.model), format!("{}", (row.resolution * 1e7).round() / 1e4))
         } else {
             ("", String::new())
         };
@@ -29,6 +24,15 @@ pub fn table(title: &str, rows: &[Row]) -> String {
         before = Some(row);
     }
     text
+}
+
+/// A solid model's name in the tables; empty without a solid.
+pub(super) fn brief(model: &str) -> &'static str {
+    match model {
+        "hypoelastic" => "HE",
+        "total-lagrangian" => "TL",
+        _ => "",
+    }
 }
 
 /// A page with the text between the two markers of this name replaced; `None` where it has no such markers.
