@@ -17,6 +17,8 @@
 //! omega² = K (1/m_a + 1/m_b) with the least mass behind a length of both outlines; steps of theta / omega resolve an
 //! impact ([`Contact::limit`]). Force and opposite force differ by rounding.
 //!
+//! What walls do to a solid of another program is the same law, with all of K on the solid's points (`walls`).
+//!
 //! A law for leaving: Walton and Braun 1986; the spring along the surface: Cundall and Strack 1979.
 
 mod law;
@@ -24,6 +26,9 @@ mod outline;
 mod state;
 #[cfg(test)]
 mod tests;
+mod walls;
+#[cfg(test)]
+mod walls_tests;
 
 use halfstep_scene::{PairContact, Scene};
 use halfstep_wire::protocol::StateRecord;
@@ -46,6 +51,16 @@ pub struct Booked {
     pub largest_penetration: f64,
 }
 
+impl Booked {
+    /// Takes the forces on one of the two, along the normals and along the surfaces, and the largest penetration, m.
+    fn note(&mut self, [normal, along]: &[Vec<[f64; 2]>; 2], deepest: f64) {
+        let sum = |forces: &[[f64; 2]], d: usize| forces.iter().map(|f| f[d]).sum::<f64>();
+        let force = [0, 1].map(|d| sum(normal, d) + sum(along, d));
+        self.largest_force = self.largest_force.max(libm::hypot(force[0], force[1]));
+        self.largest_penetration = self.largest_penetration.max(deepest);
+    }
+}
+
 /// One of the two solids of a pair.
 #[derive(Clone, Debug, Default)]
 struct Side {
@@ -53,6 +68,19 @@ struct Side {
     solid: usize,
     /// Force on each record along the normals, and along the surfaces, N (2D: N/m); empty where nothing touches.
     forces: [Vec<[f64; 2]>; 2],
+}
+
+impl Side {
+    /// Work of the forces along the normals, and of those along the surfaces, on the ways of the records, J (2D: J/m).
+    fn work(&self, way: &impl Fn(usize) -> [f64; 2]) -> [f64; 2] {
+        self.forces.each_ref().map(|forces| {
+            let of = |(record, force): (usize, &[f64; 2])| {
+                let way = way(record);
+                force[0] * way[0] + force[1] * way[1]
+            };
+            forces.iter().enumerate().filter(|(_, force)| **force != [0.0; 2]).map(of).sum::<f64>()
+        })
+    }
 }
 
 /// Two solids that may touch.
@@ -188,13 +216,7 @@ impl Contact {
         let mut work = vec![0.0; self.placed.len()];
         for pair in &mut self.pairs {
             for side in &pair.sides {
-                let done = side.forces.each_ref().map(|forces| {
-                    let of = |(record, force): (usize, &[f64; 2])| {
-                        let way = way(side.solid, record);
-                        force[0] * way[0] + force[1] * way[1]
-                    };
-                    forces.iter().enumerate().filter(|(_, force)| **force != [0.0; 2]).map(of).sum::<f64>()
-                });
+                let done = side.work(&|record| way(side.solid, record));
                 pair.booked.normal += done[0];
                 pair.booked.friction += done[1];
                 work[side.solid] += done[0] + done[1];
@@ -210,13 +232,10 @@ impl Contact {
 }
 
 pub use law::Law as PairLaw;
+pub use walls::WallContact;
 
 impl Pair {
     fn note(&mut self, deepest: f64) {
-        let sum = |forces: &[[f64; 2]], d: usize| forces.iter().map(|f| f[d]).sum::<f64>();
-        let [normal, along] = &self.sides[0].forces;
-        let force = [0, 1].map(|d| sum(normal, d) + sum(along, d));
-        self.booked.largest_force = self.booked.largest_force.max(libm::hypot(force[0], force[1]));
-        self.booked.largest_penetration = self.booked.largest_penetration.max(deepest);
+        self.booked.note(&self.sides[0].forces, deepest);
     }
 }

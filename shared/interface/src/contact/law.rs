@@ -55,11 +55,11 @@ struct Foot {
     normal: [f64; 2],
 }
 
-fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+pub(super) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
-fn less(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+pub(super) fn less(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0] - b[0], a[1] - b[1]]
 }
 
@@ -161,28 +161,48 @@ impl Law {
         let mut touch = before.unwrap_or(fresh);
         touch.approach = touch.approach.max(approach);
         let spring = 0.5 * self.stiffness * outline.points[point].length;
-        let kept = self.restitution * self.restitution;
-        // No less than what a step of the limit changes at this depth: else the half-step sees the force of leaving
-        // before the step has turned the motion round, and bodies sink into each other.
-        let change = 0.5 * THETA * THETA / self.limit * foot.depth * (1.0 - kept);
-        let slow = change.max(SLOW * touch.approach).max(self.rest);
-        let way = if slow > 0.0 { libm::tanh(approach / slow) } else { sign(approach) };
-        let push = spring * foot.depth * 0.5 * (1.0 + kept + (1.0 - kept) * way);
-        let most = self.friction * push;
+        let push = self.push(spring, foot.depth, approach, touch.approach);
         let stuck = on(touch.part, touch.share, &surface.position);
         let from = less(placed.position[point], stuck);
-        let pull = -spring * (dot(from, tangent) + ALONG * self.limit * dot(slip, tangent));
-        let along = pull.clamp(-most, most);
-        if along != pull || self.friction == 0.0 {
-            // It slips: what stays of the spring holds no more than friction does.
-            let most = if spring > 0.0 { most / spring } else { 0.0 };
-            let left = dot(from, tangent).clamp(-most, most);
+        let (along, slipped) = self.along(spring, push, dot(from, tangent), dot(slip, tangent));
+        if let Some(left) = slipped {
             let [start, end] = other.parts[foot.part as usize].ends.map(|end| surface.position[end as usize]);
             let line = less(end, start);
             touch.part = foot.part;
             touch.share = foot.share - left * dot(tangent, line) / dot(line, line);
         }
         ([normal.map(|n| push * n), tangent.map(|t| along * t)], touch)
+    }
+
+    /// Force along the normal, N (2D: N/m), on a point with a spring (N/m; 2D: N/m²) that is so deep (m) and comes so
+    /// fast (m/s), `fastest` at most in this contact.
+    pub(super) fn push(&self, spring: f64, depth: f64, approach: f64, fastest: f64) -> f64 {
+        let kept = self.restitution * self.restitution;
+        // No less than what a step of the limit changes at this depth: else the half-step sees the force of leaving
+        // before the step has turned the motion round, and bodies sink into each other.
+        let change = 0.5 * THETA * THETA / self.limit * depth * (1.0 - kept);
+        let slow = change.max(SLOW * fastest).max(self.rest);
+        let way = if slow > 0.0 { libm::tanh(approach / slow) } else { sign(approach) };
+        spring * depth * 0.5 * (1.0 + kept + (1.0 - kept) * way)
+    }
+
+    /// Force along the surface, N (2D: N/m), on a point that is pressed on it with `push`, lies so far along it from
+    /// where it sticks (m), and goes so fast along it (m/s); where it slips, how far off it sticks then, m.
+    pub(super) fn along(&self, spring: f64, push: f64, from: f64, rate: f64) -> (f64, Option<f64>) {
+        let most = self.friction * push;
+        let pull = -spring * (from + ALONG * self.limit * rate);
+        let along = pull.clamp(-most, most);
+        let slipped = (along != pull || self.friction == 0.0).then(|| {
+            // What stays of the spring holds no more than friction does.
+            let most = if spring > 0.0 { most / spring } else { 0.0 };
+            from.clamp(-most, most)
+        });
+        (along, slipped)
+    }
+
+    /// Coulomb's coefficient, and the speed after an impact over that before it.
+    pub fn said(&self) -> [f64; 2] {
+        [self.friction, self.restitution]
     }
 }
 
@@ -197,7 +217,7 @@ fn sign(x: f64) -> f64 {
 }
 
 /// Adds a force on a point of an outline to those on the records that carry it.
-fn give(outline: &Outline, point: u32, force: [f64; 2], forces: &mut [[f64; 2]]) {
+pub(super) fn give(outline: &Outline, point: u32, force: [f64; 2], forces: &mut [[f64; 2]]) {
     for (record, w) in &outline.points[point as usize].weights {
         let sum = &mut forces[*record as usize];
         *sum = [sum[0] + w * force[0], sum[1] + w * force[1]];

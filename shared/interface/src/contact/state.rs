@@ -1,15 +1,21 @@
 //! What contacts keep over an interruption.
 
 use super::law::Touch;
-use super::{Contact, Pair};
+use super::{Booked, Contact, Pair};
 use halfstep_wire::state::{Fields, State, StateError};
+
+impl State for Booked {
+    fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
+        fields.real("normal", &mut self.normal)?;
+        fields.real("friction", &mut self.friction)?;
+        fields.real("largest_force", &mut self.largest_force)?;
+        fields.real("largest_penetration", &mut self.largest_penetration)
+    }
+}
 
 impl State for Pair {
     fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
-        fields.real("normal", &mut self.booked.normal)?;
-        fields.real("friction", &mut self.booked.friction)?;
-        fields.real("largest_force", &mut self.booked.largest_force)?;
-        fields.real("largest_penetration", &mut self.booked.largest_penetration)?;
+        self.booked.fields(fields)?;
         for (side, name) in self.sides.iter_mut().zip(["first", "second"]) {
             let [normal, along] = &mut side.forces;
             fields.points(&format!("{name}_normal"), normal)?;
