@@ -141,9 +141,13 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
             if let Some(place) = unable.filter(|_| course.must_save) {
                 return Err(RunError::NoCheckpoints { participant: self.port.name(place) });
             }
+            let changed = self.solids.leave_walls(&self.states, self.resumed);
             match self.resumed {
-                true => self.check_resumed()?,
+                true => self.check_resumed(changed)?,
                 false => self.solids.begin(&self.states),
+            }
+            for (place, walls) in self.solids.walls() {
+                walls.say(self.port.name(place), &course.recorder);
             }
         }
         self.complete_checkpoint(course)?;
@@ -266,8 +270,14 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
         Ok(Some(group))
     }
 
-    /// A solid that goes on from a checkpoint must show the state that it showed when the checkpoint was written.
-    fn check_resumed(&self) -> Result<(), RunError> {
+    /// A solid that goes on from a checkpoint must show the state that it showed when the checkpoint was written, and
+    /// say what it said then of who evaluates its walls; `changed` does not.
+    fn check_resumed(&self, changed: Option<usize>) -> Result<(), RunError> {
+        if let Some(place) = changed {
+            let name = self.port.name(place);
+            let why = "says other than before the checkpoint who evaluates its contact with walls";
+            return Err(RunError::Resume(format!("the {name} {why}")));
+        }
         match self.solids.changed_since_saved(&self.states) {
             None => Ok(()),
             Some(place) => {

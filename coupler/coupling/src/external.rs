@@ -1,6 +1,7 @@
 //! What the coupler does for a solid process that only exchanges states: its frames and probes, from its records.
 
 use crate::roles::probes_of;
+pub use halfstep_interface::contact::WallContact;
 use halfstep_output::{Frame, FramePoint, FrameWriter, OutputError};
 use halfstep_scene::geometry::{self, holds, nearest};
 use halfstep_scene::{Geometry, ProbeKind, Scene};
@@ -22,6 +23,8 @@ pub struct ExternalSolid {
     /// The records that each probe is about, where it is not about all of them.
     chosen: Vec<Vec<usize>>,
     values: Vec<f64>,
+    /// It says that it evaluates contact with walls itself.
+    pub(crate) own_walls: bool,
 }
 
 impl ExternalSolid {
@@ -39,6 +42,7 @@ impl ExternalSolid {
             first: Vec::new(),
             chosen: Vec::new(),
             values: Vec::new(),
+            own_walls: false,
         })
     }
 
@@ -165,7 +169,8 @@ impl ExternalSolid {
 
 impl State for ExternalSolid {
     fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
-        fields.points("first_position", &mut self.first)
+        fields.points("first_position", &mut self.first)?;
+        fields.flag("own_walls", &mut self.own_walls)
     }
 
     fn restored(&mut self) -> Result<(), StateError> {

@@ -196,6 +196,12 @@ impl Recorder {
         self.balance.note(time, accounts).map(|excess| energy::diverged(excess, step))
     }
 
+    /// Warns in the log and on the terminal.
+    pub(crate) fn warn(&self, warning: &str) {
+        tracing::warn!("{warning}");
+        self.bar.suspend(|| say::warn(format_args!("warning: {warning}")));
+    }
+
     /// Notes the state at n, as all participants measured it.
     ///
     /// # Errors
@@ -204,8 +210,7 @@ impl Recorder {
         self.time = tick.time;
         if let (Some(limit), Some(dt)) = (tick.exceeded, tick.dt) {
             let warning = times_above_limit(dt, limit.participant.as_str(), limit.dt);
-            tracing::warn!("{warning}");
-            self.bar.suspend(|| say::warn(format_args!("warning: {warning}")));
+            self.warn(&warning);
         }
         if tick.row {
             let own: Vec<&[f64]> = measured.iter().map(|m| m.probes).collect();

@@ -1,14 +1,16 @@
 //! What the coupler holds of the solids: their interfaces with the fluid, the forces on both sides, and the work that
 //! these do.
 
+mod walls;
+
 use crate::error::RunError;
 use crate::external::ExternalSolid;
-use halfstep_interface::contact::{Booked, Contact, PairLaw};
+use halfstep_interface::contact::{Booked, Contact, PairLaw, WallContact};
 use halfstep_interface::cross_viscosity::CrossViscosity;
 use halfstep_interface::{Interface, Parameters};
 use halfstep_link::{FLUID, StateMessage};
 use halfstep_role::timeline;
-use halfstep_scene::{Gravity, Scene};
+use halfstep_scene::{EffectName, Gravity, Phase, Scene, Switch};
 use halfstep_sph::lane::Isa;
 use halfstep_wire::half_step::Stage;
 use halfstep_wire::protocol::{ForceRecord, StateRecord};
@@ -28,11 +30,11 @@ pub(crate) struct Jump {
     pub(crate) speed: f64,
 }
 
-/// What contact did to a pair of solids.
+/// What contact did to a pair of solids, or to a solid and the walls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactSummary {
-    /// Indices of the two in the scene.
-    pub solids: [usize; 2],
+    /// Indices of the two in the scene; `None`: the walls.
+    pub solids: [Option<usize>; 2],
     /// Pressure over penetration, Pa/m.
     pub stiffness: f64,
     /// Energies and largest values.
@@ -44,7 +46,7 @@ pub struct ContactSummary {
 pub(crate) struct Work {
     /// Of the fluid on this solid.
     pub(crate) fluid: f64,
-    /// Of the other solids on this one.
+    /// Of the other solids on this one, and of the walls on one of another program.
     pub(crate) contact: f64,
 }
 
@@ -75,12 +77,18 @@ struct CoupledSolid<const D: usize> {
     /// Hash of the state that a checkpoint was made of, as the solid published it.
     saved: u64,
     external: Option<ExternalSolid>,
+    /// The scene has walls that solids may touch.
+    touches_walls: bool,
+    /// Contact with them, of an external solid that does not evaluate it itself.
+    walls: Option<WallContact>,
 }
 
 impl<const D: usize> Solids<D> {
     /// Of a scene; `external` has an entry for each.
     pub(crate) fn new(scene: &Scene, external: Vec<Option<ExternalSolid>>, isa: Isa) -> Self {
-        let side = |(solid, external)| CoupledSolid {
+        let touched = scene.shapes.iter().any(|shape| shape.phase == Phase::Wall && shape.contact);
+        let touches_walls = touched && scene.switch(EffectName::WallContact) != Switch::Off;
+        let side = |(solid, external): (usize, Option<ExternalSolid>)| CoupledSolid {
             interface: Parameters::new(scene, solid, isa).map(Interface::new),
             forces: Vec::new(),
             at_n: Vec::new(),
@@ -88,6 +96,8 @@ impl<const D: usize> Solids<D> {
             before: Vec::new(),
             reach: REACH * scene.smoothing_ratio * scene.resolution,
             saved: 0,
+            touches_walls,
+            walls: external.as_ref().and_then(|_| WallContact::new(scene, solid)),
             external,
         };
         Self {
@@ -106,6 +116,9 @@ impl<const D: usize> Solids<D> {
             if let Some(external) = &mut side.external {
                 external.begin(state.records());
             }
+            if let Some(walls) = &mut side.walls {
+                walls.begin(state.records());
+            }
         }
         if let Some(contact) = &mut self.contact {
             contact.begin(states[self.first..].iter().map(StateMessage::records));
@@ -114,17 +127,24 @@ impl<const D: usize> Solids<D> {
 
     /// Largest time step that contacts are stable with, s; `None` where nothing can touch.
     pub(crate) fn contact_limit(&self) -> Option<f64> {
-        self.contact.as_ref().map(Contact::limit).filter(|limit| limit.is_finite())
+        let walls = self.solids.iter().filter_map(|side| side.walls.as_ref()).map(WallContact::limit);
+        let least = self.contact.iter().map(Contact::limit).chain(walls).fold(f64::INFINITY, f64::min);
+        least.is_finite().then_some(least)
     }
 
-    /// What contacts did to each pair of solids, whose places in the scene these are.
+    /// What contacts did to each pair of solids, and walls to each solid that the coupler holds against them.
     pub(crate) fn contacts(&self) -> Vec<ContactSummary> {
         let of = |(solids, law, booked): ([usize; 2], &PairLaw, Booked)| ContactSummary {
-            solids,
+            solids: solids.map(Some),
             stiffness: law.stiffness,
             booked,
         };
-        self.contact.iter().flat_map(Contact::booked).map(of).collect()
+        let walls = self.solids.iter().enumerate().filter_map(|(solid, side)| {
+            let walls = side.walls.as_ref()?;
+            let (stiffness, booked) = (walls.law().stiffness, walls.booked());
+            Some(ContactSummary { solids: [Some(solid), None], stiffness, booked })
+        });
+        self.contact.iter().flat_map(Contact::booked).map(of).chain(walls).collect()
     }
 
     /// Notes the states that a checkpoint is made of.
@@ -210,6 +230,14 @@ impl<const D: usize> Solids<D> {
         }
         for (place, side) in self.solids.iter_mut().enumerate() {
             let records = states[place + self.first].records();
+            if let Some(walls) = &mut side.walls {
+                let way = |record: usize| {
+                    let now = records[record].position;
+                    let from = side.at_n.get(record).copied().unwrap_or(now);
+                    [now[0] - from[0], now[1] - from[1]]
+                };
+                work[place + self.first].contact += walls.work(way);
+            }
             let ways = records.iter().zip(&side.at_n).zip(&side.forces);
             let done = ways.map(|((record, from), force)| {
                 let force = force.force(record.mass);
@@ -225,7 +253,7 @@ impl<const D: usize> Solids<D> {
 
     /// Evaluates the forces on both sides at the states' instant, s; returns the pairs listed for it.
     pub(crate) fn evaluate(&mut self, states: &[impl StateMessage], time: f64) -> u64 {
-        let touching = self.contact.is_some();
+        let touching = self.contact.is_some() || self.solids.iter().any(|side| side.walls.is_some());
         if self.solids.is_empty() || (self.first == 0 && !touching) {
             return 0;
         }
@@ -256,15 +284,25 @@ impl<const D: usize> Solids<D> {
                 *sum = if place == 0 { wide(a) } else { std::array::from_fn(|d| sum[d] + wide(a)[d]) };
             });
         }
-        self.touch(states);
+        if touching {
+            self.touch(states, time);
+        }
         pairs
     }
 
-    /// Adds the forces of contacts to those of the fluid.
-    fn touch(&mut self, states: &[impl StateMessage]) {
-        let Some(contact) = &mut self.contact else { return };
+    /// Adds the forces of contacts at the states' instant, s, to those of the fluid.
+    fn touch(&mut self, states: &[impl StateMessage], time: f64) {
         let _phase = timeline::phase("contact");
         let whole = states[self.first].header().stage == Stage::First.number();
+        for (side, state) in self.solids.iter_mut().zip(&states[self.first..]) {
+            let Some(walls) = &mut side.walls else { continue };
+            walls.evaluate(state.records(), time, whole);
+            for (record, force) in side.forces.iter_mut().enumerate() {
+                let on = walls.on(record);
+                (0..2).for_each(|d| force.stress_force[d] += on[d]);
+            }
+        }
+        let Some(contact) = &mut self.contact else { return };
         contact.evaluate(|solid| states[solid + self.first].records(), whole);
         contact.forces(|solid, record, force| {
             let sum = &mut self.solids[solid].forces[record].stress_force;
@@ -298,7 +336,10 @@ impl<const D: usize> Solids<D> {
         for side in &self.solids {
             let Some(interface) = &side.interface else { continue };
             for (slot, record) in interface.solid.slots() {
-                add(side.forces[record].force(interface.solid.own_mass[slot]));
+                // Walls are no part of the exchange: nobody has the opposite force.
+                let walls = side.walls.as_ref().map_or([0.0; 2], |walls| walls.on(record));
+                let force = side.forces[record].force(interface.solid.own_mass[slot]);
+                add([force[0] - walls[0], force[1] - walls[1], force[2]]);
             }
         }
         (scale > 0.0).then(|| sum.iter().fold(0.0_f64, |m, s| m.max(s.abs())) / scale)
@@ -339,15 +380,18 @@ impl<const D: usize> State for CoupledSolid<D> {
         if let Some(interface) = &mut self.interface {
             fields.part("interface", interface)?;
         }
-        match &mut self.external {
-            Some(external) => fields.part("external", external),
-            None => Ok(()),
+        let Some(external) = &mut self.external else { return Ok(()) };
+        fields.part("external", external)?;
+        if external.own_walls {
+            self.walls = None;
         }
+        self.walls.as_mut().map_or(Ok(()), |walls| fields.part("walls", walls))
     }
 
     fn restored(&mut self) -> Result<(), StateError> {
         self.interface.as_mut().map_or(Ok(()), State::restored)?;
-        self.external.as_mut().map_or(Ok(()), State::restored)
+        self.external.as_mut().map_or(Ok(()), State::restored)?;
+        self.walls.as_mut().map_or(Ok(()), State::restored)
     }
 }
 

@@ -6,7 +6,7 @@ use crate::particles::{self, PARTICLES_VARIABLE};
 use crate::run::check_gravity;
 use crate::session::watch;
 use halfstep_coupling::error::RunError;
-use halfstep_coupling::external::ExternalSolid;
+use halfstep_coupling::external::{ExternalSolid, WallContact};
 use halfstep_coupling::roles::probes_of;
 use halfstep_coupling::supervise::{Children, StopFlags};
 use halfstep_link::{
@@ -21,7 +21,7 @@ use halfstep_scene::{Block, Scene, dispatch};
 use halfstep_wire::Name;
 use halfstep_wire::half_step::HalfStep;
 use halfstep_wire::protocol::{
-    ForceHeader, ForceRecord, LAST_STAGE, StateHeader, StateRecord, order, status,
+    ForceHeader, ForceRecord, LAST_STAGE, StateHeader, StateRecord, ability, order, status,
 };
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -110,6 +110,7 @@ pub fn run(scene: &Scene, trial: &Trial) -> Result<Tried, RunError> {
         scene,
         trial,
         solid: stand_in,
+        walls: WallContact::new(scene, place - 1),
         log: ProbeLog::create(&path, &columns)?,
         clock: (0, 0.0),
         pushed: Vec::new(),
@@ -183,6 +184,8 @@ struct Pusher<'a> {
     scene: &'a Scene,
     trial: &'a Trial,
     solid: ExternalSolid,
+    /// Contact with walls, unless the solid evaluates it itself.
+    walls: Option<WallContact>,
     log: ProbeLog,
     /// Step n and its time, s.
     clock: (u64, f64),
@@ -207,14 +210,18 @@ impl Pusher<'_> {
                 drop(link.receive_state(FLUID, &expect)?);
                 let records = state.records();
                 if step == 0 && stage == 0 {
+                    if state.header().abilities & ability::WALLS_AND_CONTACTS != 0 {
+                        self.walls = None;
+                    }
                     self.begin(records)?;
                 }
                 if stage == 0 && !stops {
                     let left = self.scene.end_time - time;
-                    dt = self.trial.time_step.min(state.header().dt_limit).min(left);
+                    let contact = self.walls.as_ref().map_or(f64::INFINITY, WallContact::limit);
+                    dt = self.trial.time_step.min(state.header().dt_limit).min(contact).min(left);
                     next_time = if dt < left { time + dt } else { self.scene.end_time };
                 }
-                let forces = self.forces(half_step.before(), records);
+                let forces = self.forces(half_step.before(), records, stage == 0);
                 if stage == 0 {
                     self.log.row(time, self.solid.measure(records, &forces))?;
                 }
@@ -239,6 +246,9 @@ impl Pusher<'_> {
             return Err(RunError::NoParticles { solid: self.trial.solid });
         }
         self.solid.begin(records);
+        if let Some(walls) = &mut self.walls {
+            walls.begin(records);
+        }
         let is_pushed = |r: &StateRecord| self.trial.load.within.is_none_or(|b| holds(&b, &r.position, 0.0));
         let shares = records.iter().map(|r| if is_pushed(r) { r.mass } else { 0.0 });
         self.pushed = shares.collect();
@@ -252,14 +262,20 @@ impl Pusher<'_> {
         Ok(())
     }
 
-    fn forces(&self, time: f64, records: &[StateRecord]) -> Vec<ForceRecord> {
+    /// Load and contact with walls at a time, s. `whole`: of a state at n.
+    fn forces(&mut self, time: f64, records: &[StateRecord], whole: bool) -> Vec<ForceRecord> {
         let load = self.trial.load;
+        if let Some(walls) = &mut self.walls {
+            walls.evaluate(records, time, whole);
+        }
         let grown = if load.ramp > 0.0 { (time / load.ramp).min(1.0) } else { 1.0 };
-        let on = |(record, share): (&StateRecord, &f64)| {
-            let stress_force = load.force.map(|f| grown * share * f);
+        let on = |(k, (record, share)): (usize, (&StateRecord, &f64))| {
+            let walls = self.walls.as_ref().map_or([0.0; 2], |walls| walls.on(k));
+            let [x, y, z] = load.force.map(|f| grown * share * f);
+            let stress_force = [x + walls[0], y + walls[1], z];
             ForceRecord { id: record.id, flags: 0, cross_viscosity: [0.0; 3], stress_force }
         };
-        records.iter().zip(&self.pushed).map(on).collect()
+        records.iter().zip(&self.pushed).enumerate().map(on).collect()
     }
 }
 

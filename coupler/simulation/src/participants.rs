@@ -8,7 +8,7 @@ use halfstep_coupling::roles;
 use halfstep_link::{FLUID, LinkConfig, Participant};
 use halfstep_output::RunReport;
 use halfstep_output::run_json::{
-    ContactReport, EnergyReport, ParticipantEnergy, ParticipantReport, RoleSeconds,
+    ContactReport, EnergyReport, ParticipantEnergy, ParticipantReport, RoleSeconds, WALLS,
 };
 use halfstep_role::report::Report;
 use halfstep_scene::geometry::Layout;
@@ -78,7 +78,10 @@ fn values(scene: &Scene, place: usize) -> usize {
 pub(crate) fn report_outcome(scene: &Scene, outcome: &Outcome, report: &mut RunReport) {
     report.audit.state_hash = Some(format!("{:016x}", combined_hash(&outcome.last)));
     let contact = |ContactSummary { solids, stiffness, booked }: &ContactSummary| ContactReport {
-        solids: solids.iter().map(|&solid| scene.solids[solid].name.clone()).collect(),
+        solids: solids
+            .iter()
+            .map(|solid| solid.map_or(WALLS, |k| &scene.solids[k].name).to_owned())
+            .collect(),
         stiffness: *stiffness,
         normal: booked.normal,
         friction: booked.friction,

@@ -93,11 +93,14 @@ pub struct ParticipantReport {
     pub times: Option<RoleSeconds>,
 }
 
-/// What contact did to a pair of solids.
+/// What [`ContactReport::solids`] calls the walls of a scene: the name of no solid.
+pub const WALLS: &str = "wall";
+
+/// What contact did to a pair of solids, or walls to a solid of another program.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ContactReport {
-    /// Names of the two.
+    /// Names of the two; all walls together are [`WALLS`].
     pub solids: Vec<String>,
     /// Pressure over penetration, Pa/m.
     pub stiffness: f64,

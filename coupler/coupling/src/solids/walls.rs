@@ -1,0 +1,74 @@
+//! Who evaluates contact of external solids with walls: the coupler, from their records, unless they do it themselves.
+
+use super::Solids;
+use crate::recorder::Recorder;
+use halfstep_interface::contact::WallContact;
+use halfstep_link::StateMessage;
+use halfstep_wire::Name;
+use halfstep_wire::protocol::ability;
+
+/// Who evaluates contact of an external solid with the walls that the scene lets it touch.
+pub(crate) enum Walls<'a> {
+    /// The coupler.
+    Coupler(&'a WallContact),
+    /// The solid, as it says.
+    Own,
+    /// Nobody but the solid can: the coupler knows no contact in space.
+    Space,
+}
+
+impl Walls<'_> {
+    /// Says it of the solid of that name in the log; warns of a solid that touches nothing.
+    pub(crate) fn say(&self, name: Name, recorder: &Recorder) {
+        match self {
+            Self::Coupler(walls) if !walls.has_surface() => recorder.warn(&format!(
+                "walls do not stop the {name}: none of its particles lies where the scene has it"
+            )),
+            Self::Coupler(walls) => {
+                let ([friction, restitution], stiffness) = (walls.law().said(), walls.law().stiffness);
+                tracing::info!(
+                    "contact of the {name} with walls: by the coupler, friction {friction}, restitution {restitution}, \
+                     {stiffness:.3e} Pa/m"
+                );
+            }
+            Self::Own => tracing::info!("contact of the {name} with walls: by itself, as it says"),
+            Self::Space => {
+                tracing::info!("contact of the {name} with walls: by itself; the coupler knows none in space")
+            }
+        }
+    }
+}
+
+impl<const D: usize> Solids<D> {
+    /// Leaves walls to the solids that say that they evaluate these themselves. Returns the place of one that says now
+    /// what it did not say when the checkpoint was written, or the other way round.
+    pub(crate) fn leave_walls(&mut self, states: &[impl StateMessage], resumed: bool) -> Option<usize> {
+        let mut changed = None;
+        for (place, state) in states.iter().enumerate().skip(self.first) {
+            let side = &mut self.solids[place - self.first];
+            let Some(external) = &mut side.external else { continue };
+            let own = state.header().abilities & ability::WALLS_AND_CONTACTS != 0;
+            if resumed && own != external.own_walls {
+                changed = changed.or(Some(place));
+            }
+            external.own_walls = own;
+            if own {
+                side.walls = None;
+            }
+        }
+        changed
+    }
+
+    /// Who evaluates the walls of each external solid that the scene lets touch some, with its place.
+    pub(crate) fn walls(&self) -> impl Iterator<Item = (usize, Walls<'_>)> {
+        self.solids.iter().enumerate().filter_map(|(solid, side)| {
+            let external = side.external.as_ref().filter(|_| side.touches_walls)?;
+            let walls = match &side.walls {
+                _ if external.own_walls => Walls::Own,
+                Some(walls) => Walls::Coupler(walls),
+                None => Walls::Space,
+            };
+            Some((self.first + solid, walls))
+        })
+    }
+}
