@@ -17,7 +17,7 @@ class Step:
       forces are those at n + 1/2, and the state at n + 1 is to be published. Both go from the state at n.
     - `dt`: length of the whole step, s. `span`: how far this stage goes from n, s: dt / 2, then dt.
     - `time`: time at n, s. `next_time`: time at n + 1, s.
-    - `forces`: N x D, N (2D: N/m), the whole action of the fluid. Gravity is the solid's own.
+    - `forces`: N x D, N (2D: N/m), the whole action of fluid, other solids and walls. Gravity is the solid's own.
     """
 
     def __init__(self, solid, header, records):
@@ -45,11 +45,13 @@ class Solid:
     for all, m/s. `clamped`: mask of particles whose velocity is prescribed. `body`: number of the connected body of
     each. `dt_limit`: largest time step that the solid allows, s. `save`: a function that returns the state at n as a
     dictionary of arrays; with it the run can be interrupted and resumed, and `saved()` has that dictionary then.
+    `own_walls`: the solver holds the solid against the scene's walls itself; else walls that the scene lets it touch
+    push it in the plane, and `forces` has that, too.
     """
 
     def __init__(
         self, position, mass, density, *, velocity=0.0, clamped=None, body=None, dt_limit=1e30, save=None,
-        environment=None,
+        own_walls=False, environment=None,
     ):
         self.environment = environment or Environment()
         position = np.asarray(position, float)
@@ -67,6 +69,7 @@ class Solid:
         self.records["flags"] = flags
         self.header = {"dt_limit": dt_limit, "sub_steps": 1}
         self.save, self.safe = save, 0
+        self.abilities = (wire.CHECKPOINTS if save else 0) | (wire.WALLS_AND_CONTACTS if own_walls else 0)
         self._is_due, self._done = True, False
         self.step, self.stage, self.time = 0, 0, 0.0
         state = checkpoint.read(self.environment)
@@ -117,9 +120,8 @@ class Solid:
         self.link.send(self.records, **self._head(), dt=dt, **self._sums())
 
     def _head(self):
-        abilities = wire.CHECKPOINTS if self.save else 0
         place = {"step": self.step, "stage": self.stage, "time": self.time}
-        return place | self.header | {"abilities": abilities, "checkpoint_safe": self.safe}
+        return place | self.header | {"abilities": self.abilities, "checkpoint_safe": self.safe}
 
     def _sums(self):
         """What run.json tells of the particles: sums at stage 0."""

@@ -14,7 +14,7 @@ _NUMPY = {"u32": "<u4", "u64": "<u8", "f64": "<f8", "f64[3]": "(3,)<f8", "f64[6]
 # Bits of an answer's `order`.
 GO, WRITE_FRAME, WRITE_CHECKPOINT, STOP, SEND_PROBES = 1, 2, 4, 8, 16
 # Bits of a state's `abilities`.
-CHECKPOINTS = 1
+CHECKPOINTS, WALLS_AND_CONTACTS = 1, 2
 # Values of a state's `status`.
 OK, DIVERGED, FAILED, FINISHED = 0, 1, 2, 3
 # The `stage` of the last message.
@@ -89,8 +89,8 @@ if __name__ == "__main__":
     print("schema", schema())
     numbers = {
         "go": GO, "write frame": WRITE_FRAME, "write checkpoint": WRITE_CHECKPOINT, "stop": STOP,
-        "send probes": SEND_PROBES, "checkpoints": CHECKPOINTS, "ok": OK, "diverged": DIVERGED, "failed": FAILED,
-        "finished": FINISHED, "last stage": LAST_STAGE,
+        "send probes": SEND_PROBES, "checkpoints": CHECKPOINTS, "walls and contacts": WALLS_AND_CONTACTS,
+        "ok": OK, "diverged": DIVERGED, "failed": FAILED, "finished": FINISHED, "last stage": LAST_STAGE,
     }
     for name, number in (numbers | QUANTITIES).items():
         print(name, number)

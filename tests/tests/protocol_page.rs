@@ -183,6 +183,7 @@ fn the_python_package_has_these_bytes() {
         ("stop", order::STOP),
         ("send probes", order::SEND_PROBES),
         ("checkpoints", ability::CHECKPOINTS),
+        ("walls and contacts", ability::WALLS_AND_CONTACTS),
         ("ok", status::OK),
         ("diverged", status::DIVERGED),
         ("failed", status::FAILED),

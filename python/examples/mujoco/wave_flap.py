@@ -49,7 +49,8 @@ class Flap(Body):
         print(f"{self.data.time},{self.u[0]},{self.data.ctrl[0]},{work}", file=table)
 
 
-solid = halfstep.Solid(points.position, points.mass, points.density)
+# The hinge lies in the floor, which does not push the flap.
+solid = halfstep.Solid(points.position, points.mass, points.density, own_walls=True)
 with open(f"{halfstep.folder()}/motor.csv", "w", encoding="utf-8") as table:
     print("time [s],angle [rad],moment [N],work [J]", file=table)
     halfstep.integrate.advance_once(solid, halfstep.mapping.Hinged(points.position, hinge), Flap(model))
