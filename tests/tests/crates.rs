@@ -9,6 +9,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("scene", &["sph"]),
     ("wire", &["sph"]),
     ("link", &["wire"]),
+    ("c", &["wire", "link"]),
     ("interface", &["sph", "scene", "wire"]),
     ("role", &["sph", "scene", "wire", "link"]),
     ("output", &["scene", "wire"]),
