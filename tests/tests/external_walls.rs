@@ -180,6 +180,71 @@ fn an_interrupted_block_goes_on_to_the_same_bits_and_says_the_same_of_walls() {
     assert_eq!(resumed.report.contacts, whole.report.contacts);
 }
 
+/// The floor goes up with 0.1 m/s: it lifts the block, and gives it m g times the way and its kinetic energy.
+#[test]
+fn a_floor_that_goes_up_lifts_the_block() {
+    let lift = "{ velocity = [0.0, 0.1] }";
+    let run = Block::new(0.0, 0.0, 0.0).external("").set("shape.floor.motion", lift).run();
+    let (way, given) = (run.curve("block.y").at(0.5), contact(&run).normal);
+    println!("{way} m of 0.05 m, {given} J/m of {}", WEIGHT * way + 0.05);
+    assert!((way - 0.05).abs() < 5e-4, "{way}");
+    assert!((given / (WEIGHT * way + 0.05) - 1.0).abs() < 5e-3, "{given}");
+    assert!(!run.outcome.stderr.contains("instead of taking"), "{}", run.outcome.stderr);
+}
+
+/// In water: floor and water carry it together, and the forces of water alone are in balance with those on the water.
+#[test]
+fn a_heavy_block_sinks_to_the_floor() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("sinks.toml");
+    std::fs::write(&path, SINKING).expect("a scene");
+    let run = scene_at(&path).argument("--solid").argument(line("")).run();
+    let (force, height) = (run.curve("force.y").between(0.5, 0.8).mean(), run.curve("block.y").at(0.8));
+    println!("force {force} N/m of {}, height {height} m, {:?}", 2.0 * WEIGHT, contact(&run));
+    assert!((force / (2.0 * WEIGHT) - 1.0).abs() < 0.01, "{force}");
+    assert!((height + 0.02).abs() < 1e-3, "{height}");
+    let mismatch = run.report.audit.action_reaction.expect("an audit");
+    assert!(mismatch <= 1e-12, "{mismatch:e}");
+}
+
+/// A block of twice the water's density 20 mm over the floor of a tank.
+const SINKING: &str = r#"
+resolution = 0.0125
+end_time = 0.8
+
+[fluid]
+density = 1000.0
+
+[solid]
+model = "rigid"
+density = 2000.0
+
+[[shape]]
+name = "block"
+phase = "solid"
+box = { min = [0.15, 0.02], max = [0.25, 0.12] }
+
+[[shape]]
+name = "tank"
+phase = "wall"
+tank = { min = [0.0, 0.0], max = [0.4, 0.3], open = ["top"] }
+
+[[shape]]
+name = "water"
+phase = "fluid"
+box = { min = [0.0, 0.0], max = [0.4, 0.2] }
+pressure = "hydrostatic"
+
+[[probe]]
+name = "block"
+kind = "displacement"
+at = [0.2, 0.07]
+
+[[probe]]
+name = "force"
+kind = "force"
+"#;
+
 /// Alone, too, a solid stands on the floor.
 #[test]
 fn a_block_that_is_tried_alone_stands_on_the_floor() {
