@@ -43,7 +43,8 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         let walls = self.walls.as_ref().map(|walls| (walls, &self.wall_list));
         let (fluid, list) = (&self.columns.now, &self.fluid_list);
         let (isa, gravity) = (self.isa, self.gravity);
-        act(&mut self.effects, &Neighbourhood { kernel, isa, gravity, fluid, list, walls })
+        let beside_solids = self.coupling.as_ref().map_or(&[][..], |coupling| &coupling.gradients);
+        act(&mut self.effects, &Neighbourhood { kernel, isa, gravity, fluid, list, beside_solids, walls })
     }
 
     /// Pressure and velocity that the walls show.

@@ -277,12 +277,19 @@ impl<const D: usize> Solids<D> {
             let forces = &mut side.forces;
             interface.act_on_solid(|record, force| forces[record].stress_force = wide(force));
             self.cross.on_solid(interface, |record, a| forces[record].cross_viscosity = wide(a));
+            let more = |force: &mut ForceRecord, a: [f64; D]| {
+                force.cross_viscosity.iter_mut().zip(a).for_each(|(sum, a)| *sum += a);
+            };
+            interface.drag_on_solid(|record, a| more(&mut forces[record], a));
             let forces = &mut self.fluid_forces;
             self.cross.on_fluid(interface, |record, a| {
-                let sum = &mut forces[record].cross_viscosity;
                 // The first solid's share is taken as it is: a sum would lose the sign of a zero.
-                *sum = if place == 0 { wide(a) } else { std::array::from_fn(|d| sum[d] + wide(a)[d]) };
+                match place {
+                    0 => forces[record].cross_viscosity = wide(a),
+                    _ => more(&mut forces[record], a),
+                }
             });
+            interface.drag_on_fluid(|record, a| more(&mut forces[record], a));
         }
         if touching {
             self.touch(states, time);

@@ -5,7 +5,7 @@ use super::wall_guard::WallGuard;
 use super::{FluidEffect, Listed};
 use crate::composition::Composition;
 use crate::rates::{FluidPair, PairEffect, PairRates};
-use halfstep_scene::{ArtificialViscosity as Coefficients, Decision, Derived, EffectName, Fluid, Scene};
+use halfstep_scene::{ArtificialViscosity as Coefficients, Decision, EffectName, Scene};
 use halfstep_sph::lane::{Arch, Lanes};
 
 /// The effect, and its share of a pair.
@@ -46,22 +46,7 @@ impl<const D: usize> FluidEffect<D> for ArtificialViscosity<D> {
     type Pair<'a> = Self;
     type AtWall<'a> = Self;
     fn decide(scene: &Scene) -> Decision {
-        let derived = match &scene.fluid {
-            None => Derived::Impossible("the scene has no fluid".into()),
-            Some(Fluid { artificial_viscosity: a, .. }) if a.linear == 0.0 && a.quadratic == 0.0 => {
-                Derived::Impossible(
-                    "fluid.artificial_viscosity is zero, or no more than fluid.viscosity does".into(),
-                )
-            }
-            Some(Fluid { artificial_viscosity: a, sound_speed, .. }) => {
-                let worth = a.kinematic(scene.smoothing_ratio * scene.resolution, *sound_speed);
-                let (linear, quadratic) = ((1e4 * a.linear).round() / 1e4, a.quadratic);
-                Derived::On(format!(
-                    "fluid.artificial_viscosity: A = {linear}, B = {quadratic}, worth {worth:.1e} m²/s"
-                ))
-            }
-        };
-        Decision::new(scene, EffectName::ArtificialViscosity, derived)
+        halfstep_scene::artificial_viscosity(scene)
     }
     fn pair(&self) -> Option<Self> {
         Some(*self)

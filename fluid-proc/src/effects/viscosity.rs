@@ -1,15 +1,15 @@
 //! Physical viscosity, Kayaki's eqs. (4) and (22): the viscous stress
 //!   tau_ab = mu (dv_a/dx_b + dv_b/dx_a - 2/3 delta_ab div v)
 //! of each particle from a first pass, then (tau_i / rho_i² + tau_j / rho_j²) . grad W in the momentum equation. A wall
-//! particle takes part in the gradient with the velocity it shows and repeats the stress of its fluid neighbour.
+//! particle takes part in the gradient with the velocity it shows and repeats the stress of its fluid neighbour. What
+//! solids add to the gradient comes from the interface ([`super::interface_viscosity`]).
 
-use super::artificial_viscosity::ArtificialViscosity;
 use super::{FluidEffect, Listed, Neighbourhood, evaluations};
 use crate::columns::{PairParticles, each, fit};
 use crate::composition::Composition;
 use crate::rates::{FluidPair, PairEffect, PairRates};
 use crate::walls::Walls;
-use halfstep_scene::{Decision, Derived, EffectName, Scene, dispatch};
+use halfstep_scene::{Decision, EffectName, Scene};
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::{Arch, LANES, Lane, Lanes};
 use halfstep_sph::pair::{self, PairLaw, distance, pair_sum};
@@ -77,17 +77,24 @@ impl<const D: usize> VelocityGradient<D> {
     // Inlined, its scalar arithmetic would break up the vectors of the loop before it.
     #[inline(never)]
     pub fn stress(&self, viscosity: f64, density: Lane) -> [[[f64; D]; D]; LANES] {
-        std::array::from_fn(|k| {
-            let gradient = |a: usize, b: usize| self.0[a][b].0[k];
-            let divergence: f64 = (0..D).map(|a| gradient(a, a)).sum();
-            let scale = viscosity / (density.0[k] * density.0[k]);
-            let component = |a: usize, b: usize| {
-                let isotropic = if a == b { 2.0 / 3.0 * divergence } else { 0.0 };
-                scale * (gradient(a, b) + gradient(b, a) - isotropic)
-            };
-            std::array::from_fn(|a| std::array::from_fn(|b| component(a.min(b), a.max(b))))
-        })
+        std::array::from_fn(|k| stress(viscosity, density.0[k], |a, b| self.0[a][b].0[k]))
     }
+}
+
+/// tau / rho² of a velocity gradient.
+#[inline(always)]
+fn stress<const D: usize>(
+    viscosity: f64,
+    density: f64,
+    gradient: impl Fn(usize, usize) -> f64,
+) -> [[f64; D]; D] {
+    let divergence: f64 = (0..D).map(|a| gradient(a, a)).sum();
+    let scale = viscosity / (density * density);
+    let component = |a: usize, b: usize| {
+        let isotropic = if a == b { 2.0 / 3.0 * divergence } else { 0.0 };
+        scale * (gradient(a, b) + gradient(b, a) - isotropic)
+    };
+    std::array::from_fn(|a| std::array::from_fn(|b| component(a.min(b), a.max(b))))
 }
 
 impl<const D: usize> StressTerm<D> {
@@ -110,23 +117,6 @@ fn add_stress<const D: usize, A: Arch, L: Lanes>(
     }
 }
 
-/// Physical over artificial kinematic viscosity below which the physical one is left out: it costs a pass, and what the
-/// artificial one does is not known better than that.
-pub const SMALLEST_SHARE: f64 = 0.05;
-
-/// Physical over artificial kinematic viscosity; infinite without artificial one, `None` without fluid or without
-/// physical one.
-pub fn share_of_artificial(scene: &Scene) -> Option<f64> {
-    let fluid = scene.fluid.as_ref().filter(|f| f.viscosity > 0.0)?;
-    let artificial = dispatch!(scene.dimension, D => ArtificialViscosity::<D>::decide(scene).on);
-    if artificial != Some(true) {
-        return Some(f64::INFINITY);
-    }
-    let h = scene.smoothing_ratio * scene.resolution;
-    let artificial = fluid.artificial_viscosity.kinematic(h, fluid.sound_speed);
-    Some(fluid.viscosity / fluid.density / artificial)
-}
-
 /// The effect.
 #[derive(Clone, Debug)]
 pub struct Viscosity<const D: usize> {
@@ -147,16 +137,7 @@ impl<const D: usize> FluidEffect<D> for Viscosity<D> {
     type Pair<'a> = ViscousStress<'a, D>;
     type AtWall<'a> = ViscosityAtWall<'a, D>;
     fn decide(scene: &Scene) -> Decision {
-        let derived = match share_of_artificial(scene) {
-            None => Derived::Impossible("fluid.viscosity is zero".into()),
-            Some(share) if share.is_infinite() => Derived::On("there is no artificial viscosity".into()),
-            Some(share) => {
-                let (percent, least) = (100.0 * share, 100.0 * SMALLEST_SHARE);
-                let why = format!("{percent:.2} % of the artificial viscosity; computed from {least} % on");
-                if share >= SMALLEST_SHARE { Derived::On(why) } else { Derived::Off(why) }
-            }
-        };
-        Decision::new(scene, EffectName::Viscosity, derived)
+        halfstep_scene::viscosity(scene)
     }
     fn bytes_per_particle(_: &Scene) -> usize {
         size_of::<[[f64; D]; D]>()
@@ -169,14 +150,22 @@ impl<const D: usize> FluidEffect<D> for Viscosity<D> {
         let law = GradientLaw { kernel, targets: fluid, sources: fluid };
         let finish = |slot, sum: &VelocityGradient<D>| sum.stress(viscosity, fluid.densities(slot));
         let (out, _) = self.stress.0.as_chunks_mut();
-        if let Some((walls, list)) = around.walls {
+        let pairs = if let Some((walls, list)) = around.walls {
             let at_walls = GradientLaw { kernel, targets: fluid, sources: &walls.shown };
             pair::pass_both_into(around.isa, (&law, around.list), (&at_walls, list), finish, out);
             evaluations(around.list) + evaluations(list)
         } else {
             pair::pass_into(around.isa, &law, around.list, finish, out);
             evaluations(around.list)
+        };
+        // Stress is linear in the gradient.
+        for (slot, gradient) in around.beside_solids {
+            let density = fluid.sources[*slot as usize].density;
+            let more = stress::<D>(viscosity, density, |a, b| gradient[a][b]);
+            let sum = self.stress.0[*slot as usize].as_flattened_mut();
+            sum.iter_mut().zip(more.as_flattened()).for_each(|(sum, more)| *sum += more);
         }
+        pairs
     }
     fn pair(&self) -> Option<ViscousStress<'_, D>> {
         Some(ViscousStress(&self.stress))

@@ -34,14 +34,19 @@ mod phase_blind;
 mod screen;
 #[cfg(test)]
 mod screen_tests;
+mod spin;
 mod state;
 #[cfg(test)]
 mod symmetry_tests;
 mod thin_plate;
+mod viscous_stress;
+#[cfg(test)]
+mod viscous_tests;
 
 pub use interface_particles::InterfaceParticles;
 pub use phase_blind::SolidRates;
 pub use thin_plate::thin_plate_screen;
+pub use viscous_stress::interface_viscosity;
 
 use halfstep_scene::geometry::Plate;
 use halfstep_scene::{Decision, Derived, EffectName, KernelName, Phase, Scene, Treatment};
@@ -52,6 +57,7 @@ use halfstep_sph::pair::pair_sum;
 use halfstep_sph::state_equation::StateEquation;
 use halfstep_wire::protocol::StateRecord;
 use screen::Screen;
+use viscous_stress::ViscousStress;
 
 /// What the interface needs to know of the scene.
 #[derive(Clone, Debug)]
@@ -82,6 +88,8 @@ pub struct Parameters<const D: usize> {
     pub cross_viscosity: f64,
     /// C beyond that.
     pub cross_viscosity_far: f64,
+    /// The fluid's viscosity mu where viscous stress crosses the interface, Pa s.
+    pub viscosity: Option<f64>,
     /// Instruction set of the pair loop.
     pub isa: Isa,
 }
@@ -117,6 +125,7 @@ impl<const D: usize> Parameters<D> {
             thin_plates: thin_plate::screened(scene, index),
             cross_viscosity: scene.interface.cross_viscosity,
             cross_viscosity_far: scene.interface.cross_viscosity_far,
+            viscosity: interface_viscosity(scene).on.then_some(fluid.viscosity),
             isa,
         })
     }
@@ -152,6 +161,7 @@ pub struct Interface<const D: usize> {
     solid_forces: Vec<SolidForce<D>>,
     wall_sums: Vec<ExtrapolationSum>,
     screen: Option<Screen<D>>,
+    viscous_stress: Option<ViscousStress<D>>,
     solid_rates: Vec<SolidRates<D>>,
 }
 
@@ -159,6 +169,7 @@ impl<const D: usize> Interface<D> {
     /// An interface without particles.
     pub fn new(parameters: Parameters<D>) -> Self {
         let list = ClusterList::new(parameters.isa);
+        let viscous_stress = parameters.viscosity.map(|mu| ViscousStress::new(mu, list.clone()));
         Self {
             parameters,
             fluid: InterfaceParticles::default(),
@@ -170,13 +181,15 @@ impl<const D: usize> Interface<D> {
             solid_forces: Vec::new(),
             wall_sums: Vec::new(),
             screen: None,
+            viscous_stress,
             solid_rates: Vec::new(),
         }
     }
 
     /// Pairs that the passes between the phases evaluate.
     pub fn pairs(&self) -> usize {
-        self.fluid_list.pairs() + self.solid_list.pairs()
+        let own = self.viscous_stress.as_ref().map_or(0, ViscousStress::pairs);
+        self.fluid_list.pairs() + self.solid_list.pairs() + own
     }
 
     fn skin(&self) -> f64 {
@@ -211,6 +224,7 @@ impl<const D: usize> Interface<D> {
             Treatment::MovingWall => screen::show_pressures(self, solid),
             Treatment::PhaseBlind => phase_blind::show_stress(self),
         }
+        self.show_velocity();
     }
 
     /// What the solid does to the fluid. `visit(record, acceleration, density_rate)` for each fluid record that has

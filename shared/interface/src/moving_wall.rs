@@ -70,7 +70,7 @@ pub(super) trait WallPressure<const D: usize>: Copy + Send + Sync {
 
 /// One pressure whatever the fluid's place is: the columns of the solid.
 #[derive(Clone, Copy)]
-struct OneFace<'a, const D: usize>(&'a InterfaceParticles<D>);
+pub(super) struct OneFace<'a, const D: usize>(pub(super) &'a InterfaceParticles<D>);
 
 impl<const D: usize> WallPressure<D> for OneFace<'_, D> {
     type Own<L: Lanes> = L;

@@ -15,6 +15,7 @@
 //! plate have n = 0, o = 0: half of everything on either side, which is the one state that they show.
 
 use super::moving_wall::{WallPressure, extrapolated, extrapolation};
+use super::viscous_stress::Faces;
 use super::{Interface, InterfaceParticles, Parameters};
 use halfstep_sph::extrapolation::{Extrapolation, ExtrapolationSum};
 use halfstep_sph::kernel::Kernel;
@@ -217,6 +218,25 @@ impl<const D: usize> WallPressure<D> for TwoFaces<'_, D> {
         let [against, along] = self.faces;
         let both = |a: &[f64], b: &[f64]| between::<A, L>([L::splat(a[j]), L::splat(b[j])], share);
         (both(&against.pressure_term, &along.pressure_term), both(&against.volume, &along.volume))
+    }
+}
+
+impl<const D: usize> Faces<D> for TwoFaces<'_, D> {
+    /// n and o.
+    type Own<L: Lanes> = ([L; D], L);
+
+    #[inline(always)]
+    fn load<L: Lanes>(&self, slot: usize) -> Self::Own<L> {
+        (std::array::from_fn(|d| L::load(&self.normal[d], slot)), L::load(self.before, slot))
+    }
+    #[inline(always)]
+    fn share_of<A: Arch, L: Lanes>(&self, own: &Self::Own<L>, to_fluid: [L; D]) -> L {
+        share::<D, A, L>(own.0, own.1, to_fluid, self.sharpness)
+    }
+    #[inline(always)]
+    fn share_at<A: Arch, L: Lanes>(&self, j: usize, to_fluid: [L; D]) -> L {
+        let normal = std::array::from_fn(|d| L::splat(self.normal[d][j]));
+        share::<D, A, L>(normal, L::splat(self.before[j]), to_fluid, self.sharpness)
     }
 }
 

@@ -14,6 +14,9 @@ impl<const D: usize> Interface<D> {
         let height = self.height();
         self.fluid_list.build(&self.fluid.position, &self.solid.position, self.solid.rows(), height);
         self.solid_list.build(&self.solid.position, &self.fluid.position, self.fluid.rows(), height);
+        if let Some(stress) = &mut self.viscous_stress {
+            stress.list(&self.solid, height);
+        }
     }
 }
 

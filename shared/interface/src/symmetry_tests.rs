@@ -3,7 +3,7 @@
 use super::{Interface, Parameters};
 use crate::cross_viscosity::CrossViscosity;
 use halfstep_scene::geometry::Plate;
-use halfstep_scene::{Geometry, Scene, parse};
+use halfstep_scene::{Geometry, Scene, Treatment, parse};
 use halfstep_sph::lane::Isa;
 use halfstep_wire::protocol::StateRecord;
 use proptest::prelude::*;
@@ -39,7 +39,9 @@ fn parameters<const D: usize>(keys: &str) -> Parameters<D> {
     let scene = scene::<D>(keys);
     let plates = scene.shapes.iter().filter_map(|shape| Plate::of(&scene, shape)).collect();
     let thin_plates = if keys.is_empty() { plates } else { Vec::new() };
-    Parameters { thin_plates, ..Parameters::new(&scene, 0, Isa::detect()).expect("fluid and solid") }
+    // About as strong as the pressures drawn.
+    let viscosity = (scene.interface.treatment == Treatment::MovingWall).then_some(5.0);
+    Parameters { thin_plates, viscosity, ..Parameters::new(&scene, 0, Isa::detect()).expect("fluid and solid") }
 }
 
 /// A particle drawn at random: place, velocity, pressure, density over the reference density.
@@ -115,6 +117,8 @@ fn crossing<const D: usize>(keys: &str, fluid: &[StateRecord], solid: &[StateRec
     let mut cross = CrossViscosity::default();
     cross.on_fluid(&interface, |r, a| add(&mut out.force[r], a, fluid[r].mass));
     cross.on_solid(&interface, |r, a| add(&mut out.force[fluid.len() + r], a, solid[r].mass));
+    interface.drag_on_fluid(|r, a| add(&mut out.force[r], a, fluid[r].mass));
+    interface.drag_on_solid(|r, a| add(&mut out.force[fluid.len() + r], a, solid[r].mass));
     out
 }
 

@@ -151,7 +151,8 @@ impl Lockstep {
             true => self.each(|k, track| track.publish_to(port, k, &half_step))?,
             false => self.begin(port)?,
         }
-        self.each(|_, track| {
+        self.each(|k, track| {
+            track.see(port, k, &half_step)?;
             track.own_sums();
             Ok(())
         })?;

@@ -30,6 +30,8 @@ macro_rules! fluid_effects {
             ParticleShifting "particle-shifting" particle_shifting,
             /// Water that leaves a wall is not thinned out by the velocity that the wall shows.
             WallSeparation "wall-separation" wall_separation,
+            /// Viscous stress between fluid and solid.
+            InterfaceViscosity "interface-viscosity" interface_viscosity,
         }
     };
 }

@@ -63,6 +63,7 @@ mod solid;
 mod solid_json;
 mod spacing;
 mod velocity_field;
+mod viscosity;
 
 pub use bodies::Body;
 pub use contact::PairContact;
@@ -85,6 +86,7 @@ pub use solid::{
     TotalLagrangianKeys,
 };
 pub use velocity_field::VelocityField;
+pub use viscosity::{artificial_viscosity, viscosity};
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

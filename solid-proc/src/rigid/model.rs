@@ -152,10 +152,11 @@ impl<const D: usize> Rigid<D> {
     }
 
     fn record(&self, particle: u32) -> StateRecord {
-        let driven = !self.system.bodies[self.body_of[particle as usize] as usize].gives_way();
+        let body = self.body_of[particle as usize];
+        let driven = !self.system.bodies[body as usize].gives_way();
         StateRecord {
             id: particle,
-            flags: u32::from(driven),
+            flags: u32::from(driven) | (body + 1) << 8,
             position: wide(self.shown.position[particle as usize]),
             velocity: wide(self.shown_velocity.of(particle)),
             density: self.density,

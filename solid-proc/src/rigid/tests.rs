@@ -348,7 +348,7 @@ fn a_body_moves_as_prescribed() {
     }
     let mut records = Vec::new();
     model.records(&[0], &mut records);
-    assert_eq!(records[0].flags, 1);
+    assert_eq!(records[0].flags, 1 | 1 << 8, "prescribed, of the first body");
 }
 
 #[test]

@@ -1,0 +1,451 @@
+//! Viscous stress between fluid and solid without slip, where the solid is the fluid's moving wall (pair force of
+//! Morris, Fox and Zhu 1997, eq. 22; shown velocity of Adami, Hu and Adams 2012, eqs. 22 and 23).
+//!
+//! Velocities relative to the solid, with the rotation Omega_s beside its particle s ([`super::spin`]), are
+//!   w_fs = v_f - u_s - Omega_s (x_f - x_s),  w~_s = sum_f w_fs W_sf / sum_f W_sf,
+//! and s shows the fluid the velocity v_s = u_s - w~_s, its own where there is no fluid around. With grad W = F x_ij,
+//!   m_f a_f += sum_s 2 mu V_f V_s F (w_fs + w~_s),  V_f = m_f / rho_f,  V_s = m_s / rho_s as shown,
+//! the solid receives the opposite of each pair force, and the fluid's velocity gradient goes on into the solid:
+//!   (dv_a / dx_b)_f += sum_s V_s (v_s - v_f)_a F x_fs,b.
+//! The screen of a thin plate shows a velocity at each of its faces.
+
+use super::moving_wall::OneFace;
+use super::spin::{MomentLaw, Spin};
+use super::phase_blind::Vector;
+use super::{Interface, InterfaceParticles, SolidForce};
+use halfstep_scene::{Decision, Derived, EffectName, Scene, Treatment};
+use halfstep_sph::kernel::Kernel;
+use halfstep_sph::lane::{Arch, LANES, Lane, Lanes};
+use halfstep_sph::neighbours::ClusterList;
+use halfstep_sph::pair::{self, PairLaw, distance, pair_sum};
+use halfstep_sph::with_kernel;
+
+/// Whether fluid sticks to solids.
+pub fn interface_viscosity(scene: &Scene) -> Decision {
+    Decision::new(scene, EffectName::InterfaceViscosity, derive(scene))
+}
+
+fn derive(scene: &Scene) -> Derived {
+    if scene.fluid.is_none() || scene.solids.is_empty() {
+        return Derived::Impossible("one phase only".into());
+    }
+    if scene.interface.treatment == Treatment::PhaseBlind {
+        return Derived::Impossible("phase-blind: the fluid shows the solid its pressure only".into());
+    }
+    let viscosity = halfstep_scene::viscosity(scene);
+    if !viscosity.on {
+        return Derived::Impossible(format!("viscosity is off: {}", viscosity.why));
+    }
+    Derived::On("viscosity is on, and fluid sticks to solids".into())
+}
+
+/// On which face of the solid fluid stands: the share of the second one.
+pub(super) trait Faces<const D: usize>: Copy + Send + Sync {
+    /// What is loaded of solid particles.
+    type Own<L: Lanes>: Copy;
+    /// Loads the solid particles from `slot` on.
+    fn load<L: Lanes>(&self, slot: usize) -> Self::Own<L>;
+    /// Of fluid at `to_fluid` = x_f - x_s from solid particles.
+    fn share_of<A: Arch, L: Lanes>(&self, own: &Self::Own<L>, to_fluid: [L; D]) -> L;
+    /// Of fluid particles at `to_fluid` from the solid particle `j`.
+    fn share_at<A: Arch, L: Lanes>(&self, j: usize, to_fluid: [L; D]) -> L;
+}
+
+impl<const D: usize> Faces<D> for OneFace<'_, D> {
+    type Own<L: Lanes> = ();
+
+    #[inline(always)]
+    fn load<L: Lanes>(&self, _: usize) {}
+    #[inline(always)]
+    fn share_of<A: Arch, L: Lanes>(&self, (): &(), _: [L; D]) -> L {
+        L::splat(1.0)
+    }
+    #[inline(always)]
+    fn share_at<A: Arch, L: Lanes>(&self, _: usize, _: [L; D]) -> L {
+        L::splat(1.0)
+    }
+}
+
+/// What the effect keeps between passes; nothing that a run that goes on needs.
+#[derive(Clone, Debug)]
+pub(super) struct ViscousStress<const D: usize> {
+    /// mu, Pa s.
+    viscosity: f64,
+    spin: Spin<D>,
+    /// v_s at each face by slot of the solid, m/s.
+    shown: [[Vec<f64>; D]; 2],
+    faces: Vec<[FaceSum<D>; 2]>,
+    gradients: Vec<Gradient<D>>,
+    on_fluid: Vec<Vector<D>>,
+    on_solid: Vec<SolidForce<D>>,
+}
+
+impl<const D: usize> ViscousStress<D> {
+    /// With a list that is as wide as the passes.
+    pub(super) fn new(viscosity: f64, list: ClusterList) -> Self {
+        let shown = std::array::from_fn(|_| std::array::from_fn(|_| Vec::new()));
+        let (faces, gradients, on_fluid, on_solid) = Default::default();
+        Self { viscosity, spin: Spin::new(list), shown, faces, gradients, on_fluid, on_solid }
+    }
+
+    /// Lists the solid's neighbours among itself.
+    pub(super) fn list(&mut self, solid: &InterfaceParticles<D>, reach: f64) {
+        self.spin.list.build(&solid.position, &solid.position, solid.rows(), reach);
+    }
+
+    /// Pairs that its own passes evaluate.
+    pub(super) fn pairs(&self) -> usize {
+        self.spin.list.pairs()
+    }
+
+    fn seen<'a, F>(&'a self, interface: &'a Interface<D>, faces: F) -> Seen<'a, F, D> {
+        let Interface { fluid, solid, .. } = interface;
+        Seen { fluid, solid, spin: &self.spin.columns, shown: &self.shown, faces, viscosity: self.viscosity }
+    }
+}
+
+/// sum W, sum W v_f and sum W (x_s - x_f) of several solid particles, over the fluid on one face.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FaceSum<const D: usize, L = Lane> {
+    weight: L,
+    velocity: [L; D],
+    from_fluid: [L; D],
+}
+pair_sum!(FaceSum { D } { weight, velocity, from_fluid });
+
+/// dv_a / dx_b of several fluid particles, as far as solids add to it.
+#[derive(Clone, Copy, Debug)]
+struct Gradient<const D: usize, L = Lane>([[L; D]; D]);
+pair_sum!(Gradient { D } { 0 });
+
+/// What the laws see.
+#[derive(Clone, Copy)]
+struct Seen<'a, F, const D: usize> {
+    fluid: &'a InterfaceParticles<D>,
+    solid: &'a InterfaceParticles<D>,
+    spin: &'a [[Vec<f64>; D]; D],
+    shown: &'a [[Vec<f64>; D]; 2],
+    faces: F,
+    viscosity: f64,
+}
+
+impl<F: Faces<D>, const D: usize> Seen<'_, F, D> {
+    /// v_s of the solid particle `j` toward fluid particles.
+    #[inline(always)]
+    fn shown_at<A: Arch, L: Lanes>(&self, j: usize, to_fluid: [L; D]) -> [L; D] {
+        let share = self.faces.share_at::<A, L>(j, to_fluid);
+        let [against, along] = self.shown;
+        std::array::from_fn(|d| between::<A, L>(L::splat(against[d][j]), L::splat(along[d][j]), share))
+    }
+}
+
+#[inline(always)]
+fn between<A: Arch, L: Lanes>(against: L, along: L, share: L) -> L {
+    A::mul_add(share, along - against, against)
+}
+
+/// Takes Omega x off a velocity; Omega by its components a < b.
+#[inline(always)]
+fn take_rotation<const D: usize, A: Arch, L: Lanes>(
+    velocity: &mut [L; D],
+    spin: impl Fn(usize, usize) -> L,
+    x: [L; D],
+) {
+    for a in 0..D {
+        for b in a + 1..D {
+            let omega = spin(a, b);
+            velocity[a] = A::mul_add(-omega, x[b], velocity[a]);
+            velocity[b] = A::mul_add(omega, x[a], velocity[b]);
+        }
+    }
+}
+
+/// The pass over the solid: the fluid's velocity at each face.
+struct AtFaces<'a, K, F, const D: usize>(K, Seen<'a, F, D>);
+
+impl<K: Kernel<D>, F: Faces<D>, const D: usize> PairLaw<D> for AtFaces<'_, K, F, D> {
+    type Target<L: Lanes> = F::Own<L>;
+    type Sum<L: Lanes> = [FaceSum<D, L>; 2];
+
+    #[inline(always)]
+    fn target_positions(&self) -> &[Vec<f64>; D] {
+        &self.1.solid.position
+    }
+    #[inline(always)]
+    fn target<L: Lanes>(&self, slot: usize) -> F::Own<L> {
+        self.1.faces.load(slot)
+    }
+    #[inline(always)]
+    fn source_position(&self, j: usize) -> [f64; D] {
+        std::array::from_fn(|d| self.1.fluid.position[d][j])
+    }
+    #[inline(always)]
+    fn add<A: Arch, L: Lanes>(&self, own: &F::Own<L>, j: usize, dx: [L; D], r2: L, sum: &mut Self::Sum<L>) {
+        let Self(kernel, seen) = self;
+        let w = kernel.value::<A, L>(distance(r2, kernel.smoothing_length()));
+        let along = w * seen.faces.share_of::<A, L>(own, dx.map(|x| -x));
+        for (sum, w) in sum.iter_mut().zip([w - along, along]) {
+            sum.weight += w;
+            for d in 0..D {
+                sum.velocity[d] = A::mul_add(w, L::splat(seen.fluid.velocity[d][j]), sum.velocity[d]);
+                sum.from_fluid[d] = A::mul_add(w, dx[d], sum.from_fluid[d]);
+            }
+        }
+    }
+}
+
+/// The pass over the fluid that continues its velocity gradient.
+struct GradientLaw<'a, K, F, const D: usize>(K, Seen<'a, F, D>);
+
+impl<K: Kernel<D>, F: Faces<D>, const D: usize> PairLaw<D> for GradientLaw<'_, K, F, D> {
+    /// Velocity.
+    type Target<L: Lanes> = [L; D];
+    type Sum<L: Lanes> = Gradient<D, L>;
+
+    #[inline(always)]
+    fn target_positions(&self) -> &[Vec<f64>; D] {
+        &self.1.fluid.position
+    }
+    #[inline(always)]
+    fn target<L: Lanes>(&self, slot: usize) -> [L; D] {
+        std::array::from_fn(|d| L::load(&self.1.fluid.velocity[d], slot))
+    }
+    #[inline(always)]
+    fn source_position(&self, j: usize) -> [f64; D] {
+        std::array::from_fn(|d| self.1.solid.position[d][j])
+    }
+    #[inline(always)]
+    fn add<A: Arch, L: Lanes>(&self, own: &[L; D], j: usize, dx: [L; D], r2: L, sum: &mut Gradient<D, L>) {
+        let Self(kernel, seen) = self;
+        let f = kernel.gradient_over_r::<A, L>(distance(r2, kernel.smoothing_length()));
+        let vf = L::splat(seen.solid.mass[j] / seen.solid.density[j]) * f;
+        let shown = seen.shown_at::<A, L>(j, dx);
+        for a in 0..D {
+            let row = vf * (shown[a] - own[a]);
+            for b in 0..D {
+                sum.0[a][b] = A::mul_add(row, dx[b], sum.0[a][b]);
+            }
+        }
+    }
+}
+
+/// Acceleration of the fluid.
+struct OnFluid<'a, K, F, const D: usize>(K, Seen<'a, F, D>);
+
+impl<K: Kernel<D>, F: Faces<D>, const D: usize> PairLaw<D> for OnFluid<'_, K, F, D> {
+    /// Velocity; 2 mu / rho.
+    type Target<L: Lanes> = ([L; D], L);
+    type Sum<L: Lanes> = Vector<D, L>;
+
+    #[inline(always)]
+    fn target_positions(&self) -> &[Vec<f64>; D] {
+        &self.1.fluid.position
+    }
+    #[inline(always)]
+    fn target<L: Lanes>(&self, slot: usize) -> Self::Target<L> {
+        let velocity = std::array::from_fn(|d| L::load(&self.1.fluid.velocity[d], slot));
+        (velocity, L::splat(2.0 * self.1.viscosity) / L::load(&self.1.fluid.density, slot))
+    }
+    #[inline(always)]
+    fn source_position(&self, j: usize) -> [f64; D] {
+        std::array::from_fn(|d| self.1.solid.position[d][j])
+    }
+    #[inline(always)]
+    fn add<A: Arch, L: Lanes>(
+        &self,
+        (velocity, factor): &Self::Target<L>,
+        j: usize,
+        dx: [L; D],
+        r2: L,
+        sum: &mut Vector<D, L>,
+    ) {
+        let Self(kernel, seen) = self;
+        let f = kernel.gradient_over_r::<A, L>(distance(r2, kernel.smoothing_length()));
+        let coefficient = L::splat(seen.solid.mass[j] / seen.solid.density[j]) * *factor * f;
+        let shown = seen.shown_at::<A, L>(j, dx);
+        let mut slip = std::array::from_fn(|d| velocity[d] - shown[d]);
+        take_rotation::<D, A, L>(&mut slip, |a, b| L::splat(seen.spin[a][b][j]), dx);
+        for d in 0..D {
+            sum.0[d] = A::mul_add(coefficient, slip[d], sum.0[d]);
+        }
+    }
+}
+
+/// What is loaded of solid particles.
+#[derive(Clone, Copy)]
+struct OfSolid<O, L, const D: usize> {
+    shown: [[L; D]; 2],
+    /// Components a < b.
+    spin: [[L; D]; D],
+    /// 2 mu V.
+    factor: L,
+    own: O,
+}
+
+/// Force on the solid.
+struct OnSolid<'a, K, F, const D: usize>(K, Seen<'a, F, D>);
+
+impl<K: Kernel<D>, F: Faces<D>, const D: usize> PairLaw<D> for OnSolid<'_, K, F, D> {
+    type Target<L: Lanes> = OfSolid<F::Own<L>, L, D>;
+    type Sum<L: Lanes> = SolidForce<D, L>;
+
+    #[inline(always)]
+    fn target_positions(&self) -> &[Vec<f64>; D] {
+        &self.1.solid.position
+    }
+    #[inline(always)]
+    fn target<L: Lanes>(&self, slot: usize) -> Self::Target<L> {
+        let seen = &self.1;
+        let spin = |a: usize, b: usize| if a < b { L::load(&seen.spin[a][b], slot) } else { L::ZERO };
+        OfSolid {
+            shown: std::array::from_fn(|k| std::array::from_fn(|d| L::load(&seen.shown[k][d], slot))),
+            spin: std::array::from_fn(|a| std::array::from_fn(|b| spin(a, b))),
+            factor: L::splat(2.0 * seen.viscosity) * L::load(&seen.solid.mass, slot)
+                / L::load(&seen.solid.density, slot),
+            own: seen.faces.load(slot),
+        }
+    }
+    #[inline(always)]
+    fn source_position(&self, j: usize) -> [f64; D] {
+        std::array::from_fn(|d| self.1.fluid.position[d][j])
+    }
+    #[inline(always)]
+    fn add<A: Arch, L: Lanes>(
+        &self,
+        i: &Self::Target<L>,
+        j: usize,
+        dx: [L; D],
+        r2: L,
+        sum: &mut SolidForce<D, L>,
+    ) {
+        let Self(kernel, seen) = self;
+        let f = kernel.gradient_over_r::<A, L>(distance(r2, kernel.smoothing_length()));
+        let coefficient = L::splat(-seen.fluid.mass[j] / seen.fluid.density[j]) * i.factor * f;
+        let to_fluid = dx.map(|x| -x);
+        let share = seen.faces.share_of::<A, L>(&i.own, to_fluid);
+        let shown = |d: usize| between::<A, L>(i.shown[0][d], i.shown[1][d], share);
+        let mut slip = std::array::from_fn(|d| L::splat(seen.fluid.velocity[d][j]) - shown(d));
+        take_rotation::<D, A, L>(&mut slip, |a, b| i.spin[a][b], to_fluid);
+        for d in 0..D {
+            sum.0[d] = A::mul_add(coefficient, slip[d], sum.0[d]);
+        }
+    }
+}
+
+/// Runs a pass with the faces that the solid has.
+macro_rules! with_faces {
+    ($interface:ident, $stress:ident, |$kernel:ident, $seen:ident| $pass:expr) => {{
+        let p = &$interface.parameters;
+        with_kernel!(p.kernel, p.smoothing_length, D, |$kernel| match &$interface.screen {
+            None => {
+                let $seen = $stress.seen($interface, OneFace(&$interface.solid));
+                $pass
+            }
+            Some(screen) => {
+                let $seen = $stress.seen($interface, screen.wall($interface));
+                $pass
+            }
+        });
+    }};
+}
+
+impl<const D: usize> Interface<D> {
+    /// Velocities that the solid shows the fluid, once its densities are known.
+    pub(super) fn show_velocity(&mut self) {
+        let Some(mut stress) = self.viscous_stress.take() else { return };
+        let (this, isa) = (&*self, self.parameters.isa);
+        let mut moments = std::mem::take(&mut stress.spin.sums);
+        moments.resize(stress.spin.list.fours(), Default::default());
+        with_kernel!(this.parameters.kernel, this.parameters.smoothing_length, D, |kernel| {
+            pair::pass(isa, &MomentLaw { kernel, solid: &this.solid }, &stress.spin.list, &mut moments);
+        });
+        stress.spin.sums = moments;
+        let slots = this.solid.density.len();
+        stress.spin.solve(slots);
+        let mut faces = std::mem::take(&mut stress.faces);
+        faces.resize(this.solid_list.fours(), Default::default());
+        with_faces!(this, stress, |kernel, seen| {
+            pair::pass(isa, &AtFaces(kernel, seen), &this.solid_list, &mut faces);
+        });
+        let ViscousStress { shown, spin, .. } = &mut stress;
+        shown.iter_mut().flatten().for_each(|column| column.resize(slots, 0.0));
+        for slot in 0..slots {
+            let own: [f64; D] = std::array::from_fn(|d| this.solid.velocity[d][slot]);
+            for (shown, sum) in shown.iter_mut().zip(&faces[slot / LANES]) {
+                let relative = sum.relative(slot % LANES, &own, |a, b| spin.columns[a][b][slot]);
+                (0..D).for_each(|d| shown[d][slot] = own[d] - relative[d]);
+            }
+        }
+        stress.faces = faces;
+        self.viscous_stress = Some(stress);
+    }
+
+    /// What the solid adds to the fluid's velocity gradient where viscous stress crosses the interface:
+    /// `visit(record, gradient)`, dv_a / dx_b, 1/s.
+    pub fn gradient_at_fluid(&mut self, mut visit: impl FnMut(usize, [[f64; D]; D])) {
+        let Some(mut stress) = self.viscous_stress.take() else { return };
+        let (this, isa) = (&*self, self.parameters.isa);
+        let mut sums = std::mem::take(&mut stress.gradients);
+        sums.resize(this.fluid_list.fours(), Gradient::default());
+        with_faces!(this, stress, |kernel, seen| {
+            pair::pass(isa, &GradientLaw(kernel, seen), &this.fluid_list, &mut sums);
+        });
+        for (slot, record) in this.fluid.slots() {
+            visit(record, sums[slot / LANES].0.map(|row| row.map(|g| g.0[slot % LANES])));
+        }
+        stress.gradients = sums;
+        self.viscous_stress = Some(stress);
+    }
+
+    /// Acceleration of the fluid by viscous stress: `visit(record, acceleration)`, m/s²; nothing without the effect.
+    pub fn drag_on_fluid(&mut self, mut visit: impl FnMut(usize, [f64; D])) {
+        let Some(mut stress) = self.viscous_stress.take() else { return };
+        let (this, isa) = (&*self, self.parameters.isa);
+        let mut sums = std::mem::take(&mut stress.on_fluid);
+        sums.resize(this.fluid_list.fours(), Vector::default());
+        with_faces!(this, stress, |kernel, seen| {
+            pair::pass(isa, &OnFluid(kernel, seen), &this.fluid_list, &mut sums);
+        });
+        for (slot, record) in this.fluid.slots() {
+            visit(record, sums[slot / LANES].0.map(|a| a.0[slot % LANES]));
+        }
+        stress.on_fluid = sums;
+        self.viscous_stress = Some(stress);
+    }
+
+    /// The same of the solid, an acceleration of its own mass.
+    pub fn drag_on_solid(&mut self, mut visit: impl FnMut(usize, [f64; D])) {
+        let Some(mut stress) = self.viscous_stress.take() else { return };
+        let (this, isa) = (&*self, self.parameters.isa);
+        let mut sums = std::mem::take(&mut stress.on_solid);
+        sums.resize(this.solid_list.fours(), SolidForce::default());
+        with_faces!(this, stress, |kernel, seen| {
+            pair::pass(isa, &OnSolid(kernel, seen), &this.solid_list, &mut sums);
+        });
+        for (slot, record) in this.solid.slots() {
+            let mass = this.solid.own_mass[slot];
+            visit(record, sums[slot / LANES].0.map(|force| force.0[slot % LANES] / mass));
+        }
+        stress.on_solid = sums;
+        self.viscous_stress = Some(stress);
+    }
+}
+
+impl<const D: usize> FaceSum<D> {
+    /// w~ of the k-th, m/s, with its own velocity and the rotation beside it; zero without fluid around.
+    fn relative(&self, k: usize, own: &[f64; D], spin: impl Fn(usize, usize) -> f64) -> [f64; D] {
+        let weight = self.weight.0[k];
+        if weight <= 0.0 {
+            return [0.0; D];
+        }
+        let to_fluid = |d: usize| -self.from_fluid[d].0[k] / weight;
+        let mut relative = std::array::from_fn(|d| self.velocity[d].0[k] / weight - own[d]);
+        for a in 0..D {
+            for b in a + 1..D {
+                relative[a] -= spin(a, b) * to_fluid(b);
+                relative[b] += spin(a, b) * to_fluid(a);
+            }
+        }
+        relative
+    }
+}
