@@ -47,6 +47,8 @@ fn a_free_impact_keeps_the_total_momentum() {
         &["numerics.max_sub_steps=1"],
         &["shape.plate.spacing=0.0025"],
         &["solid.model=hypoelastic"],
+        &["fluid.viscosity=5", "effects.viscosity=on"],
+        &["fluid.viscosity=5", "effects.viscosity=on", "effects.thin-plate-screen=off"],
         &["solid.model=hypoelastic", "interface.treatment=phase-blind"],
     ] {
         let report = run(overrides);

@@ -103,7 +103,9 @@ impl<const D: usize> InterfaceParticles<D> {
                 self.stress_term[d][b].resize(slots, 0.0);
             }
         }
-        for column in [&mut self.density, &mut self.pressure, &mut self.mass, &mut self.own_mass, &mut self.body] {
+        for column in
+            [&mut self.density, &mut self.pressure, &mut self.mass, &mut self.own_mass, &mut self.body]
+        {
             column.resize(slots, 0.0);
         }
     }

@@ -41,7 +41,11 @@ fn parameters<const D: usize>(keys: &str) -> Parameters<D> {
     let thin_plates = if keys.is_empty() { plates } else { Vec::new() };
     // About as strong as the pressures drawn.
     let viscosity = (scene.interface.treatment == Treatment::MovingWall).then_some(5.0);
-    Parameters { thin_plates, viscosity, ..Parameters::new(&scene, 0, Isa::detect()).expect("fluid and solid") }
+    Parameters {
+        thin_plates,
+        viscosity,
+        ..Parameters::new(&scene, 0, Isa::detect()).expect("fluid and solid")
+    }
 }
 
 /// A particle drawn at random: place, velocity, pressure, density over the reference density.

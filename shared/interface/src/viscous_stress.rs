@@ -10,8 +10,8 @@
 //! The screen of a thin plate shows a velocity at each of its faces.
 
 use super::moving_wall::OneFace;
-use super::spin::{MomentLaw, Spin};
 use super::phase_blind::Vector;
+use super::spin::{MomentLaw, Spin};
 use super::{Interface, InterfaceParticles, SolidForce};
 use halfstep_scene::{Decision, Derived, EffectName, Scene, Treatment};
 use halfstep_sph::kernel::Kernel;

@@ -52,11 +52,7 @@ fn lattice(
 }
 
 /// Forces on fluid and solid records.
-fn forces(
-    interface: &mut Interface<2>,
-    fluid: &[StateRecord],
-    solid: &[StateRecord],
-) -> [Vec<[f64; 2]>; 2] {
+fn forces(interface: &mut Interface<2>, fluid: &[StateRecord], solid: &[StateRecord]) -> [Vec<[f64; 2]>; 2] {
     interface.update(fluid, solid, 1);
     let mut on = [vec![[0.0; 2]; fluid.len()], vec![[0.0; 2]; solid.len()]];
     interface.drag_on_fluid(|r, a| on[0][r] = a.map(|a| a * fluid[r].mass));
