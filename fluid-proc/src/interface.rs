@@ -28,7 +28,7 @@ pub struct Coupling<const D: usize> {
     pub(crate) gap: f64,
     /// Interfaces are those of this half-step's records.
     seen: bool,
-    /// By slots, what solids add to the velocity gradient, 1/s; empty where viscous stress does not cross the interface.
+    /// By slots, what solids add to the velocity gradient, 1/s; empty where no viscous stress crosses the interface.
     pub(crate) gradients: Vec<(u32, [[f64; D]; D])>,
 }
 

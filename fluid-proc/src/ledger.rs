@@ -179,7 +179,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         self.effects.measure_walls(&mut at_walls);
     }
 
-    /// Notes the power of f_i at n + 1/2.
+    /// Notes the power of f_i and of viscous stress across the interface at n + 1/2.
     pub(crate) fn measure_cross_viscosity(&mut self, forces: &[ForceRecord]) {
         let (Some(own), Some(coupling)) = (&mut self.ledger, &self.coupling) else { return };
         let pushed = coupling.slots().iter().zip(forces).map(|(&slot, force)| {

@@ -2,8 +2,8 @@
 //!   cfl h / (c0 + v),  0.25 sqrt(h / |a|),  0.125 h² rho / mu,
 //! v and a the largest speed and acceleration. With phase-blind coupling also 0.8 h rho_ij / (C c_ij max(rho_f,
 //! rho_s)): the cross-phase viscosity acts on the lighter side with the heavier's mass. With the moving wall and a
-//! light solid the first is divided by sqrt(rho_f / rho_s), and the third, where viscous stress crosses the interface, by
-//! rho_f / rho_s.
+//! light solid the first is divided by sqrt(rho_f / rho_s), and the third, where viscous stress crosses the interface,
+//! by rho_f / rho_s.
 
 use halfstep_scene::{Scene, Treatment};
 

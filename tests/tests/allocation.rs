@@ -109,6 +109,9 @@ fn coupled(scene: &Scene) -> u64 {
             if half_step.stage == Stage::First {
                 half_step = half_step.lasting(fluid.dt_limit().min(solid.dt_limit()));
             }
+            if fluid.sums_see_peers() {
+                fluid.see(&of_fluid[0].records, &of_solid).unwrap();
+            }
             fluid.own_sums();
             solid.own_sums();
             fluid.cross_sums(&of_fluid[0].records, &of_solid).unwrap();
@@ -119,6 +122,8 @@ fn coupled(scene: &Scene) -> u64 {
             }
             interface.update(&of_fluid[0].records, &of_solid[0].records, epoch);
             interface.act_on_solid(|record, [x, y]| forces[1][record].stress_force = [x, y, 0.0]);
+            interface.drag_on_solid(|record, [x, y]| forces[1][record].cross_viscosity = [x, y, 0.0]);
+            interface.drag_on_fluid(|record, [x, y]| forces[0][record].cross_viscosity = [x, y, 0.0]);
             fluid.advance(&half_step, &forces[0]).unwrap();
             solid.advance(&half_step, &forces[1]).unwrap();
             half_step = half_step.next();
@@ -174,6 +179,12 @@ fn both_phases_with_a_total_lagrangian_solid() {
 #[test]
 fn both_phases_with_a_moving_wall() {
     assert_eq!(coupled(&shipped("elastic-gate", &["resolution=0.0025", "solid.model=hypoelastic"])), 0);
+}
+
+#[test]
+fn both_phases_with_viscous_stress_between_them() {
+    let overrides = ["resolution=0.0025", "fluid.viscosity=1", "effects.viscosity=on"];
+    assert_eq!(coupled(&shipped("elastic-gate", &overrides)), 0);
 }
 
 #[test]

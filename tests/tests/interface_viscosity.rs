@@ -140,8 +140,8 @@ shape = "drum"
 about = [0.0, 0.0]
 "#;
 
-/// Moments on core and drum over 4 pi mu Omega R1² R2² / (R2² - R1²), with the angular velocities of both, rad/s; steady
-/// from 0.2 s on.
+/// Moments on core and drum over 4 pi mu Omega R1² R2² / (R2² - R1²), with the angular velocities of both, rad/s;
+/// steady from 0.2 s on.
 fn of_cylinders(dx: f64, core: f64, drum: f64, set: &[(&str, &str)]) -> [f64; 2] {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("cylinders.toml");

@@ -147,7 +147,7 @@ pub struct LargestEnergy {
 pub struct InterfaceEnergy {
     /// By pressure; phase-blind by stress.
     pub pressure: f64,
-    /// By f_i.
+    /// By f_i and by viscous stress.
     pub cross_viscosity: f64,
 }
 

@@ -51,8 +51,8 @@ pub fn fastest(mut work: impl FnMut()) -> f64 {
 
 /// Owner of the particles of a participant: of the fluid, or of one solid.
 ///
-/// One half-step is `publish`, `own_sums`, `cross_sums`, `advance`, in this order; the loop in [`crate::lockstep`]
-/// calls them.
+/// One half-step is `publish`, `own_sums`, `cross_sums`, `advance`, in this order, with `see` before `own_sums` where
+/// those need the peers; the loop in [`crate::lockstep`] calls them.
 pub trait Role: Send {
     /// Name of the participant.
     fn name(&self) -> Name;

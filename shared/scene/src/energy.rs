@@ -47,7 +47,7 @@ parts! {
     MovingWalls "moving-walls",
     /// Given across the interface by pressure; phase-blind by stress.
     InterfacePressure "interface-pressure",
-    /// Given across the interface by f_i.
+    /// Given across the interface by f_i and by viscous stress.
     CrossViscosity "cross-viscosity",
     /// Given by pressure and continuity between fluid particles, whose sums do not cancel where densities differ.
     Continuity "continuity",

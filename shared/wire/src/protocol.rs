@@ -40,7 +40,8 @@ pub struct ForceRecord {
     pub id: u32,
     /// Zero.
     pub flags: u32,
-    /// f_i: acceleration by the cross-phase artificial viscosity, m/s².
+    /// Acceleration by viscosity across the interface, m/s²: f_i, the artificial one, and viscous stress where the scene
+    /// calls for it.
     pub cross_viscosity: [f64; 3],
     /// Force by the other phase's pressure and stress, N (2D: N/m). Filled for the solid; zero for the fluid, which
     /// evaluates it from the same records itself.
