@@ -9,16 +9,17 @@
 //!   (dv_a / dx_b)_f += sum_s V_s (v_s - v_f)_a F x_fs,b.
 //! The screen of a thin plate shows a velocity at each of its faces.
 
+mod laws;
+
 use super::moving_wall::OneFace;
 use super::phase_blind::Vector;
 use super::spin::{MomentLaw, Spin};
 use super::{Interface, InterfaceParticles, SolidForce};
 use halfstep_scene::{Decision, Derived, EffectName, Scene, Treatment};
-use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Arch, LANES, Lane, Lanes};
+use halfstep_sph::lane::{Arch, LANES, Lanes};
 use halfstep_sph::neighbours::ClusterList;
-use halfstep_sph::pair::{self, PairLaw, distance, pair_sum};
-use halfstep_sph::with_kernel;
+use halfstep_sph::{pair, with_kernel};
+use laws::{AtFaces, FaceSum, Gradient, GradientLaw, OnFluid, OnSolid, Seen};
 
 /// Whether fluid sticks to solids.
 pub fn interface_viscosity(scene: &Scene) -> Decision {
@@ -101,234 +102,6 @@ impl<const D: usize> ViscousStress<D> {
     fn seen<'a, F>(&'a self, interface: &'a Interface<D>, faces: F) -> Seen<'a, F, D> {
         let Interface { fluid, solid, .. } = interface;
         Seen { fluid, solid, spin: &self.spin.columns, shown: &self.shown, faces, viscosity: self.viscosity }
-    }
-}
-
-/// sum W, sum W v_f and sum W (x_s - x_f) of several solid particles, over the fluid on one face.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct FaceSum<const D: usize, L = Lane> {
-    weight: L,
-    velocity: [L; D],
-    from_fluid: [L; D],
-}
-pair_sum!(FaceSum { D } { weight, velocity, from_fluid });
-
-/// dv_a / dx_b of several fluid particles, as far as solids add to it.
-#[derive(Clone, Copy, Debug)]
-struct Gradient<const D: usize, L = Lane>([[L; D]; D]);
-pair_sum!(Gradient { D } { 0 });
-
-/// What the laws see.
-#[derive(Clone, Copy)]
-struct Seen<'a, F, const D: usize> {
-    fluid: &'a InterfaceParticles<D>,
-    solid: &'a InterfaceParticles<D>,
-    spin: &'a [[Vec<f64>; D]; D],
-    shown: &'a [[Vec<f64>; D]; 2],
-    faces: F,
-    viscosity: f64,
-}
-
-impl<F: Faces<D>, const D: usize> Seen<'_, F, D> {
-    /// v_s of the solid particle `j` toward fluid particles.
-    #[inline(always)]
-    fn shown_at<A: Arch, L: Lanes>(&self, j: usize, to_fluid: [L; D]) -> [L; D] {
-        let share = self.faces.share_at::<A, L>(j, to_fluid);
-        let [against, along] = self.shown;
-        std::array::from_fn(|d| between::<A, L>(L::splat(against[d][j]), L::splat(along[d][j]), share))
-    }
-}
-
-#[inline(always)]
-fn between<A: Arch, L: Lanes>(against: L, along: L, share: L) -> L {
-    A::mul_add(share, along - against, against)
-}
-
-/// Takes Omega x off a velocity; Omega by its components a < b.
-#[inline(always)]
-fn take_rotation<const D: usize, A: Arch, L: Lanes>(
-    velocity: &mut [L; D],
-    spin: impl Fn(usize, usize) -> L,
-    x: [L; D],
-) {
-    for a in 0..D {
-        for b in a + 1..D {
-            let omega = spin(a, b);
-            velocity[a] = A::mul_add(-omega, x[b], velocity[a]);
-            velocity[b] = A::mul_add(omega, x[a], velocity[b]);
-        }
-    }
-}
-
-/// The pass over the solid: the fluid's velocity at each face.
-struct AtFaces<'a, K, F, const D: usize>(K, Seen<'a, F, D>);
-
-impl<K: Kernel<D>, F: Faces<D>, const D: usize> PairLaw<D> for AtFaces<'_, K, F, D> {
-    type Target<L: Lanes> = F::Own<L>;
-    type Sum<L: Lanes> = [FaceSum<D, L>; 2];
-
-    #[inline(always)]
-    fn target_positions(&self) -> &[Vec<f64>; D] {
-        &self.1.solid.position
-    }
-    #[inline(always)]
-    fn target<L: Lanes>(&self, slot: usize) -> F::Own<L> {
-        self.1.faces.load(slot)
-    }
-    #[inline(always)]
-    fn source_position(&self, j: usize) -> [f64; D] {
-        std::array::from_fn(|d| self.1.fluid.position[d][j])
-    }
-    #[inline(always)]
-    fn add<A: Arch, L: Lanes>(&self, own: &F::Own<L>, j: usize, dx: [L; D], r2: L, sum: &mut Self::Sum<L>) {
-        let Self(kernel, seen) = self;
-        let w = kernel.value::<A, L>(distance(r2, kernel.smoothing_length()));
-        let along = w * seen.faces.share_of::<A, L>(own, dx.map(|x| -x));
-        for (sum, w) in sum.iter_mut().zip([w - along, along]) {
-            sum.weight += w;
-            for d in 0..D {
-                sum.velocity[d] = A::mul_add(w, L::splat(seen.fluid.velocity[d][j]), sum.velocity[d]);
-                sum.from_fluid[d] = A::mul_add(w, dx[d], sum.from_fluid[d]);
-            }
-        }
-    }
-}
-
-/// The pass over the fluid that continues its velocity gradient.
-struct GradientLaw<'a, K, F, const D: usize>(K, Seen<'a, F, D>);
-
-impl<K: Kernel<D>, F: Faces<D>, const D: usize> PairLaw<D> for GradientLaw<'_, K, F, D> {
-    /// Velocity.
-    type Target<L: Lanes> = [L; D];
-    type Sum<L: Lanes> = Gradient<D, L>;
-
-    #[inline(always)]
-    fn target_positions(&self) -> &[Vec<f64>; D] {
-        &self.1.fluid.position
-    }
-    #[inline(always)]
-    fn target<L: Lanes>(&self, slot: usize) -> [L; D] {
-        std::array::from_fn(|d| L::load(&self.1.fluid.velocity[d], slot))
-    }
-    #[inline(always)]
-    fn source_position(&self, j: usize) -> [f64; D] {
-        std::array::from_fn(|d| self.1.solid.position[d][j])
-    }
-    #[inline(always)]
-    fn add<A: Arch, L: Lanes>(&self, own: &[L; D], j: usize, dx: [L; D], r2: L, sum: &mut Gradient<D, L>) {
-        let Self(kernel, seen) = self;
-        let f = kernel.gradient_over_r::<A, L>(distance(r2, kernel.smoothing_length()));
-        let vf = L::splat(seen.solid.mass[j] / seen.solid.density[j]) * f;
-        let shown = seen.shown_at::<A, L>(j, dx);
-        for a in 0..D {
-            let row = vf * (shown[a] - own[a]);
-            for b in 0..D {
-                sum.0[a][b] = A::mul_add(row, dx[b], sum.0[a][b]);
-            }
-        }
-    }
-}
-
-/// Acceleration of the fluid.
-struct OnFluid<'a, K, F, const D: usize>(K, Seen<'a, F, D>);
-
-impl<K: Kernel<D>, F: Faces<D>, const D: usize> PairLaw<D> for OnFluid<'_, K, F, D> {
-    /// Velocity; 2 mu / rho.
-    type Target<L: Lanes> = ([L; D], L);
-    type Sum<L: Lanes> = Vector<D, L>;
-
-    #[inline(always)]
-    fn target_positions(&self) -> &[Vec<f64>; D] {
-        &self.1.fluid.position
-    }
-    #[inline(always)]
-    fn target<L: Lanes>(&self, slot: usize) -> Self::Target<L> {
-        let velocity = std::array::from_fn(|d| L::load(&self.1.fluid.velocity[d], slot));
-        (velocity, L::splat(2.0 * self.1.viscosity) / L::load(&self.1.fluid.density, slot))
-    }
-    #[inline(always)]
-    fn source_position(&self, j: usize) -> [f64; D] {
-        std::array::from_fn(|d| self.1.solid.position[d][j])
-    }
-    #[inline(always)]
-    fn add<A: Arch, L: Lanes>(
-        &self,
-        (velocity, factor): &Self::Target<L>,
-        j: usize,
-        dx: [L; D],
-        r2: L,
-        sum: &mut Vector<D, L>,
-    ) {
-        let Self(kernel, seen) = self;
-        let f = kernel.gradient_over_r::<A, L>(distance(r2, kernel.smoothing_length()));
-        let coefficient = L::splat(seen.solid.mass[j] / seen.solid.density[j]) * *factor * f;
-        let shown = seen.shown_at::<A, L>(j, dx);
-        let mut slip = std::array::from_fn(|d| velocity[d] - shown[d]);
-        take_rotation::<D, A, L>(&mut slip, |a, b| L::splat(seen.spin[a][b][j]), dx);
-        for d in 0..D {
-            sum.0[d] = A::mul_add(coefficient, slip[d], sum.0[d]);
-        }
-    }
-}
-
-/// What is loaded of solid particles.
-#[derive(Clone, Copy)]
-struct OfSolid<O, L, const D: usize> {
-    shown: [[L; D]; 2],
-    /// Components a < b.
-    spin: [[L; D]; D],
-    /// 2 mu V.
-    factor: L,
-    own: O,
-}
-
-/// Force on the solid.
-struct OnSolid<'a, K, F, const D: usize>(K, Seen<'a, F, D>);
-
-impl<K: Kernel<D>, F: Faces<D>, const D: usize> PairLaw<D> for OnSolid<'_, K, F, D> {
-    type Target<L: Lanes> = OfSolid<F::Own<L>, L, D>;
-    type Sum<L: Lanes> = SolidForce<D, L>;
-
-    #[inline(always)]
-    fn target_positions(&self) -> &[Vec<f64>; D] {
-        &self.1.solid.position
-    }
-    #[inline(always)]
-    fn target<L: Lanes>(&self, slot: usize) -> Self::Target<L> {
-        let seen = &self.1;
-        let spin = |a: usize, b: usize| if a < b { L::load(&seen.spin[a][b], slot) } else { L::ZERO };
-        OfSolid {
-            shown: std::array::from_fn(|k| std::array::from_fn(|d| L::load(&seen.shown[k][d], slot))),
-            spin: std::array::from_fn(|a| std::array::from_fn(|b| spin(a, b))),
-            factor: L::splat(2.0 * seen.viscosity) * L::load(&seen.solid.mass, slot)
-                / L::load(&seen.solid.density, slot),
-            own: seen.faces.load(slot),
-        }
-    }
-    #[inline(always)]
-    fn source_position(&self, j: usize) -> [f64; D] {
-        std::array::from_fn(|d| self.1.fluid.position[d][j])
-    }
-    #[inline(always)]
-    fn add<A: Arch, L: Lanes>(
-        &self,
-        i: &Self::Target<L>,
-        j: usize,
-        dx: [L; D],
-        r2: L,
-        sum: &mut SolidForce<D, L>,
-    ) {
-        let Self(kernel, seen) = self;
-        let f = kernel.gradient_over_r::<A, L>(distance(r2, kernel.smoothing_length()));
-        let coefficient = L::splat(-seen.fluid.mass[j] / seen.fluid.density[j]) * i.factor * f;
-        let to_fluid = dx.map(|x| -x);
-        let share = seen.faces.share_of::<A, L>(&i.own, to_fluid);
-        let shown = |d: usize| between::<A, L>(i.shown[0][d], i.shown[1][d], share);
-        let mut slip = std::array::from_fn(|d| L::splat(seen.fluid.velocity[d][j]) - shown(d));
-        take_rotation::<D, A, L>(&mut slip, |a, b| i.spin[a][b], to_fluid);
-        for d in 0..D {
-            sum.0[d] = A::mul_add(coefficient, slip[d], sum.0[d]);
-        }
     }
 }
 
@@ -428,24 +201,5 @@ impl<const D: usize> Interface<D> {
         }
         stress.on_solid = sums;
         self.viscous_stress = Some(stress);
-    }
-}
-
-impl<const D: usize> FaceSum<D> {
-    /// w~ of the k-th, m/s, with its own velocity and the rotation beside it; zero without fluid around.
-    fn relative(&self, k: usize, own: &[f64; D], spin: impl Fn(usize, usize) -> f64) -> [f64; D] {
-        let weight = self.weight.0[k];
-        if weight <= 0.0 {
-            return [0.0; D];
-        }
-        let to_fluid = |d: usize| -self.from_fluid[d].0[k] / weight;
-        let mut relative = std::array::from_fn(|d| self.velocity[d].0[k] / weight - own[d]);
-        for a in 0..D {
-            for b in a + 1..D {
-                relative[a] -= spin(a, b) * to_fluid(b);
-                relative[b] += spin(a, b) * to_fluid(a);
-            }
-        }
-        relative
     }
 }

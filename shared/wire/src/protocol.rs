@@ -40,8 +40,8 @@ pub struct ForceRecord {
     pub id: u32,
     /// Zero.
     pub flags: u32,
-    /// Acceleration by viscosity across the interface, m/s²: f_i, the artificial one, and viscous stress where the scene
-    /// calls for it.
+    /// Acceleration by viscosity across the interface, m/s²: f_i, which is artificial, and viscous stress where the
+    /// scene calls for it.
     pub cross_viscosity: [f64; 3],
     /// Force by the other phase's pressure and stress, N (2D: N/m). Filled for the solid; zero for the fluid, which
     /// evaluates it from the same records itself.
