@@ -61,6 +61,21 @@ families! {
     time_steps "time-steps",
 }
 
+/// With the wide kernel, whose guards are strong and near.
+#[test]
+fn drops_impacts_and_corners_hold_with_the_preset_for_waves() {
+    for name in ["droplets", "impact"] {
+        let mut family = family(name);
+        for case in &mut family.case {
+            case.set.push("preset=waves".into());
+            case.without.clear();
+        }
+        let (text, _, wrong) = run(&family, false);
+        println!("{text}");
+        assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    }
+}
+
 #[test]
 #[ignore = "many minutes: all resolutions and long rests; writes the table into docs/stability.md if HALFSTEP_PAGE is set"]
 fn the_long_form() {

@@ -2,8 +2,9 @@
 //!
 //! Between fluid and wall the same Pi_ij acts as between fluid particles (Kayaki's eq. 23), with the velocity that the
 //! wall shows. The guard raises its A to 1 between a free-slip wall and what is close to it: fully below dx, fading
-//! to the scene's A at 1.5 dx. What the cross-phase f_i is between fluid and solid, it is here: without it single
-//! particles of a thin film sink into the wall by up to 1.7 dx before their pressure stops them.
+//! to the scene's A at 1.5 dx; with a wide kernel to 8 below 0.75 dx, fading until dx. What the cross-phase f_i is
+//! between fluid and solid, it is here: without it single particles of a thin film sink into the wall by up to 1.7 dx
+//! before their pressure stops them.
 //!
 //! Its reach is its price. A wall shows the mean tangential velocity of the water within 2h, so a stream that stretches
 //! or thins along the wall approaches some of the wall's particles, and a guard over all of 2h brakes it: like a
@@ -20,12 +21,15 @@ use halfstep_scene::{Decision, Derived, EffectName, Phase, Scene};
 use halfstep_sph::fade::Fade;
 use halfstep_sph::lane::{Arch, Lanes};
 
-/// A of the guard.
-pub const GUARD: f64 = 1.0;
-/// Up to where the guard is whole, over the spacing.
-const FULL: f64 = 1.0;
-/// From where on there is none, over the spacing. A reach of 1.25 lets water into corners by 0.7 dx.
-const GONE: f64 = 1.5;
+/// A of the guard, up to where it is whole, and from where on there is none, over the spacing. With the narrow kernel a
+/// reach of 1.25 lets water into corners by 0.7 dx.
+const NARROW: [f64; 3] = [1.0, 1.0, 1.5];
+/// The same with a wide kernel, which is flat at its middle.
+const WIDE: [f64; 3] = [8.0, 0.75, 1.0];
+
+fn guard(scene: &Scene) -> [f64; 3] {
+    if scene.has_wide_support() { WIDE } else { NARROW }
+}
 
 /// The effect.
 #[derive(Clone, Debug)]
@@ -47,11 +51,12 @@ impl<const D: usize> Listed<D> for WallGuard<D> {
         let acts = f64::from(u8::from(ArtificialViscosity::<D>::decide(scene).on));
         let plain = acts * fluid.artificial_viscosity.linear;
         let (dx, c0) = (scene.resolution, fluid.sound_speed);
+        let [strength, full, gone] = guard(scene);
         Some(Self {
             smoothing_length: scene.smoothing_ratio * dx,
-            fade: Fade::new(FULL * dx, GONE * dx),
+            fade: Fade::new(full * dx, gone * dx),
             plain: plain * c0,
-            guard: (GUARD - plain).max(0.0) * c0,
+            guard: (strength - plain).max(0.0) * c0,
             quadratic: acts * fluid.artificial_viscosity.quadratic,
             added: Vec::new(),
         })
@@ -68,8 +73,8 @@ impl<const D: usize> FluidEffect<D> for WallGuard<D> {
             Some(_) if !scene.shapes.iter().any(|s| s.phase == Phase::Wall && s.free_slip) => {
                 Derived::Impossible("no free-slip walls".into())
             }
-            Some(fluid) if fluid.artificial_viscosity.linear >= GUARD => {
-                Derived::Impossible(format!("A is {GUARD} or more everywhere"))
+            Some(fluid) if fluid.artificial_viscosity.linear >= guard(scene)[0] => {
+                Derived::Impossible(format!("A is {} or more everywhere", guard(scene)[0]))
             }
             Some(_) => Derived::On("keeps single particles out of walls".into()),
         };

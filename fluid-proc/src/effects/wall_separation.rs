@@ -5,14 +5,14 @@
 //! of two walls to 0.7 rho0. Where the wall's pressure would be negative it shows none, so nothing holds that water
 //! back either. There the wall shows continuity the water's own mean velocity v~ instead:
 //!   D rho_i / Dt += rho_i sum_w m_w / rho_w (v_w - v~_w) . grad W,   p_w <= 0 and (v~_w - u_w) . n_w > 0,
-//! with v_w what the wall shows to all other terms, which keep that.
+//! with v_w what the wall shows to all other terms, which keep that. Solids do the same in the interface.
 
 use super::{FluidEffect, Listed, Neighbourhood};
 use crate::columns::fit;
 use crate::composition::NoShare;
 use crate::rates::{FluidPair, PairEffect, PairRates};
 use crate::walls::Walls;
-use halfstep_scene::{Decision, Derived, EffectName, Phase, Scene};
+use halfstep_scene::{Decision, EffectName, Scene};
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::{Arch, Lanes};
 use halfstep_sph::pair::dot;
@@ -36,12 +36,7 @@ impl<const D: usize> FluidEffect<D> for WallSeparation<D> {
     type Pair<'a> = NoShare;
     type AtWall<'a> = Separating<'a, D>;
     fn decide(scene: &Scene) -> Decision {
-        let walls = scene.fluid.is_some() && scene.shapes.iter().any(|s| s.phase == Phase::Wall);
-        let derived = match walls {
-            true => Derived::Off("for kernels wider than h / dx = 1.5".into()),
-            false => Derived::Impossible("no fluid at walls".into()),
-        };
-        Decision::new(scene, EffectName::WallSeparation, derived)
+        halfstep_interface::wall_separation(scene)
     }
     fn resize(&mut self, _: usize, walls: Option<&Walls<D>>) {
         fit(&mut self.excess, walls.map_or(0, Walls::slots), [0.0; D]);

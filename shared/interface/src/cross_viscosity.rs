@@ -17,10 +17,8 @@ use halfstep_sph::neighbours::ClusterList;
 use halfstep_sph::pair::{self, PairLaw, distance, dot, pair_sum};
 use halfstep_sph::with_kernel;
 
-/// Up to where C is whole, over the spacing.
-const FULL: f64 = 1.0;
-/// From where on C is the far one, over the spacing.
-const GONE: f64 = 1.25;
+/// Up to where C is whole, and from where on it is the far one, over the spacing: with a narrow kernel and a wide one.
+const REACH: [[f64; 2]; 2] = [[1.0, 1.25], [0.75, 1.0]];
 
 struct Law<'a, K, const D: usize> {
     kernel: K,
@@ -129,7 +127,8 @@ impl<const D: usize> CrossViscosity<D> {
         };
         let far = p.cross_viscosity_far * sound_speed;
         let added = (p.cross_viscosity - p.cross_viscosity_far) * sound_speed;
-        let near = Fade::new(FULL * p.resolution, GONE * p.resolution);
+        let [full, gone] = REACH[usize::from(p.wide_support)];
+        let near = Fade::new(full * p.resolution, gone * p.resolution);
         self.sums.resize(list.fours(), Sum::default());
         with_kernel!(p.kernel, p.smoothing_length, D, |kernel| {
             let law = Law { kernel, targets, sources, far, added, near };

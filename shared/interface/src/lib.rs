@@ -34,6 +34,9 @@ mod phase_blind;
 mod screen;
 #[cfg(test)]
 mod screen_tests;
+mod separation;
+#[cfg(test)]
+mod separation_tests;
 mod spin;
 mod state;
 #[cfg(test)]
@@ -45,6 +48,7 @@ mod viscous_tests;
 
 pub use interface_particles::InterfaceParticles;
 pub use phase_blind::SolidRates;
+pub use separation::wall_separation;
 pub use thin_plate::thin_plate_screen;
 pub use viscous_stress::interface_viscosity;
 
@@ -56,8 +60,10 @@ use halfstep_sph::neighbours::ClusterList;
 use halfstep_sph::pair::pair_sum;
 use halfstep_sph::state_equation::StateEquation;
 use halfstep_wire::protocol::StateRecord;
+use moving_wall::{OneFace, WallPressure};
 use screen::Screen;
-use viscous_stress::ViscousStress;
+use separation::Separation;
+use viscous_stress::{Faces, ViscousStress};
 
 /// What the interface needs to know of the scene.
 #[derive(Clone, Debug)]
@@ -78,6 +84,8 @@ pub struct Parameters<const D: usize> {
     pub gravity: [f64; D],
     /// The solid never pulls at the fluid.
     pub non_negative_pressure: bool,
+    /// Water that leaves the solid keeps its density.
+    pub separation: bool,
     /// Particle spacing of the fluid, m.
     pub resolution: f64,
     /// How far apart particles of the two are where fluid and solid touch: the mean of their spacings, m.
@@ -90,6 +98,8 @@ pub struct Parameters<const D: usize> {
     pub cross_viscosity_far: f64,
     /// The fluid's viscosity mu where viscous stress crosses the interface, Pa s.
     pub viscosity: Option<f64>,
+    /// C is that of a wide kernel: near.
+    pub wide_support: bool,
     /// Instruction set of the pair loop.
     pub isa: Isa,
 }
@@ -120,12 +130,14 @@ impl<const D: usize> Parameters<D> {
             solid_sound_speed: solid.sound_speed(),
             gravity: std::array::from_fn(|d| scene.gravity[d]),
             non_negative_pressure: non_negative_pressure(scene).on,
+            separation: wall_separation(scene).on,
             resolution: scene.resolution,
             spacing: scene.interface_spacing(index),
             thin_plates: thin_plate::screened(scene, index),
             cross_viscosity: scene.interface.cross_viscosity,
             cross_viscosity_far: scene.interface.cross_viscosity_far,
             viscosity: interface_viscosity(scene).on.then_some(fluid.viscosity),
+            wide_support: scene.has_wide_support(),
             isa,
         })
     }
@@ -161,6 +173,7 @@ pub struct Interface<const D: usize> {
     solid_forces: Vec<SolidForce<D>>,
     wall_sums: Vec<ExtrapolationSum>,
     screen: Option<Screen<D>>,
+    separation: Separation<D>,
     viscous_stress: Option<ViscousStress<D>>,
     solid_rates: Vec<SolidRates<D>>,
 }
@@ -181,6 +194,7 @@ impl<const D: usize> Interface<D> {
             solid_forces: Vec::new(),
             wall_sums: Vec::new(),
             screen: None,
+            separation: Separation::default(),
             viscous_stress,
             solid_rates: Vec::new(),
         }
@@ -233,10 +247,14 @@ impl<const D: usize> Interface<D> {
         self.fluid_sums.resize(self.fluid_list.fours(), FluidSum::default());
         let mut sums = std::mem::take(&mut self.fluid_sums);
         match self.parameters.treatment {
-            Treatment::MovingWall => match &self.screen {
-                None => moving_wall::act_on_fluid(self, &mut sums),
-                Some(screen) => moving_wall::push_fluid(self, screen.wall(self), &mut sums),
-            },
+            Treatment::MovingWall => {
+                let mut separation = std::mem::take(&mut self.separation);
+                match &self.screen {
+                    None => self.push_fluid(OneFace(&self.solid), &mut separation, &mut sums),
+                    Some(screen) => self.push_fluid(screen.wall(self), &mut separation, &mut sums),
+                }
+                self.separation = separation;
+            }
             Treatment::PhaseBlind => phase_blind::act_on_fluid(self, &mut sums),
         }
         for (slot, record) in self.fluid.slots() {
@@ -246,13 +264,27 @@ impl<const D: usize> Interface<D> {
         self.fluid_sums = sums;
     }
 
+    fn push_fluid(
+        &self,
+        wall: impl WallPressure<D> + Faces<D>,
+        separation: &mut Separation<D>,
+        sums: &mut [FluidSum<D>],
+    ) {
+        if self.parameters.separation {
+            separation.find(self, wall);
+            moving_wall::push_fluid(self, separation.shown_by(wall), sums);
+        } else {
+            moving_wall::push_fluid(self, wall, sums);
+        }
+    }
+
     /// Force of the fluid on the solid: `visit(record, force)`.
     pub fn act_on_solid(&mut self, mut visit: impl FnMut(usize, [f64; D])) {
         self.solid_forces.resize(self.solid_list.fours(), SolidForce::default());
         let mut sums = std::mem::take(&mut self.solid_forces);
         match self.parameters.treatment {
             Treatment::MovingWall => match &self.screen {
-                None => moving_wall::act_on_solid(self, &mut sums),
+                None => moving_wall::push_solid(self, OneFace(&self.solid), &mut sums),
                 Some(screen) => moving_wall::push_solid(self, screen.wall(self), &mut sums),
             },
             Treatment::PhaseBlind => phase_blind::act_on_solid(self, &mut sums),

@@ -66,9 +66,16 @@ pub(super) trait WallPressure<const D: usize>: Copy + Send + Sync {
     fn of<A: Arch, L: Lanes>(&self, own: &Self::Own<L>, to_fluid: [L; D]) -> L;
     /// p / rho² and m / rho of the solid particle `j`, toward fluid particles.
     fn to<A: Arch, L: Lanes>(&self, j: usize, to_fluid: [L; D]) -> (L, L);
+    /// p / rho² toward both sides.
+    fn pressure_terms(&self, slot: usize) -> [f64; 2];
+    /// v_f - v_s as continuity of fluid with this p / rho² sees it, from what it is.
+    #[inline(always)]
+    fn receding<A: Arch, L: Lanes>(&self, _: usize, _: [L; D], dv: [L; D], _: L) -> [L; D] {
+        dv
+    }
 }
 
-/// One pressure whatever the fluid's place is: the columns of the solid.
+/// One pressure whatever the fluid's place is: the columns of the solid. All fluid stands on the second side.
 #[derive(Clone, Copy)]
 pub(super) struct OneFace<'a, const D: usize>(pub(super) &'a InterfaceParticles<D>);
 
@@ -88,6 +95,9 @@ impl<const D: usize> WallPressure<D> for OneFace<'_, D> {
     fn to<A: Arch, L: Lanes>(&self, j: usize, _: [L; D]) -> (L, L) {
         let (side, rho) = (self.0, self.0.density[j]);
         (L::splat(side.pressure[j] / (rho * rho)), L::splat(side.mass[j] / rho))
+    }
+    fn pressure_terms(&self, slot: usize) -> [f64; 2] {
+        [0.0, self.0.pressure[slot] / self.0.density[slot].powi(2)]
     }
 }
 
@@ -143,6 +153,7 @@ impl<K: Kernel<D>, S: WallPressure<D>, const D: usize> PairLaw<D> for OnFluid<'_
         let s = self.sources;
         let coefficient = L::splat(s.mass[j]) * (i.pressure_term + term) * f;
         let dv = std::array::from_fn(|d| i.velocity[d] - L::splat(s.velocity[d][j]));
+        let dv = self.wall.receding::<A, L>(j, dx, dv, i.pressure_term);
         for d in 0..D {
             sum.acceleration[d] = A::mul_add(-coefficient, dx[d], sum.acceleration[d]);
         }
@@ -193,14 +204,6 @@ impl<K: Kernel<D>, S: WallPressure<D>, const D: usize> PairLaw<D> for OnSolid<'_
             sum.0[d] = A::mul_add(-coefficient, dx[d], sum.0[d]);
         }
     }
-}
-
-pub(super) fn act_on_fluid<const D: usize>(interface: &Interface<D>, sums: &mut [FluidSum<D>]) {
-    push_fluid(interface, OneFace(&interface.solid), sums);
-}
-
-pub(super) fn act_on_solid<const D: usize>(interface: &Interface<D>, sums: &mut [SolidForce<D>]) {
-    push_solid(interface, OneFace(&interface.solid), sums);
 }
 
 pub(super) fn push_fluid<const D: usize>(

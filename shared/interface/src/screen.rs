@@ -209,15 +209,17 @@ impl<const D: usize> WallPressure<D> for TwoFaces<'_, D> {
     }
     #[inline(always)]
     fn of<A: Arch, L: Lanes>(&self, own: &Own<L, D>, to_fluid: [L; D]) -> L {
-        between::<A, L>(own.pressure_term, share::<D, A, L>(own.normal, own.before, to_fluid, self.sharpness))
+        between::<A, L>(own.pressure_term, self.share_of::<A, L>(&(own.normal, own.before), to_fluid))
     }
     #[inline(always)]
     fn to<A: Arch, L: Lanes>(&self, j: usize, to_fluid: [L; D]) -> (L, L) {
-        let normal = std::array::from_fn(|d| L::splat(self.normal[d][j]));
-        let share = share::<D, A, L>(normal, L::splat(self.before[j]), to_fluid, self.sharpness);
+        let share = self.share_at::<A, L>(j, to_fluid);
         let [against, along] = self.faces;
         let both = |a: &[f64], b: &[f64]| between::<A, L>([L::splat(a[j]), L::splat(b[j])], share);
         (both(&against.pressure_term, &along.pressure_term), both(&against.volume, &along.volume))
+    }
+    fn pressure_terms(&self, slot: usize) -> [f64; 2] {
+        std::array::from_fn(|side| self.faces[side].pressure_term[slot])
     }
 }
 

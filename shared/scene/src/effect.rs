@@ -28,7 +28,7 @@ macro_rules! fluid_effects {
             Beach "beach" beach,
             /// Particles are moved from where they are close to where they are few.
             ParticleShifting "particle-shifting" particle_shifting,
-            /// Water that leaves a wall is not thinned out by the velocity that the wall shows.
+            /// Water that leaves a wall or a solid is not thinned out by the velocity that it shows.
             WallSeparation "wall-separation" wall_separation,
             /// Viscous stress between fluid and solid.
             InterfaceViscosity "interface-viscosity" interface_viscosity,

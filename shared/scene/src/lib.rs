@@ -62,6 +62,7 @@ mod section;
 mod solid;
 mod solid_json;
 mod spacing;
+mod support;
 mod velocity_field;
 mod viscosity;
 

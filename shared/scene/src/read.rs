@@ -25,6 +25,8 @@ pub(crate) const SMOOTHING: Range = Range::at_least(1.0)
     .why("below, neighbours are too few; above, they are too many to resolve anything at this spacing");
 // Ends beyond any material, within which no formula overflows.
 pub(crate) const DENSITY: Range = Range::at_least(1e-6).up_to(1e9);
+/// C where the kernel is wide.
+const NEAR_CROSS_VISCOSITY: f64 = 4.0;
 /// Most worker threads of a process.
 pub(crate) const MAX_THREADS: u32 = 1024;
 pub(crate) const COEFFICIENT: Range = Range::at_least(0.0).up_to(100.0);
@@ -52,7 +54,8 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&s
     let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let end_time = top.number("end_time", None);
     let numerics = numerics(top.section("numerics"), dimension, &defaults);
-    let interface = interface(top.section("interface"), &defaults);
+    let smoothing_ratio = top.number("smoothing_ratio", Some(defaults.smoothing_ratio));
+    let interface = interface(top.section("interface"), &defaults, smoothing_ratio);
     let linear_auto = defaults.own_viscosity_counts && {
         let table = top.section("fluid").section("artificial_viscosity");
         table.node("linear").is_none()
@@ -91,7 +94,7 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&s
         preset,
         dimension,
         resolution: top.number("resolution", None),
-        smoothing_ratio: top.number("smoothing_ratio", Some(defaults.smoothing_ratio)),
+        smoothing_ratio,
         end_time,
         time_step: match top.number_or_auto("time_step", fixed(defaults.time_step)) {
             Some(dt) => TimeStep::Fixed(dt),
@@ -209,10 +212,12 @@ pub(super) fn viscosity(section: &Section<'_>, default: ArtificialViscosity) -> 
     viscosity
 }
 
-fn interface(section: Section<'_>, defaults: &Defaults) -> Interface {
+fn interface(section: Section<'_>, defaults: &Defaults, smoothing_ratio: f64) -> Interface {
     let treatment =
         section.choice("treatment", Some(defaults.treatment), &TREATMENTS).unwrap_or(defaults.treatment);
-    let near = section.number("cross_viscosity", Some(defaults.cross_viscosity));
+    let strong = treatment == Treatment::MovingWall && super::support::is_wide(smoothing_ratio);
+    let default = if strong { NEAR_CROSS_VISCOSITY } else { defaults.cross_viscosity };
+    let near = section.number("cross_viscosity", Some(default));
     // Phase-blind, f_i is the paper's, whose C is the same everywhere.
     let share = if treatment == Treatment::PhaseBlind { 1.0 } else { defaults.cross_viscosity_far };
     let range = Range::at_least(0.0).up_to(if near.is_finite() { near } else { f64::MAX });

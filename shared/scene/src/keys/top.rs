@@ -138,9 +138,13 @@ static INTERFACE: Table = Table::new(
             COEFFICIENT,
             "Strength C of the cross-phase viscosity between near particles.",
         )
-        .default("1.0"),
-        Key::number("cross_viscosity_far", COEFFICIENT, "C from 1.25 dx on, at most `cross_viscosity`.")
-            .default("0; phase-blind: `cross_viscosity`"),
+        .default("1.0; with `smoothing_ratio` 1.75 or more 4.0"),
+        Key::number(
+            "cross_viscosity_far",
+            COEFFICIENT,
+            "C from 1.25 dx on, with a wide kernel from dx on, at most `cross_viscosity`.",
+        )
+        .default("0; phase-blind: `cross_viscosity`"),
     ],
 );
 

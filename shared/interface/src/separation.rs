@@ -1,0 +1,174 @@
+//! Water that leaves a solid which does not push is not thinned out by it, as at walls: a solid that water leaves
+//! recedes from it, and continuity thins the water out, the more the wider the kernel. Where s shows no pressure and
+//! the water around it, in the mean at x~_s with the velocity v~_s, leaves,
+//!   p_s <= 0 and (v~_s - v_s) . (x~_s - x_s) > 0,
+//! s shows continuity v~_s instead of its own velocity v_s, to water that is not compressed, p_f <= 0; a thin plate
+//! does so on each face by itself. Compressed water expands as it leaves: without that, water that comes and goes at a
+//! body is pumped up, and lifts it.
+
+use super::Interface;
+use super::moving_wall::WallPressure;
+use super::viscous_stress::Faces;
+use halfstep_scene::{Decision, Derived, EffectName, Phase, Scene, Treatment};
+use halfstep_sph::kernel::Kernel;
+use halfstep_sph::lane::{Arch, LANES, Lane, Lanes};
+use halfstep_sph::pair::{self, PairLaw, distance, pair_sum};
+use halfstep_sph::with_kernel;
+
+/// Whether water that leaves walls, or solids as moving walls, keeps its density.
+pub fn wall_separation(scene: &Scene) -> Decision {
+    let walls = scene.shapes.iter().any(|s| s.phase == Phase::Wall);
+    let solids = !scene.solids.is_empty() && scene.interface.treatment == Treatment::MovingWall;
+    let derived = match scene.fluid.is_some() && (walls || solids) {
+        false => Derived::Impossible("no fluid at walls or solids".into()),
+        true => Derived::Off("for kernels wider than h / dx = 1.5".into()),
+    };
+    Decision::new(scene, EffectName::WallSeparation, derived)
+}
+
+/// 1 for water of no pressure, or less; else 0: what is compressed may expand.
+#[inline(always)]
+fn thinned<L: Lanes>(pressure_term: L) -> L {
+    // So steep that no pressure which a number can tell from none lies on the slope.
+    (L::splat(1.0) - pressure_term * L::splat(1e30)).max(L::ZERO).min(L::splat(1.0))
+}
+
+/// What solid particles show continuity, and the sums that it follows from.
+#[derive(Clone, Debug)]
+pub(super) struct Separation<const D: usize> {
+    /// v~_s - v_s toward each side, m/s, by slot of the solid; zero where water does not leave.
+    excess: [Vec<[f64; D]>; 2],
+    sums: Vec<[Around<D>; 2]>,
+}
+
+impl<const D: usize> Default for Separation<D> {
+    fn default() -> Self {
+        Self { excess: Default::default(), sums: Vec::new() }
+    }
+}
+
+/// The water around several solid particles, on one side.
+#[derive(Clone, Copy, Debug)]
+struct Around<const D: usize, L = Lane> {
+    weight: L,
+    /// sum v_f W.
+    velocity: [L; D],
+    /// sum (x_f - x_s) W.
+    place: [L; D],
+}
+pair_sum!(Around { D } { weight, velocity, place });
+
+impl<const D: usize> Around<D> {
+    /// v~_s - v_s of the k-th if it leaves.
+    fn excess(&self, k: usize, own: [f64; D]) -> Option<[f64; D]> {
+        let weight = self.weight.0[k];
+        if weight <= 0.0 {
+            return None;
+        }
+        let excess: [f64; D] = std::array::from_fn(|d| self.velocity[d].0[k] / weight - own[d]);
+        let leaves = (0..D).map(|d| excess[d] * self.place[d].0[k]).sum::<f64>() > 0.0;
+        leaves.then_some(excess)
+    }
+}
+
+/// The law of the pass over the solid.
+struct AroundLaw<'a, K, S, const D: usize> {
+    kernel: K,
+    interface: &'a Interface<D>,
+    wall: S,
+}
+
+impl<K: Kernel<D>, S: Faces<D>, const D: usize> PairLaw<D> for AroundLaw<'_, K, S, D> {
+    type Target<L: Lanes> = S::Own<L>;
+    type Sum<L: Lanes> = [Around<D, L>; 2];
+
+    #[inline(always)]
+    fn target_positions(&self) -> &[Vec<f64>; D] {
+        &self.interface.solid.position
+    }
+    #[inline(always)]
+    fn target<L: Lanes>(&self, slot: usize) -> S::Own<L> {
+        self.wall.load(slot)
+    }
+    #[inline(always)]
+    fn source_position(&self, j: usize) -> [f64; D] {
+        std::array::from_fn(|d| self.interface.fluid.position[d][j])
+    }
+    #[inline(always)]
+    fn add<A: Arch, L: Lanes>(&self, i: &S::Own<L>, j: usize, dx: [L; D], r2: L, sum: &mut Self::Sum<L>) {
+        let w = self.kernel.value::<A, L>(distance(r2, self.kernel.smoothing_length()));
+        let to_fluid = dx.map(|x| -x);
+        let along = w * self.wall.share_of::<A, L>(i, to_fluid);
+        for (side, w) in sum.iter_mut().zip([w - along, along]) {
+            side.weight += w;
+            for d in 0..D {
+                let velocity = L::splat(self.interface.fluid.velocity[d][j]);
+                side.velocity[d] = A::mul_add(velocity, w, side.velocity[d]);
+                side.place[d] = A::mul_add(to_fluid[d], w, side.place[d]);
+            }
+        }
+    }
+}
+
+impl<const D: usize> Separation<D> {
+    /// Finds where water leaves.
+    pub(super) fn find<S: WallPressure<D> + Faces<D>>(&mut self, interface: &Interface<D>, wall: S) {
+        let (p, solid) = (&interface.parameters, &interface.solid);
+        self.sums.resize(interface.solid_list.fours(), Default::default());
+        with_kernel!(p.kernel, p.smoothing_length, D, |kernel| {
+            pair::pass(p.isa, &AroundLaw { kernel, interface, wall }, &interface.solid_list, &mut self.sums);
+        });
+        let slots = solid.density.len();
+        for (side, excess) in self.excess.iter_mut().enumerate() {
+            excess.resize(slots, [0.0; D]);
+            for (slot, excess) in excess.iter_mut().enumerate() {
+                let own = std::array::from_fn(|d| solid.velocity[d][slot]);
+                let around = &self.sums[slot / LANES][side];
+                let pushes = wall.pressure_terms(slot)[side] > 0.0;
+                *excess = around.excess(slot % LANES, own).filter(|_| !pushes).unwrap_or([0.0; D]);
+            }
+        }
+    }
+
+    /// A wall that shows continuity what has been found.
+    pub(super) fn shown_by<S>(&self, wall: S) -> Separating<'_, S, D> {
+        Separating { wall, excess: [&self.excess[0], &self.excess[1]] }
+    }
+}
+
+/// A wall that does not thin out what leaves it.
+#[derive(Clone, Copy)]
+pub(super) struct Separating<'a, S, const D: usize> {
+    wall: S,
+    excess: [&'a [[f64; D]]; 2],
+}
+
+impl<S: WallPressure<D> + Faces<D>, const D: usize> WallPressure<D> for Separating<'_, S, D> {
+    type Own<L: Lanes> = <S as WallPressure<D>>::Own<L>;
+
+    #[inline(always)]
+    fn own<L: Lanes>(&self, slot: usize) -> Self::Own<L> {
+        self.wall.own(slot)
+    }
+    #[inline(always)]
+    fn of<A: Arch, L: Lanes>(&self, own: &Self::Own<L>, to_fluid: [L; D]) -> L {
+        self.wall.of::<A, L>(own, to_fluid)
+    }
+    #[inline(always)]
+    fn to<A: Arch, L: Lanes>(&self, j: usize, to_fluid: [L; D]) -> (L, L) {
+        self.wall.to::<A, L>(j, to_fluid)
+    }
+    fn pressure_terms(&self, slot: usize) -> [f64; 2] {
+        self.wall.pressure_terms(slot)
+    }
+    #[inline(always)]
+    fn receding<A: Arch, L: Lanes>(&self, j: usize, to_fluid: [L; D], dv: [L; D], term: L) -> [L; D] {
+        let thin = thinned(term);
+        let share = self.wall.share_at::<A, L>(j, to_fluid);
+        let [against, along] = self.excess.map(|excess| excess[j]);
+        std::array::from_fn(|d| {
+            let (against, along) = (L::splat(against[d]), L::splat(along[d]));
+            dv[d] - thin * A::mul_add(share, along - against, against)
+        })
+    }
+}
