@@ -26,7 +26,8 @@ pub fn identity<const D: usize>(make: Make<D>) {
         let columns = model.particles();
         assert_eq!(columns.position[p as usize], point.position);
         assert_eq!((columns.velocity[p as usize], columns.density[p as usize]), (point.velocity, 1000.0));
-        assert_eq!((record.id, record.flags), (p, 0));
+        // From bit 8 on stands the number of a rigid body.
+        assert_eq!((record.id, record.flags & 0xff), (p, 0));
         assert_eq!(record.position[..D], point.position);
         assert_eq!(reference(&model, p), point.position);
         assert_eq!(record.velocity[..D], point.velocity);
