@@ -10,7 +10,7 @@ use halfstep_interface::cross_viscosity::CrossViscosity;
 use halfstep_interface::{Interface, Parameters};
 use halfstep_link::{FLUID, StateMessage};
 use halfstep_role::timeline;
-use halfstep_scene::{EffectName, Gravity, Phase, Scene, Switch};
+use halfstep_scene::{Gravity, Scene};
 use halfstep_sph::lane::Isa;
 use halfstep_wire::half_step::Stage;
 use halfstep_wire::protocol::{ForceRecord, StateRecord};
@@ -83,11 +83,17 @@ struct CoupledSolid<const D: usize> {
     walls: Option<WallContact>,
 }
 
+/// How far a record has come since n, m.
+fn way(records: &[StateRecord], at_n: &[[f64; 3]], record: usize) -> [f64; 2] {
+    let now = records[record].position;
+    let from = at_n.get(record).copied().unwrap_or(now);
+    [now[0] - from[0], now[1] - from[1]]
+}
+
 impl<const D: usize> Solids<D> {
     /// Of a scene; `external` has an entry for each.
     pub(crate) fn new(scene: &Scene, external: Vec<Option<ExternalSolid>>, isa: Isa) -> Self {
-        let touched = scene.shapes.iter().any(|shape| shape.phase == Phase::Wall && shape.contact);
-        let touches_walls = touched && scene.switch(EffectName::WallContact) != Switch::Off;
+        let touches_walls = scene.walls_to_touch().next().is_some();
         let side = |(solid, external): (usize, Option<ExternalSolid>)| CoupledSolid {
             interface: Parameters::new(scene, solid, isa).map(Interface::new),
             forces: Vec::new(),
@@ -220,9 +226,7 @@ impl<const D: usize> Solids<D> {
         let mut work = vec![Work::default(); states.len()];
         if let Some(contact) = &mut self.contact {
             let way = |solid: usize, record: usize| {
-                let now = states[solid + self.first].records()[record].position;
-                let from = self.solids[solid].at_n.get(record).copied().unwrap_or(now);
-                [now[0] - from[0], now[1] - from[1]]
+                way(states[solid + self.first].records(), &self.solids[solid].at_n, record)
             };
             for (solid, done) in contact.work(way).into_iter().enumerate() {
                 work[solid + self.first].contact = done;
@@ -231,12 +235,7 @@ impl<const D: usize> Solids<D> {
         for (place, side) in self.solids.iter_mut().enumerate() {
             let records = states[place + self.first].records();
             if let Some(walls) = &mut side.walls {
-                let way = |record: usize| {
-                    let now = records[record].position;
-                    let from = side.at_n.get(record).copied().unwrap_or(now);
-                    [now[0] - from[0], now[1] - from[1]]
-                };
-                work[place + self.first].contact += walls.work(way);
+                work[place + self.first].contact += walls.work(|record| way(records, &side.at_n, record));
             }
             let ways = records.iter().zip(&side.at_n).zip(&side.forces);
             let done = ways.map(|((record, from), force)| {

@@ -21,7 +21,7 @@ use halfstep_scene::{Block, Scene, dispatch};
 use halfstep_wire::Name;
 use halfstep_wire::half_step::HalfStep;
 use halfstep_wire::protocol::{
-    ForceHeader, ForceRecord, LAST_STAGE, StateHeader, StateRecord, ability, order, status,
+    ForceHeader, ForceRecord, LAST_STAGE, StateHeader, StateRecord, order, status,
 };
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -210,7 +210,7 @@ impl Pusher<'_> {
                 drop(link.receive_state(FLUID, &expect)?);
                 let records = state.records();
                 if step == 0 && stage == 0 {
-                    if state.header().abilities & ability::WALLS_AND_CONTACTS != 0 {
+                    if state.header().holds_own_walls() {
                         self.walls = None;
                     }
                     self.begin(records)?;

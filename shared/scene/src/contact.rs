@@ -1,7 +1,7 @@
 //! Contact between two solids: what `[[contact]]` says of a pair, and what holds where it says nothing.
 
 use crate::bounds::flow_speed;
-use crate::{Phase, Scene, Shape, geometry};
+use crate::{EffectName, Phase, Scene, Shape, Switch, geometry};
 use serde::{Deserialize, Serialize};
 
 /// Contact of two solids, as a scene says it.
@@ -32,6 +32,12 @@ impl PairContact {
 const STIFFNESS_SPEED: f64 = 20.0;
 
 impl Scene {
+    /// Walls that solids may touch; none where `wall-contact` is off.
+    pub fn walls_to_touch(&self) -> impl Iterator<Item = &Shape> {
+        let on = self.switch(EffectName::WallContact) != Switch::Off;
+        self.shapes.iter().filter(move |shape| on && shape.phase == Phase::Wall && shape.contact)
+    }
+
     /// Contact of each pair of solids that feel each other, in ascending order; in space there is none.
     pub fn contacts(&self) -> Vec<PairContact> {
         let count = if self.dimension == 2 { self.solids.len() } else { 0 };

@@ -176,6 +176,13 @@ pub struct StateHeader {
     pub particles: u64,
 }
 
+impl StateHeader {
+    /// The sender evaluates its contact with walls itself.
+    pub fn holds_own_walls(&self) -> bool {
+        self.abilities & ability::WALLS_AND_CONTACTS != 0
+    }
+}
+
 /// Heads every force message.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

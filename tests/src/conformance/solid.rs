@@ -26,8 +26,9 @@ pub fn identity<const D: usize>(make: Make<D>) {
         let columns = model.particles();
         assert_eq!(columns.position[p as usize], point.position);
         assert_eq!((columns.velocity[p as usize], columns.density[p as usize]), (point.velocity, 1000.0));
-        // From bit 8 on stands the number of a rigid body.
-        assert_eq!((record.id, record.flags & 0xff), (p, 0));
+        // From bit 8 on stands the number of a rigid body, from 1.
+        let body = model.body_of().get(p as usize).map_or(0, |body| body + 1);
+        assert_eq!((record.id, record.flags), (p, body << 8));
         assert_eq!(record.position[..D], point.position);
         assert_eq!(reference(&model, p), point.position);
         assert_eq!(record.velocity[..D], point.velocity);
@@ -36,6 +37,11 @@ pub fn identity<const D: usize>(make: Make<D>) {
         assert_eq!((record.mass, record.deviatoric_stress), (mass(&model, p), [0.0; 6]));
     }
     assert_eq!(model.strain_energy(), 0.0);
+    // The block and the ball, where they do not strain.
+    let rigid = model.rigid_bodies().len();
+    assert!([0, 2].contains(&rigid), "{rigid} bodies");
+    let [first, last] = [0, model.particles().len() as u32 - 1].map(|p| record(&model, p).flags >> 8);
+    assert_eq!([first, last], if rigid == 2 { [1, 2] } else { [0, 0] });
 }
 
 /// 60 x 60 spacings (in space 8 deep), 2h = 3 dx: surface rows lie half a spacing under the surface, two more are

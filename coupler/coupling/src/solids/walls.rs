@@ -5,7 +5,6 @@ use crate::recorder::Recorder;
 use halfstep_interface::contact::WallContact;
 use halfstep_link::StateMessage;
 use halfstep_wire::Name;
-use halfstep_wire::protocol::ability;
 
 /// Who evaluates contact of an external solid with the walls that the scene lets it touch.
 pub(crate) enum Walls<'a> {
@@ -47,7 +46,7 @@ impl<const D: usize> Solids<D> {
         for (place, state) in states.iter().enumerate().skip(self.first) {
             let side = &mut self.solids[place - self.first];
             let Some(external) = &mut side.external else { continue };
-            let own = state.header().abilities & ability::WALLS_AND_CONTACTS != 0;
+            let own = state.header().holds_own_walls();
             if resumed && own != external.own_walls {
                 changed = changed.or(Some(place));
             }

@@ -9,7 +9,7 @@ use super::law::{Law, dot, give, less};
 use super::outline::{Outline, Placed};
 use super::{Booked, Side};
 use halfstep_scene::geometry::{self, Surface};
-use halfstep_scene::{EffectName, Motion, PairContact, Phase, Placement, Scene, Shape, Switch};
+use halfstep_scene::{Motion, PairContact, Placement, Scene, Shape};
 use halfstep_wire::protocol::StateRecord;
 use halfstep_wire::state::{Fields, State, StateError};
 
@@ -83,9 +83,7 @@ impl WallContact {
     ///
     /// Friction and restitution are those of the solid's own `contact`, which rigid ones have, else zero.
     pub fn new(scene: &Scene, solid: usize) -> Option<Self> {
-        let touched = |shape: &&Shape| shape.phase == Phase::Wall && shape.contact;
-        let off = scene.switch(EffectName::WallContact) == Switch::Off;
-        if scene.dimension != 2 || off || !scene.shapes.iter().any(|shape| touched(&shape)) {
+        if scene.dimension != 2 || scene.walls_to_touch().next().is_none() {
             return None;
         }
         let wall = |shape: &Shape| Wall {
@@ -101,7 +99,7 @@ impl WallContact {
         };
         Some(Self {
             law: Law::of(&law),
-            walls: scene.shapes.iter().filter(touched).map(wall).collect(),
+            walls: scene.walls_to_touch().map(wall).collect(),
             outline: Outline::default(),
             placed: Placed::default(),
             side: Side { solid, ..Side::default() },
