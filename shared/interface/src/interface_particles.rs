@@ -20,8 +20,6 @@ pub struct InterfaceParticles<const D: usize> {
     pub mass: Vec<f64>,
     /// The particle's own mass, kg (2D: kg/m).
     pub own_mass: Vec<f64>,
-    /// Number of the body.
-    pub(super) body: Vec<f64>,
     /// sigma_ab / rho² (symmetric; a <= b filled).
     pub stress_term: [[Vec<f64>; D]; D],
     /// Position when the lists were made, m.
@@ -42,7 +40,6 @@ impl<const D: usize> Default for InterfaceParticles<D> {
             pressure: Vec::new(),
             mass: Vec::new(),
             own_mass: Vec::new(),
-            body: Vec::new(),
             stress_term: std::array::from_fn(|_| columns()),
             reference: columns(),
             record: Vec::new(),
@@ -103,9 +100,7 @@ impl<const D: usize> InterfaceParticles<D> {
                 self.stress_term[d][b].resize(slots, 0.0);
             }
         }
-        for column in
-            [&mut self.density, &mut self.pressure, &mut self.mass, &mut self.own_mass, &mut self.body]
-        {
+        for column in [&mut self.density, &mut self.pressure, &mut self.mass, &mut self.own_mass] {
             column.resize(slots, 0.0);
         }
     }
@@ -126,7 +121,6 @@ impl<const D: usize> InterfaceParticles<D> {
             self.pressure[slot] = r.pressure;
             self.mass[slot] = r.mass;
             self.own_mass[slot] = r.mass;
-            self.body[slot] = f64::from(r.flags >> 8);
             let inverse = 1.0 / (r.density * r.density);
             for a in 0..D {
                 for b in a..D {

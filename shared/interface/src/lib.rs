@@ -28,6 +28,7 @@
 
 pub mod contact;
 pub mod cross_viscosity;
+mod faces;
 mod interface_particles;
 mod moving_wall;
 mod phase_blind;
@@ -52,6 +53,7 @@ pub use separation::wall_separation;
 pub use thin_plate::thin_plate_screen;
 pub use viscous_stress::interface_viscosity;
 
+use faces::Faces;
 use halfstep_scene::geometry::Plate;
 use halfstep_scene::{Decision, Derived, EffectName, KernelName, Phase, Scene, Treatment};
 use halfstep_sph::extrapolation::ExtrapolationSum;
@@ -63,7 +65,7 @@ use halfstep_wire::protocol::StateRecord;
 use moving_wall::{OneFace, WallPressure};
 use screen::Screen;
 use separation::Separation;
-use viscous_stress::{Faces, ViscousStress};
+use viscous_stress::ViscousStress;
 
 /// What the interface needs to know of the scene.
 #[derive(Clone, Debug)]
@@ -238,7 +240,7 @@ impl<const D: usize> Interface<D> {
             Treatment::MovingWall => screen::show_pressures(self, solid),
             Treatment::PhaseBlind => phase_blind::show_stress(self),
         }
-        self.show_velocity();
+        self.show_velocity(solid);
     }
 
     /// What the solid does to the fluid. `visit(record, acceleration, density_rate)` for each fluid record that has

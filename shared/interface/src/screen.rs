@@ -14,8 +14,8 @@
 //! Fluid and coupler have the same records, so they have the same normals without a message. Solid particles of no thin
 //! plate have n = 0, o = 0: half of everything on either side, which is the one state that they show.
 
+use super::faces::{Faces, between};
 use super::moving_wall::{WallPressure, extrapolated, extrapolation};
-use super::viscous_stress::Faces;
 use super::{Interface, InterfaceParticles, Parameters};
 use halfstep_sph::extrapolation::{Extrapolation, ExtrapolationSum};
 use halfstep_sph::kernel::Kernel;
@@ -190,10 +190,6 @@ pub(super) struct Own<L, const D: usize> {
     normal: [L; D],
     before: L,
     pressure_term: [L; 2],
-}
-
-fn between<A: Arch, L: Lanes>([against, along]: [L; 2], share: L) -> L {
-    A::mul_add(share, along - against, against)
 }
 
 impl<const D: usize> WallPressure<D> for TwoFaces<'_, D> {

@@ -7,12 +7,11 @@
 //! body is pumped up, and lifts it.
 
 use super::Interface;
+use super::faces::{AtFaces, FaceSum, Faces, between};
 use super::moving_wall::WallPressure;
-use super::viscous_stress::Faces;
 use halfstep_scene::{Decision, Derived, EffectName, Phase, Scene, Treatment};
-use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Arch, LANES, Lane, Lanes};
-use halfstep_sph::pair::{self, PairLaw, distance, pair_sum};
+use halfstep_sph::lane::{Arch, LANES, Lanes};
+use halfstep_sph::pair;
 use halfstep_sph::with_kernel;
 
 /// Whether water that leaves walls, or solids as moving walls, keeps its density.
@@ -38,7 +37,7 @@ fn thinned<L: Lanes>(pressure_term: L) -> L {
 pub(super) struct Separation<const D: usize> {
     /// v~_s - v_s toward each side, m/s, by slot of the solid; zero where water does not leave.
     excess: [Vec<[f64; D]>; 2],
-    sums: Vec<[Around<D>; 2]>,
+    sums: Vec<[FaceSum<D>; 2]>,
 }
 
 impl<const D: usize> Default for Separation<D> {
@@ -47,67 +46,15 @@ impl<const D: usize> Default for Separation<D> {
     }
 }
 
-/// The water around several solid particles, on one side.
-#[derive(Clone, Copy, Debug)]
-struct Around<const D: usize, L = Lane> {
-    weight: L,
-    /// sum v_f W.
-    velocity: [L; D],
-    /// sum (x_f - x_s) W.
-    place: [L; D],
-}
-pair_sum!(Around { D } { weight, velocity, place });
-
-impl<const D: usize> Around<D> {
-    /// v~_s - v_s of the k-th if it leaves.
-    fn excess(&self, k: usize, own: [f64; D]) -> Option<[f64; D]> {
-        let weight = self.weight.0[k];
-        if weight <= 0.0 {
-            return None;
-        }
-        let excess: [f64; D] = std::array::from_fn(|d| self.velocity[d].0[k] / weight - own[d]);
-        let leaves = (0..D).map(|d| excess[d] * self.place[d].0[k]).sum::<f64>() > 0.0;
-        leaves.then_some(excess)
+/// v~_s - v_s of the k-th solid particle on one of its sides, if water leaves it there.
+fn excess<const D: usize>(around: &FaceSum<D>, k: usize, own: [f64; D]) -> Option<[f64; D]> {
+    let weight = around.weight.0[k];
+    if weight <= 0.0 {
+        return None;
     }
-}
-
-/// The law of the pass over the solid.
-struct AroundLaw<'a, K, S, const D: usize> {
-    kernel: K,
-    interface: &'a Interface<D>,
-    wall: S,
-}
-
-impl<K: Kernel<D>, S: Faces<D>, const D: usize> PairLaw<D> for AroundLaw<'_, K, S, D> {
-    type Target<L: Lanes> = S::Own<L>;
-    type Sum<L: Lanes> = [Around<D, L>; 2];
-
-    #[inline(always)]
-    fn target_positions(&self) -> &[Vec<f64>; D] {
-        &self.interface.solid.position
-    }
-    #[inline(always)]
-    fn target<L: Lanes>(&self, slot: usize) -> S::Own<L> {
-        self.wall.load(slot)
-    }
-    #[inline(always)]
-    fn source_position(&self, j: usize) -> [f64; D] {
-        std::array::from_fn(|d| self.interface.fluid.position[d][j])
-    }
-    #[inline(always)]
-    fn add<A: Arch, L: Lanes>(&self, i: &S::Own<L>, j: usize, dx: [L; D], r2: L, sum: &mut Self::Sum<L>) {
-        let w = self.kernel.value::<A, L>(distance(r2, self.kernel.smoothing_length()));
-        let to_fluid = dx.map(|x| -x);
-        let along = w * self.wall.share_of::<A, L>(i, to_fluid);
-        for (side, w) in sum.iter_mut().zip([w - along, along]) {
-            side.weight += w;
-            for d in 0..D {
-                let velocity = L::splat(self.interface.fluid.velocity[d][j]);
-                side.velocity[d] = A::mul_add(velocity, w, side.velocity[d]);
-                side.place[d] = A::mul_add(to_fluid[d], w, side.place[d]);
-            }
-        }
-    }
+    let excess: [f64; D] = std::array::from_fn(|d| around.velocity[d].0[k] / weight - own[d]);
+    let toward = (0..D).map(|d| excess[d] * around.from_fluid[d].0[k]).sum::<f64>();
+    (toward < 0.0).then_some(excess)
 }
 
 impl<const D: usize> Separation<D> {
@@ -116,7 +63,8 @@ impl<const D: usize> Separation<D> {
         let (p, solid) = (&interface.parameters, &interface.solid);
         self.sums.resize(interface.solid_list.fours(), Default::default());
         with_kernel!(p.kernel, p.smoothing_length, D, |kernel| {
-            pair::pass(p.isa, &AroundLaw { kernel, interface, wall }, &interface.solid_list, &mut self.sums);
+            let law = AtFaces { kernel, fluid: &interface.fluid, solid, faces: wall };
+            pair::pass(p.isa, &law, &interface.solid_list, &mut self.sums);
         });
         let slots = solid.density.len();
         for (side, excess) in self.excess.iter_mut().enumerate() {
@@ -125,7 +73,7 @@ impl<const D: usize> Separation<D> {
                 let own = std::array::from_fn(|d| solid.velocity[d][slot]);
                 let around = &self.sums[slot / LANES][side];
                 let pushes = wall.pressure_terms(slot)[side] > 0.0;
-                *excess = around.excess(slot % LANES, own).filter(|_| !pushes).unwrap_or([0.0; D]);
+                *excess = self::excess(around, slot % LANES, own).filter(|_| !pushes).unwrap_or([0.0; D]);
             }
         }
     }
@@ -168,7 +116,7 @@ impl<S: WallPressure<D> + Faces<D>, const D: usize> WallPressure<D> for Separati
         let [against, along] = self.excess.map(|excess| excess[j]);
         std::array::from_fn(|d| {
             let (against, along) = (L::splat(against[d]), L::splat(along[d]));
-            dv[d] - thin * A::mul_add(share, along - against, against)
+            dv[d] - thin * between::<A, L>([against, along], share)
         })
     }
 }

@@ -11,6 +11,7 @@ use halfstep_sph::lane::{Arch, LANES, Lane, Lanes};
 use halfstep_sph::neighbours::ClusterList;
 use halfstep_sph::pair::{PairLaw, distance, pair_sum};
 use halfstep_sph::tensor;
+use halfstep_wire::protocol::StateRecord;
 use nalgebra::{Matrix3, Vector3};
 
 /// det (tr M I - M) over (tr M)³ below which a rotation about some axis is not known: particles in a row in space.
@@ -24,12 +25,22 @@ pub(super) struct Spin<const D: usize> {
     /// Neighbours of the solid among itself.
     pub(super) list: ClusterList,
     pub(super) sums: Vec<Moments<D>>,
+    /// Number of the body by slot.
+    pub(super) body: Vec<f64>,
 }
 
 impl<const D: usize> Spin<D> {
     pub(super) fn new(list: ClusterList) -> Self {
         let columns = std::array::from_fn(|_| std::array::from_fn(|_| Vec::new()));
-        Self { columns, list, sums: Vec::new() }
+        Self { columns, list, sums: Vec::new(), body: Vec::new() }
+    }
+
+    /// Loads the numbers of bodies by slot.
+    pub(super) fn load(&mut self, solid: &InterfaceParticles<D>, records: &[StateRecord]) {
+        self.body.resize(solid.density.len(), 0.0);
+        for (slot, record) in solid.slots() {
+            self.body[slot] = f64::from(records[record].flags >> 8);
+        }
     }
 
     /// Takes the rotations from the moments.
@@ -86,6 +97,8 @@ impl<const D: usize> Moments<D> {
 pub(super) struct MomentLaw<'a, K, const D: usize> {
     pub(super) kernel: K,
     pub(super) solid: &'a InterfaceParticles<D>,
+    /// Number of the body by slot.
+    pub(super) body: &'a [f64],
 }
 
 impl<K: Kernel<D>, const D: usize> PairLaw<D> for MomentLaw<'_, K, D> {
@@ -100,7 +113,7 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for MomentLaw<'_, K, D> {
     #[inline(always)]
     fn target<L: Lanes>(&self, slot: usize) -> Self::Target<L> {
         let velocity = std::array::from_fn(|d| L::load(&self.solid.velocity[d], slot));
-        (velocity, L::load(&self.solid.body, slot))
+        (velocity, L::load(self.body, slot))
     }
     #[inline(always)]
     fn source_position(&self, j: usize) -> [f64; D] {
@@ -116,7 +129,7 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for MomentLaw<'_, K, D> {
         sum: &mut Moments<D, L>,
     ) {
         // Numbers of bodies are whole: 1 for the same one, else 0.
-        let apart = *body - L::splat(self.solid.body[j]);
+        let apart = *body - L::splat(self.body[j]);
         let same = (L::splat(1.0) - apart * apart).max(L::ZERO);
         let w = same * self.kernel.value::<A, L>(distance(r2, self.kernel.smoothing_length()));
         for a in 0..D {

@@ -11,15 +11,17 @@
 
 mod laws;
 
+use super::faces::{AtFaces, FaceSum};
 use super::moving_wall::OneFace;
 use super::phase_blind::Vector;
 use super::spin::{MomentLaw, Spin};
 use super::{Interface, InterfaceParticles, SolidForce};
 use halfstep_scene::{Decision, Derived, EffectName, Scene, Treatment};
-use halfstep_sph::lane::{Arch, LANES, Lanes};
+use halfstep_sph::lane::LANES;
 use halfstep_sph::neighbours::ClusterList;
 use halfstep_sph::{pair, with_kernel};
-use laws::{AtFaces, FaceSum, Gradient, GradientLaw, OnFluid, OnSolid, Seen};
+use halfstep_wire::protocol::StateRecord;
+use laws::{Gradient, GradientLaw, OnFluid, OnSolid, Seen};
 
 /// Whether fluid sticks to solids.
 pub fn interface_viscosity(scene: &Scene) -> Decision {
@@ -38,33 +40,6 @@ fn derive(scene: &Scene) -> Derived {
         return Derived::Impossible(format!("viscosity is off: {}", viscosity.why));
     }
     Derived::On("viscosity is on, and fluid sticks to solids".into())
-}
-
-/// On which face of the solid fluid stands: the share of the second one.
-pub(super) trait Faces<const D: usize>: Copy + Send + Sync {
-    /// What is loaded of solid particles.
-    type Own<L: Lanes>: Copy;
-    /// Loads the solid particles from `slot` on.
-    fn load<L: Lanes>(&self, slot: usize) -> Self::Own<L>;
-    /// Of fluid at `to_fluid` = x_f - x_s from solid particles.
-    fn share_of<A: Arch, L: Lanes>(&self, own: &Self::Own<L>, to_fluid: [L; D]) -> L;
-    /// Of fluid particles at `to_fluid` from the solid particle `j`.
-    fn share_at<A: Arch, L: Lanes>(&self, j: usize, to_fluid: [L; D]) -> L;
-}
-
-impl<const D: usize> Faces<D> for OneFace<'_, D> {
-    type Own<L: Lanes> = ();
-
-    #[inline(always)]
-    fn load<L: Lanes>(&self, _: usize) {}
-    #[inline(always)]
-    fn share_of<A: Arch, L: Lanes>(&self, (): &(), _: [L; D]) -> L {
-        L::splat(1.0)
-    }
-    #[inline(always)]
-    fn share_at<A: Arch, L: Lanes>(&self, _: usize, _: [L; D]) -> L {
-        L::splat(1.0)
-    }
 }
 
 /// What the effect keeps between passes; nothing that a run that goes on needs.
@@ -123,14 +98,20 @@ macro_rules! with_faces {
 }
 
 impl<const D: usize> Interface<D> {
-    /// Velocities that the solid shows the fluid, once its densities are known.
-    pub(super) fn show_velocity(&mut self) {
+    /// Velocities that the solid with these records shows the fluid, once its densities are known.
+    pub(super) fn show_velocity(&mut self, records: &[StateRecord]) {
         let Some(mut stress) = self.viscous_stress.take() else { return };
+        stress.spin.load(&self.solid, records);
         let (this, isa) = (&*self, self.parameters.isa);
         let mut moments = std::mem::take(&mut stress.spin.sums);
         moments.resize(stress.spin.list.fours(), Default::default());
         with_kernel!(this.parameters.kernel, this.parameters.smoothing_length, D, |kernel| {
-            pair::pass(isa, &MomentLaw { kernel, solid: &this.solid }, &stress.spin.list, &mut moments);
+            pair::pass(
+                isa,
+                &MomentLaw { kernel, solid: &this.solid, body: &stress.spin.body },
+                &stress.spin.list,
+                &mut moments,
+            );
         });
         stress.spin.sums = moments;
         let slots = this.solid.density.len();
@@ -138,7 +119,9 @@ impl<const D: usize> Interface<D> {
         let mut faces = std::mem::take(&mut stress.faces);
         faces.resize(this.solid_list.fours(), Default::default());
         with_faces!(this, stress, |kernel, seen| {
-            pair::pass(isa, &AtFaces(kernel, seen), &this.solid_list, &mut faces);
+            let Seen { fluid, solid, faces: of, .. } = seen;
+            let law = AtFaces { kernel, fluid, solid, faces: of };
+            pair::pass(isa, &law, &this.solid_list, &mut faces);
         });
         let ViscousStress { shown, spin, .. } = &mut stress;
         shown.iter_mut().flatten().for_each(|column| column.resize(slots, 0.0));

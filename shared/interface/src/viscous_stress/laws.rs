@@ -1,20 +1,11 @@
 //! The laws of the passes, and what they sum up.
 
-use super::Faces;
+use crate::faces::{FaceSum, Faces, between};
 use crate::phase_blind::Vector;
 use crate::{InterfaceParticles, SolidForce};
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::{Arch, Lane, Lanes};
 use halfstep_sph::pair::{PairLaw, distance, pair_sum};
-
-/// sum W, sum W v_f and sum W (x_s - x_f) of several solid particles, over the fluid on one face.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct FaceSum<const D: usize, L = Lane> {
-    weight: L,
-    velocity: [L; D],
-    from_fluid: [L; D],
-}
-pair_sum!(FaceSum { D } { weight, velocity, from_fluid });
 
 /// dv_a / dx_b of several fluid particles, as far as solids add to it.
 #[derive(Clone, Copy, Debug)]
@@ -38,13 +29,8 @@ impl<F: Faces<D>, const D: usize> Seen<'_, F, D> {
     fn shown_at<A: Arch, L: Lanes>(&self, j: usize, to_fluid: [L; D]) -> [L; D] {
         let share = self.faces.share_at::<A, L>(j, to_fluid);
         let [against, along] = self.shown;
-        std::array::from_fn(|d| between::<A, L>(L::splat(against[d][j]), L::splat(along[d][j]), share))
+        std::array::from_fn(|d| between::<A, L>([L::splat(against[d][j]), L::splat(along[d][j])], share))
     }
-}
-
-#[inline(always)]
-fn between<A: Arch, L: Lanes>(against: L, along: L, share: L) -> L {
-    A::mul_add(share, along - against, against)
 }
 
 /// Takes Omega x off a velocity; Omega by its components a < b.
@@ -59,40 +45,6 @@ fn take_rotation<const D: usize, A: Arch, L: Lanes>(
             let omega = spin(a, b);
             velocity[a] = A::mul_add(-omega, x[b], velocity[a]);
             velocity[b] = A::mul_add(omega, x[a], velocity[b]);
-        }
-    }
-}
-
-/// The pass over the solid: the fluid's velocity at each face.
-pub(super) struct AtFaces<'a, K, F, const D: usize>(pub(super) K, pub(super) Seen<'a, F, D>);
-
-impl<K: Kernel<D>, F: Faces<D>, const D: usize> PairLaw<D> for AtFaces<'_, K, F, D> {
-    type Target<L: Lanes> = F::Own<L>;
-    type Sum<L: Lanes> = [FaceSum<D, L>; 2];
-
-    #[inline(always)]
-    fn target_positions(&self) -> &[Vec<f64>; D] {
-        &self.1.solid.position
-    }
-    #[inline(always)]
-    fn target<L: Lanes>(&self, slot: usize) -> F::Own<L> {
-        self.1.faces.load(slot)
-    }
-    #[inline(always)]
-    fn source_position(&self, j: usize) -> [f64; D] {
-        std::array::from_fn(|d| self.1.fluid.position[d][j])
-    }
-    #[inline(always)]
-    fn add<A: Arch, L: Lanes>(&self, own: &F::Own<L>, j: usize, dx: [L; D], r2: L, sum: &mut Self::Sum<L>) {
-        let Self(kernel, seen) = self;
-        let w = kernel.value::<A, L>(distance(r2, kernel.smoothing_length()));
-        let along = w * seen.faces.share_of::<A, L>(own, dx.map(|x| -x));
-        for (sum, w) in sum.iter_mut().zip([w - along, along]) {
-            sum.weight += w;
-            for d in 0..D {
-                sum.velocity[d] = A::mul_add(w, L::splat(seen.fluid.velocity[d][j]), sum.velocity[d]);
-                sum.from_fluid[d] = A::mul_add(w, dx[d], sum.from_fluid[d]);
-            }
         }
     }
 }
@@ -226,7 +178,7 @@ impl<K: Kernel<D>, F: Faces<D>, const D: usize> PairLaw<D> for OnSolid<'_, K, F,
         let coefficient = L::splat(-seen.fluid.mass[j] / seen.fluid.density[j]) * i.factor * f;
         let to_fluid = dx.map(|x| -x);
         let share = seen.faces.share_of::<A, L>(&i.own, to_fluid);
-        let shown = |d: usize| between::<A, L>(i.shown[0][d], i.shown[1][d], share);
+        let shown = |d: usize| between::<A, L>(i.shown.map(|shown| shown[d]), share);
         let mut slip = std::array::from_fn(|d| L::splat(seen.fluid.velocity[d][j]) - shown(d));
         take_rotation::<D, A, L>(&mut slip, |a, b| i.spin[a][b], to_fluid);
         for d in 0..D {
