@@ -124,13 +124,13 @@ fn still_water_stays_still() {
 
 #[test]
 fn time_step_limits_by_hand() {
-    // h = 0.015, c0 = 20: 0.4 * 0.015 / (20 + 5); acceleration 1e6: 0.25 sqrt(0.015 / 1e6).
+    // h = 0.02, c0 = 20: 0.4 * 0.02 / (20 + 5); acceleration 1e6: 0.25 sqrt(0.02 / 1e6).
     let limits = StepLimits::new(&tank(&[]));
-    assert!((limits.time_step(5.0, 0.0) - 0.4 * 0.015 / 25.0).abs() < 1e-15);
-    assert!((limits.time_step(0.0, 1e6) - 0.25 * (0.015_f64 / 1e6).sqrt()).abs() < 1e-15);
-    // Honey: 0.125 h² rho / mu = 0.125 * 2.25e-4 * 1000 / 1000.
+    assert!((limits.time_step(5.0, 0.0) - 0.4 * 0.02 / 25.0).abs() < 1e-15);
+    assert!((limits.time_step(0.0, 1e6) - 0.25 * (0.02_f64 / 1e6).sqrt()).abs() < 1e-15);
+    // Honey: 0.125 h² rho / mu = 0.125 * 4e-4 * 1000 / 1000.
     let viscous = StepLimits::new(&tank(&["fluid.viscosity=1000.0"]));
-    assert!((viscous.time_step(0.0, 0.0) - 0.125 * 2.25e-4).abs() < 1e-12);
+    assert!((viscous.time_step(0.0, 0.0) - 0.125 * 4e-4).abs() < 1e-12);
 }
 
 #[test]

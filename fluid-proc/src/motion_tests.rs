@@ -65,7 +65,8 @@ fn a_tank_turned_upside_down_keeps_its_water() {
     let out = all.iter().filter(|x| !inside(x)).count();
     println!("{count} of 300 particles, {out} outside, density error {error}");
     assert_eq!((count, all.len(), out), (300, 300, 0));
-    assert!(error < 0.05, "{error}");
+    // Water that falls by 0.4 m is stopped by a shock, v / c0 = 2.8 / 30.
+    assert!(error < 0.09, "{error}");
     // What was its lid is below: the tank's cavity is now from y = -0.6 to -0.2, half full.
     let mean = all.iter().map(|x| x[1]).sum::<f64>() / 300.0;
     assert!((mean + 0.5).abs() < 0.01, "{mean}");

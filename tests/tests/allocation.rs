@@ -54,16 +54,16 @@ fn shipped(name: &str, overrides: &[&str]) -> Scene {
     scene::load(&path, &overrides).unwrap_or_else(|errors| panic!("{name}: {errors:?}"))
 }
 
-/// Allocations of `step` in the steps from 300 to 400, on the thread that computes.
-fn allocations(mut step: impl FnMut(u64) + Send) -> u64 {
+/// Allocations of `step` in a hundred steps after the first `warm`, on the thread that computes.
+fn allocations(warm: u64, mut step: impl FnMut(u64) + Send) -> u64 {
     on_threads(1, || {
-        (0..300).for_each(&mut step);
-        let warm = ALLOCATIONS.get();
-        assert!(warm > 0, "the counter counts: lists grew at first");
+        (0..warm).for_each(&mut step);
+        let before = ALLOCATIONS.get();
+        assert!(before > 0, "the counter counts: lists grew at first");
         WATCHED.set(true);
-        (300..400).for_each(&mut step);
+        (warm..warm + 100).for_each(&mut step);
         WATCHED.set(false);
-        ALLOCATIONS.get() - warm
+        ALLOCATIONS.get() - before
     })
     .unwrap()
 }
@@ -73,7 +73,7 @@ fn alone(scene: &Scene) -> u64 {
     let mut role: Option<Box<dyn Role>> = None;
     let mut records = Vec::new();
     let mut time = 0.0;
-    allocations(|n| {
+    allocations(600, |n| {
         let role = role.get_or_insert_with(|| roles::build(0, scene, Isa::detect()).expect("the phase"));
         let mut half_step = HalfStep::begin(n, time);
         while half_step.step == n {
@@ -97,7 +97,7 @@ fn coupled(scene: &Scene) -> u64 {
     let mut interface = Interface::new(parameters());
     let [mut of_fluid, mut of_solid] = [(); 2].map(|()| [Peer::default()]);
     let mut forces = [Vec::new(), Vec::new()];
-    allocations(|n| {
+    allocations(300, |n| {
         let [fluid, solid] = state.get_or_insert_with(|| {
             [0, 1].map(|place| roles::build(place, scene, Isa::detect()).expect("the phase"))
         });

@@ -94,10 +94,10 @@ fn the_ledgers_of_a_dam_break_on_a_plate_close() {
 fn the_ledger_of_shifted_water_closes() {
     let folder = tempfile::tempdir().expect("a folder");
     let wave = with_ledgers(folder.path(), &shipped("standing-wave"), &["fluid"]);
-    let run = wave.set("preset", "waves").set("resolution", 0.05).until(0.5).in_process().run();
-    // 7.4e-4 measured, 9.1e-4 without shifting. Shifting moves water down: half of the kinetic energy.
+    let run = wave.set("resolution", 0.05).until(0.5).in_process().run();
+    // Shifting moves water down: half of the kinetic energy.
     closes("standing wave, shifted, 50 mm", &run, 1.5e-3);
-    within("shifting", joules(&run, "fluid", EnergyPart::ParticleShifting), -0.535, 0.05);
+    within("shifting", joules(&run, "fluid", EnergyPart::ParticleShifting), -0.654, 0.02);
 }
 
 /// Phase-blind, with the hypoelastic solid, whose stress has a part of its own.
@@ -113,8 +113,8 @@ fn the_papers_gate_closes() {
 // ---- The fluid alone ------------------------------------------------------------------------------------------------
 
 /// Taylor and Green's vortex loses 4 nu k² of its kinetic energy in a second to viscosity. The ledger says what the
-/// decay alone does not: viscosity takes 6 % less than that, since the stress of a wall's neighbour is that of a
-/// gradient which the wall's particles show, and the walls' pressure takes what is missing.
+/// decay alone does not: viscosity takes 5 % less than that, since the stress of a wall's neighbour is that of a
+/// gradient which the wall's particles show, and the walls' pressure takes a fifth of it.
 #[test]
 fn taylor_and_greens_vortex_loses_its_energy_to_viscosity() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -124,18 +124,18 @@ fn taylor_and_greens_vortex_loses_its_energy_to_viscosity() {
     let (k, kinetic) = (std::f64::consts::PI, run.curve("ledger-fluid.kinetic").mean());
     let by = |part| -joules(&run, "fluid", part);
     let theory = 4.0 * nu * k * k * kinetic * run.report.time;
-    within("viscosity", by(EnergyPart::Viscosity), 0.944 * theory, 0.005);
-    within("pressure of the walls", by(EnergyPart::WallPressure), 0.077 * theory, 0.05);
+    within("viscosity", by(EnergyPart::Viscosity), 0.950 * theory, 0.005);
+    within("pressure of the walls", by(EnergyPart::WallPressure), 0.195 * theory, 0.02);
 }
 
 /// A piston that goes 0.1 m in 2 s turns 0.5 m x 0.2 m of water into 0.4 m x 0.25 m: its work is what the water weighs
 /// times how far that rises, rho g (0.4 x 0.25² - 0.5 x 0.2²) / 2.
 #[test]
 fn a_slow_pistons_work_lifts_the_water() {
-    let text = "resolution = 0.02\nend_time = 2.0\ngravity = [0.0, -9.81]\n[fluid]\ndensity = 1000.0\n\
+    let text = "resolution = 0.01\nend_time = 2.0\ngravity = [0.0, -9.81]\n[fluid]\ndensity = 1000.0\n\
         [[shape]]\nname = \"water\"\nphase = \"fluid\"\nbox = { min = [0.0, 0.0], max = [0.5, 0.2] }\n\
         pressure = \"hydrostatic\"\n[[shape]]\nname = \"piston\"\nphase = \"wall\"\n\
-        box = { min = [-0.06, 0.0], max = [0.0, 0.4] }\nmotion = { velocity = [0.05, 0.0], end = 2.0 }\n\
+        box = { min = [-0.08, 0.0], max = [0.0, 0.4] }\nmotion = { velocity = [0.05, 0.0], end = 2.0 }\n\
         [[shape]]\nname = \"tank\"\nphase = \"wall\"\n\
         tank = { min = [-0.2, 0.0], max = [0.5, 0.4], open = [\"left\", \"top\"] }";
     let folder = tempfile::tempdir().expect("a folder");

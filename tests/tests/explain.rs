@@ -78,7 +78,7 @@ fn every_shipped_scene_is_explained_and_its_shares_are_the_whole() {
 
 #[test]
 fn the_reason_is_the_key_or_the_fact() {
-    let forced = effects("hydrostatic-tank", &["fluid.viscosity=1", "effects.viscosity=on"]);
+    let forced = effects("hydrostatic-tank", &["fluid.viscosity=0.1", "effects.viscosity=on"]);
     let viscosity = row(&forced, "viscosity");
     assert!(viscosity["on"] == true && viscosity["why"] == "effects.viscosity is \"on\"", "{viscosity}");
     assert_eq!(viscosity["bytes_per_particle"], 32.0);

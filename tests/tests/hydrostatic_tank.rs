@@ -1,8 +1,8 @@
 //! Water at rest in a tank: p = rho g depth, and what moves comes to rest.
 //!
-//! Particles that start on a square lattice do not stay on it: with little artificial viscosity (the default, A = 0.05)
-//! the lattice gives way after about a second and settles into a denser packing. That sets free some 1e-5 of the
-//! water's potential energy as motion, which then decays. With A = 1 the lattice holds and motion only decays.
+//! Particles that start on a square lattice give way a little in the first tenth of a second: with little artificial
+//! viscosity (the default, A = 0.02) some 1e-5 of the water's potential energy becomes motion, which then decays. With
+//! A = 1 motion only decays.
 
 use halfstep_tests::{Finished, scene};
 use halfstep_wire::frame::FLUID;
@@ -11,9 +11,9 @@ const GRAVITY: f64 = 9.81;
 const DEPTH: f64 = 0.3;
 /// Mass times g times half the depth, J/m.
 const POTENTIAL_ENERGY: f64 = 1000.0 * 0.5 * DEPTH * GRAVITY * 0.5 * DEPTH;
-/// Largest deviation from rho g depth: 2.2 % at 20 mm and 1.9 % at 10 mm with A = 1, all of it too much. The kernel's
-/// sums near the walls, at h / dx = 1.5: A and guard do not move it, the cubic spline at 1.33 gives 1.6 %.
-const TOLERANCE: f64 = 0.023;
+/// Largest deviation from rho g depth: 2.3 % at 20 mm and 1.6 % at 10 mm with A = 1; layers 0.4 to 1.0 % too much, by
+/// the kernel's sums near the walls.
+const TOLERANCE: f64 = 0.024;
 
 /// Pressure by depth over rho g depth in the last frame: means over layers of 2 cm, from 0.1 m below the surface.
 fn profile(run: &Finished) -> Vec<f64> {

@@ -46,7 +46,7 @@ fn a_beach_takes_what_it_says() {
     let lengths = energy.times.windows(2).map(|t| t[1] - t[0]);
     let means = energy.values.windows(2).map(|e| 0.5 * (e[0] + e[1]));
     let taken: f64 = lengths.zip(means).map(|(dt, mean)| 2.0 * sigma * dt * mean).sum();
-    let ledger = beach.curve("left.further-effect").at(2.4);
+    let ledger = beach.curve("left.beach").at(2.4);
     println!("the beach took {taken:.4} J/m, in the ledger {ledger:.4} J/m");
     assert!((ledger / taken + 1.0).abs() < 0.01, "{ledger} {taken}");
     let damped = kinetic(beach);

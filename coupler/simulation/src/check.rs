@@ -24,6 +24,8 @@ pub struct Check {
     pub path: String,
     /// Spacing of fluid and walls, m.
     resolution: f64,
+    /// h / dx of the water's kernel.
+    smoothing_ratio: f64,
     particles: Particles,
     shapes: Vec<Placed>,
     bodies: Vec<Body>,
@@ -137,6 +139,7 @@ fn check_in<const D: usize>(scene: &Scene, isa: Isa) -> Check {
         scene: scene.name.clone(),
         path: scene.path.display().to_string(),
         resolution: scene.resolution,
+        smoothing_ratio: scene.smoothing_ratio,
         particles: Particles { fluid, solid, wall },
         bodies_listed: (solid > 0).then(|| remarks::bodies_listed(scene, &bodies)),
         bodies: bodies.iter().map(|body| named(scene, body)).collect(),
@@ -237,6 +240,9 @@ impl Display for Check {
                 let text = format_args!("{own:.4e} m, of the fluid and walls {other:.4e} m");
                 line(&format!("{} spacing", solid.name), &text)?;
             }
+        }
+        if self.fluid_dt_limit.is_some() {
+            line("water's kernel", &format_args!("h / dx = {}", self.smoothing_ratio))?;
         }
         let limits = self.fluid_dt_limit.map(|limit| ("fluid", limit)).into_iter();
         for (name, limit) in limits.chain(self.solids.iter().map(|solid| (&*solid.name, solid.dt_limit))) {

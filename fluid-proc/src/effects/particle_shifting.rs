@@ -1,8 +1,10 @@
 //! Particle shifting (Sun, Colagrossi, Marrone and Zhang 2017): particles move, beside their velocity, from where they
 //! are many to where they are few, by
-//!   delta u_i = -sigma h c0 sum_j V_j [1 + R (W_ij / W(dx))^4] grad W,   at most c0 / 20,
+//!   delta u_i = -sigma h c0 sum_j V_j [1 + R (W_ij / W(dx))^4] grad W,
+//!   at most c0 / 20 and 0.3 max_j |v_ij|,
 //! over fluid and walls. In order the sum is zero; the flow's strain brings particles into disorder, over which kernel
-//! sums are wrong.
+//! sums are wrong. Without strain there is nothing to mend: beside walls and surfaces the sum need not be zero at rest,
+//! and water that is shifted there flows against it for ever.
 //!
 //! At a free surface the sum points out of the water, and a solid is no neighbour here: beside both, particles are not
 //! shifted. The determinant of M_i = sum_j V_j (x_j - x_i) (x) grad W tells where: 1 inside, 1/4 at a flat surface in
@@ -26,6 +28,9 @@ pub(crate) const STRENGTH: f64 = 0.6;
 const PAIRING: f64 = 0.2;
 /// Largest drift over c0: half of the fastest flow that c0 is made for.
 const FASTEST: f64 = 0.05;
+/// Largest drift over the fastest velocity of a neighbour relative to the particle. From 0.5 on water at rest keeps
+/// moving against its drift.
+pub(crate) const STRAINED: f64 = 0.3;
 /// Geometric mean of M's eigenvalues below which a particle is at a surface.
 const SURFACE: f64 = 0.75;
 /// More than any determinant of M.
@@ -63,7 +68,8 @@ impl<const D: usize> FluidEffect<D> for ParticleShifting<D> {
     fn decide(scene: &Scene) -> Decision {
         let derived = match &scene.fluid {
             None => Derived::Impossible("the scene has no fluid".into()),
-            Some(_) => Derived::Off("for waves and vortices: preset = \"waves\"".into()),
+            Some(_) if scene.has_wide_support() => Derived::On("a wide kernel's sums ask for order".into()),
+            Some(_) => Derived::Off("for kernels wider than h / dx = 1.75".into()),
         };
         Decision::new(scene, EffectName::ParticleShifting, derived)
     }
@@ -92,13 +98,13 @@ impl<const D: usize> FluidEffect<D> for ParticleShifting<D> {
             pair::pass_into(isa, &law, list, found, order);
         }
         let (order, strength, fastest) = (self.order.as_slice(), self.strength, self.fastest);
-        let drift = |slot: usize, least: &LeastSum| -> [[f64; D]; LANES] {
-            std::array::from_fn(|k| match least.0.0[k] < SURFACE.powi(D as i32) {
+        let drift = |slot: usize, around: &Around| -> [[f64; D]; LANES] {
+            std::array::from_fn(|k| match around.determinant.0[k] < SURFACE.powi(D as i32) {
                 true => [0.0; D],
-                false => order[slot + k].drift(strength, fastest),
+                false => order[slot + k].drift(strength, fastest.min(STRAINED * around.fastest(k))),
             })
         };
-        pair::pass_into(isa, &LeastLaw { kernel, order, fluid }, list, drift, self.drift.as_chunks_mut().0);
+        pair::pass_into(isa, &AroundLaw { kernel, order, fluid }, list, drift, self.drift.as_chunks_mut().0);
         pairs
     }
     fn drift(&self) -> Option<&[[f64; D]]> {
@@ -188,37 +194,59 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for OrderLaw<'_, K, D> {
     }
 }
 
-/// Least det M within the kernel's support of several particles.
+/// What is around several particles, within the kernel's support.
 #[derive(Clone, Copy, Debug)]
-struct LeastSum<L = Lane>(L);
-pair_sum!(LeastSum {} { 0 } from L::splat(FAR));
+struct Around<L = Lane> {
+    /// Least det M.
+    determinant: L,
+    /// Least -|v_ij|², m²/s².
+    against: L,
+}
+pair_sum!(Around {} { determinant, against } from L::splat(FAR));
+
+impl Around {
+    /// Fastest velocity of a neighbour relative to the k-th, m/s. A particle is its own neighbour.
+    fn fastest(&self, k: usize) -> f64 {
+        (-self.against.0[k]).max(0.0).sqrt()
+    }
+}
 
 /// The law of the second pass, over the fluid.
-struct LeastLaw<'a, K, const D: usize> {
+struct AroundLaw<'a, K, const D: usize> {
     kernel: K,
     order: &'a [Order<D>],
     fluid: &'a PairParticles<D>,
 }
 
-impl<K: Kernel<D>, const D: usize> PairLaw<D> for LeastLaw<'_, K, D> {
-    type Target<L: Lanes> = ();
-    type Sum<L: Lanes> = LeastSum<L>;
+impl<K: Kernel<D>, const D: usize> PairLaw<D> for AroundLaw<'_, K, D> {
+    /// Velocity.
+    type Target<L: Lanes> = [L; D];
+    type Sum<L: Lanes> = Around<L>;
 
     #[inline(always)]
     fn target_positions(&self) -> &[Vec<f64>; D] {
         &self.fluid.position
     }
     #[inline(always)]
-    fn target<L: Lanes>(&self, _: usize) {}
+    fn target<L: Lanes>(&self, slot: usize) -> [L; D] {
+        self.fluid.velocities(slot)
+    }
     #[inline(always)]
     fn source_position(&self, j: usize) -> [f64; D] {
         self.fluid.sources[j].position
     }
     #[inline(always)]
-    fn add<A: Arch, L: Lanes>(&self, _: &(), j: usize, _: [L; D], r2: L, sum: &mut LeastSum<L>) {
+    fn add<A: Arch, L: Lanes>(&self, velocity: &[L; D], j: usize, _: [L; D], r2: L, sum: &mut Around<L>) {
         let reach = 2.0 * self.kernel.smoothing_length();
-        // Far more than any determinant beyond the support.
+        // Far more than any determinant, or square of a speed, beyond the support.
         let beyond = (r2 - L::splat(reach * reach)).max(L::ZERO) * L::splat(f64::MAX.sqrt());
-        sum.0 = sum.0.min(L::splat(self.order[j].determinant) + beyond);
+        sum.determinant = sum.determinant.min(L::splat(self.order[j].determinant) + beyond);
+        let source = &self.fluid.sources[j];
+        let mut against = beyond;
+        for d in 0..D {
+            let dv = velocity[d] - L::splat(source.velocity[d]);
+            against = A::mul_add(-dv, dv, against);
+        }
+        sum.against = sum.against.min(against);
     }
 }

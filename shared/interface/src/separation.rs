@@ -20,7 +20,8 @@ pub fn wall_separation(scene: &Scene) -> Decision {
     let solids = !scene.solids.is_empty() && scene.interface.treatment == Treatment::MovingWall;
     let derived = match scene.fluid.is_some() && (walls || solids) {
         false => Derived::Impossible("no fluid at walls or solids".into()),
-        true => Derived::Off("for kernels wider than h / dx = 1.5".into()),
+        true if scene.has_wide_support() => Derived::On("a wide kernel thins out water that leaves".into()),
+        true => Derived::Off("for kernels wider than h / dx = 1.75".into()),
     };
     Decision::new(scene, EffectName::WallSeparation, derived)
 }

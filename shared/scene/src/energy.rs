@@ -39,6 +39,10 @@ parts! {
     DensityDiffusion "density-diffusion",
     /// Given by the shifting of particles, against gravity.
     ParticleShifting "particle-shifting",
+    /// Given where water that leaves walls is not thinned out.
+    WallSeparation "wall-separation",
+    /// Given by the beach.
+    Beach "beach",
     /// Given by an effect that is not on the program's list.
     FurtherEffect "further-effect",
     /// Given by the pressure of walls, beside the work of their motion: an error of the walls' extrapolation.
@@ -87,7 +91,7 @@ pub struct EnergyEntry {
 /// Number of parts that are held; they come first.
 pub(crate) const HELD: usize = 3;
 
-const FLUID: [EnergyPart; 16] = {
+const FLUID: [EnergyPart; 18] = {
     use EnergyPart::*;
     [
         Kinetic,
@@ -98,6 +102,8 @@ const FLUID: [EnergyPart; 16] = {
         Viscosity,
         DensityDiffusion,
         ParticleShifting,
+        WallSeparation,
+        Beach,
         FurtherEffect,
         WallPressure,
         MovingWalls,
@@ -153,8 +159,7 @@ impl EnergyPart {
 
     /// What an effect of the fluid of this name gives.
     pub fn of_effect(name: &str) -> Self {
-        let effects = [Self::ArtificialViscosity, Self::WallGuard, Self::Viscosity, Self::DensityDiffusion];
-        effects.into_iter().find(|part| part.name() == name).unwrap_or(Self::FurtherEffect)
+        FLUID.into_iter().find(|part| part.name() == name).unwrap_or(Self::FurtherEffect)
     }
 
     /// The participant holds this energy; else it is given it.

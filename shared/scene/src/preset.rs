@@ -7,9 +7,12 @@ use super::*;
 pub(crate) struct Defaults {
     /// Number of space dimensions.
     pub(crate) dimension: usize,
-    pub(crate) smoothing_ratio: f64,
+    /// h / dx of the water; where there is none, the scene decides.
+    pub(crate) smoothing_ratio: Option<f64>,
     pub(crate) time_step: TimeStep,
     pub(crate) fluid_viscosity: ArtificialViscosity,
+    /// A where the water's kernel is wide.
+    pub(crate) wide_linear: f64,
     /// A is less by what the fluid's own viscosity is worth.
     pub(crate) own_viscosity_counts: bool,
     pub(crate) density_diffusion: DensityDiffusion,
@@ -31,9 +34,10 @@ impl Defaults {
     pub(super) fn of(preset: Option<Preset>, dimension: usize) -> Self {
         let own = Self {
             dimension,
-            smoothing_ratio: 1.5,
+            smoothing_ratio: None,
             time_step: TimeStep::Auto,
             fluid_viscosity: ArtificialViscosity { linear: 0.05, quadratic: 0.0 },
+            wide_linear: 0.02,
             own_viscosity_counts: true,
             density_diffusion: DensityDiffusion::DeltaSph,
             density_diffusion_coefficient: 0.1,
@@ -50,21 +54,14 @@ impl Defaults {
         };
         match preset {
             None => own,
-            Some(Preset::Waves) => Self {
-                smoothing_ratio: 2.0,
-                fluid_viscosity: ArtificialViscosity { linear: 0.02, ..own.fluid_viscosity },
-                effects: &[
-                    (EffectName::ParticleShifting, Switch::On),
-                    (EffectName::WallSeparation, Switch::On),
-                ],
-                ..own
-            },
+            Some(Preset::Waves) => Self { smoothing_ratio: Some(support::ALONE), ..own },
             // What is the same as the program's own today is repeated: a preset stays when the defaults move.
             Some(Preset::Kayaki) => Self {
                 dimension,
-                smoothing_ratio: 1.33,
+                smoothing_ratio: Some(1.33),
                 time_step: TimeStep::Fixed(1e-5),
                 fluid_viscosity: ArtificialViscosity { linear: 1.0, quadratic: 1.0 },
+                wide_linear: 1.0,
                 own_viscosity_counts: false,
                 density_diffusion: DensityDiffusion::DeltaSph,
                 density_diffusion_coefficient: 0.1,
@@ -83,6 +80,8 @@ impl Defaults {
                     (EffectName::FrozenDiffusion, Switch::Off),
                     (EffectName::Viscosity, Switch::On),
                     (EffectName::SleepingSolid, Switch::Off),
+                    (EffectName::ParticleShifting, Switch::Off),
+                    (EffectName::WallSeparation, Switch::Off),
                 ],
             },
         }

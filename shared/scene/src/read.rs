@@ -54,8 +54,15 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&s
     let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let end_time = top.number("end_time", None);
     let numerics = numerics(top.section("numerics"), dimension, &defaults);
-    let smoothing_ratio = top.number("smoothing_ratio", Some(defaults.smoothing_ratio));
-    let interface = interface(top.section("interface"), &defaults, smoothing_ratio);
+    let interface_section = top.section("interface");
+    let treatment = interface_section
+        .choice("treatment", Some(defaults.treatment), &TREATMENTS)
+        .unwrap_or(defaults.treatment);
+    let solids = read_solid::solids(&top, defaults.with_treatment(treatment), &numerics);
+    let alone = solids.is_empty() && top.section("fluid").is_present();
+    let smoothing_ratio = top.number("smoothing_ratio", Some(defaults.smoothing_ratio(alone)));
+    let defaults = defaults.with_width(smoothing_ratio);
+    let interface = interface(interface_section, treatment, &defaults, smoothing_ratio);
     let linear_auto = defaults.own_viscosity_counts && {
         let table = top.section("fluid").section("artificial_viscosity");
         table.node("linear").is_none()
@@ -67,7 +74,6 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&s
         }
         _ => (None, false),
     };
-    let solids = read_solid::solids(&top, defaults.with_treatment(interface.treatment), &numerics);
     let names: Vec<&str> = solids.iter().map(|s| s.name.as_str()).collect();
     let tables = top.tables("shape");
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -212,9 +218,12 @@ pub(super) fn viscosity(section: &Section<'_>, default: ArtificialViscosity) -> 
     viscosity
 }
 
-fn interface(section: Section<'_>, defaults: &Defaults, smoothing_ratio: f64) -> Interface {
-    let treatment =
-        section.choice("treatment", Some(defaults.treatment), &TREATMENTS).unwrap_or(defaults.treatment);
+fn interface(
+    section: Section<'_>,
+    treatment: Treatment,
+    defaults: &Defaults,
+    smoothing_ratio: f64,
+) -> Interface {
     let strong = treatment == Treatment::MovingWall && super::support::is_wide(smoothing_ratio);
     let default = if strong { NEAR_CROSS_VISCOSITY } else { defaults.cross_viscosity };
     let near = section.number("cross_viscosity", Some(default));

@@ -86,6 +86,26 @@ fn a_preset_forces_effects_and_keys_override_it() {
     assert_eq!(switch(&["preset=kayaki", "effects.frozen-diffusion=on"]), Switch::On);
 }
 
+/// h / dx, A, C near by: water alone has a wide kernel, with a solid it has not, and what is said holds.
+#[test]
+fn the_kernels_width_follows_from_solids_and_the_rest_from_the_width() {
+    let values = |name: &str, overrides: &[&str]| {
+        let scene = shipped(name, overrides);
+        let linear = scene.fluid.as_ref().expect("water").artificial_viscosity.linear;
+        [scene.smoothing_ratio, linear, scene.interface.cross_viscosity]
+    };
+    assert_eq!(values("hydrostatic-tank", &[]), [2.0, 0.02, 4.0]);
+    assert_eq!(values("hydrostatic-tank", &["smoothing_ratio=1.5"]), [1.5, 0.05, 1.0]);
+    assert_eq!(values("hydrostatic-tank", &["smoothing_ratio=1.75"]), [1.75, 0.02, 4.0]);
+    assert_eq!(values("hydrostatic-tank", &["fluid.artificial_viscosity.linear=0.1"]), [2.0, 0.1, 4.0]);
+    for name in ["spring-block", "floating-box"] {
+        assert_eq!(values(name, &[]), [1.5, 0.05, 1.0]);
+        assert_eq!(values(name, &["preset=waves"]), [2.0, 0.02, 4.0]);
+    }
+    assert_eq!(values("hydrostatic-tank", &["preset=kayaki"]), [1.33, 1.0, 1.0]);
+    assert_eq!(values("hydrostatic-tank", &["preset=kayaki", "smoothing_ratio=2.0"]), [2.0, 1.0, 1.0]);
+}
+
 #[test]
 fn the_dam_breaks_plate_takes_the_floors_place() {
     let layout = layout::<2>(&shipped("dam-break-plate", &[]));

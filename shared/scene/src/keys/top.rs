@@ -20,7 +20,7 @@ pub(crate) static SCENE: Table = Table::new(
         Key::new("dimension", Kind::Integer(2, 2), "Number of space dimensions.").default("2"),
         Key::number("resolution", Range::positive(), "Distance dx of particles.").unit("m").required(),
         Key::number("smoothing_ratio", SMOOTHING, "Smoothing length of fluid and interface over dx.")
-            .default("1.5, or the preset's"),
+            .default("2.0; with a solid 1.5; or the preset's"),
         Key::number("end_time", Range::at_least(1e-12).up_to(1e12), "Simulated time.").unit("s").required(),
         Key::new(
             "time_step",
@@ -106,7 +106,8 @@ static VISCOSITY: Table = Table::new(
     "Coefficients of Monaghan's artificial viscosity.",
     &[
         Key::number("linear", COEFFICIENT, "A: in proportion to the sound speed.").default(
-            "fluid 0.05, less by what its own viscosity is worth; solid by its model; or the preset's",
+            "fluid 0.05, with `smoothing_ratio` 1.75 or more 0.02, less by what its own viscosity is worth; \
+             solid by its model; or the preset's",
         ),
         Key::number("quadratic", COEFFICIENT, "B: in proportion to the square of the approach speed.")
             .default("0; hypoelastic and preset \"kayaki\" 1"),
