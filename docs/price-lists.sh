@@ -44,8 +44,8 @@ price hydrostatic-plate --until 0.25 --set resolution=0.01666666666666666667 --v
 price elastic-gate --until 0.25 --set resolution=0.00166666666666666667 --vary resolution=0.00125,0.0025 \
     --vary solid.model=hypoelastic --vary interface.treatment=phase-blind --vary solid.sub_steps=20 \
     --vary numerics.cfl=0.2,0.6 \
-    --vary numerics.kernel=wendland-c2 --vary fluid.density_diffusion=simple \
-    --vary fluid.artificial_viscosity.linear=0.02
+    --vary numerics.kernel=cubic-spline --vary fluid.density_diffusion=simple \
+    --vary fluid.artificial_viscosity.linear=0.02 --vary smoothing_ratio=2
 # The wall goes as deep into the floor as it is thick: whole rows of every spacing, above the floor, too.
 price breaking-wall --until 0.2 --set resolution=0.004 --set 'shape.wall.box.min=[0.286,-0.012]' \
     --vary resolution=0.0024,0.003 --vary numerics.cfl=0.2
