@@ -3,6 +3,7 @@
 
 use halfstep_tests::{Finished, cluster, scene};
 use halfstep_wire::frame::SOLID;
+use std::ops::RangeInclusive;
 
 struct End {
     /// Pieces in the last frame, largest first, for neighbours at most 1.5 and 2 spacings apart.
@@ -35,14 +36,16 @@ fn end(what: &str, resolution: f64, run: &Finished) -> End {
     End { pieces, energy }
 }
 
-fn bounce_or_crack(resolution: f64) {
+/// `back`: kinetic energy after the rebound over that before; the rest is in the rings' oscillation, or dissipated. Which
+/// part of it the oscillation has then differs by spacing and kernel.
+fn bounce_or_crack(resolution: f64, back: RangeInclusive<f64>) {
     let rings = || scene("colliding-rings").set("resolution", resolution);
     let run = rings().run();
     let whole = end(&format!("with artificial stress, {resolution} m"), resolution, &run);
     let half = run.report.particles.solid as usize / 2;
-    // Each ring is one piece and on its own side again, with most of the motion back.
+    // Each ring is one piece and on its own side again.
     assert_eq!(whole.pieces, [vec![half, half], vec![half, half]]);
-    assert!(whole.energy > 0.5);
+    assert!(back.contains(&whole.energy), "{}", whole.energy);
     assert!(run.curve("left-end.x").at(run.report.time) < 0.0, "the left ring is on its way back");
     let [left, right] = ["left-end.x", "right-end.x"].map(|name| run.curve(name).at(run.report.time));
     assert!((left + right).abs() < 1e-4 * left.abs(), "mirror images: {left} {right}");
@@ -66,11 +69,11 @@ fn total_lagrangian_rings_bounce() {
 
 #[test]
 fn rings_of_5_particles_across() {
-    bounce_or_crack(0.002);
+    bounce_or_crack(0.002, 0.6..=0.64);
 }
 
 #[test]
 #[ignore = "half a minute: the published resolution"]
 fn rings_of_10_particles_across() {
-    bounce_or_crack(0.001);
+    bounce_or_crack(0.001, 0.46..=0.51);
 }
