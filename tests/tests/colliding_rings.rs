@@ -36,8 +36,8 @@ fn end(what: &str, resolution: f64, run: &Finished) -> End {
     End { pieces, energy }
 }
 
-/// `back`: kinetic energy after the rebound over that before; the rest is in the rings' oscillation, or dissipated. Which
-/// part of it the oscillation has then differs by spacing and kernel.
+/// `back`: kinetic energy after the rebound over that before; the rest is in the rings' oscillation, or dissipated.
+/// Which part of it the oscillation has then differs by spacing and kernel.
 fn bounce_or_crack(resolution: f64, back: RangeInclusive<f64>) {
     let rings = || scene("colliding-rings").set("resolution", resolution);
     let run = rings().run();
