@@ -122,7 +122,7 @@ fn trough(height: &Curve) -> (f64, f64) {
     (time, -depth)
 }
 
-/// With h / dx; there is a solid, so the default is 1.5.
+/// With h / dx; there is a free body, so the default is 1.5, with f_i that ends at dx.
 fn heave(dx: f64, smoothing_ratio: f64) -> (f64, f64) {
     let folder = tempfile::tempdir().unwrap();
     let found = run(folder.path(), LIFTED, dx).set("smoothing_ratio", smoothing_ratio).run();
@@ -143,15 +143,15 @@ fn linear_theory_of_the_lifted_block() {
 #[test]
 fn a_lifted_block_swings() {
     let (time, depth) = heave(0.02, 1.5);
-    within("lifted block at 20 mm, first trough, mm", 1e3 * depth, -2.25..=-2.0);
-    within("its instant over that of linear theory", time / 0.364, 1.012..=1.033);
+    within("lifted block at 20 mm, first trough, mm", 1e3 * depth, -3.1..=-2.9);
+    within("its instant over that of linear theory", time / 0.364, 1.0..=1.02);
 }
 
 #[test]
 #[ignore = "long: make validate"]
 fn a_lifted_block_swings_finer() {
     for (dx, depth_band, time_band) in
-        [(0.01, -3.3..=-3.0, 1.017..=1.037), (0.005, -3.6..=-3.3, 1.012..=1.032)]
+        [(0.01, -4.05..=-3.85, 1.005..=1.02), (0.005, -4.5..=-4.27, 1.005..=1.02)]
     {
         let (time, depth) = heave(dx, 1.5);
         within(&format!("lifted block at {dx} m, first trough, mm"), 1e3 * depth, depth_band);

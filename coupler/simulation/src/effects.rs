@@ -90,7 +90,10 @@ pub(crate) fn reports(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
     let why = match (coupled, c == far) {
         (false, _) => "one phase only".into(),
         (true, true) => format!("interface.cross_viscosity is {c}"),
-        (true, false) => format!("interface.cross_viscosity is {c}, and {far} far off"),
+        (true, false) => {
+            let reach = scene.interface.cross_viscosity_reach;
+            format!("interface.cross_viscosity is {c}, and {far} from {reach} dx on")
+        }
     };
     list.push(row(CROSS_VISCOSITY, coupled && c > 0.0, why));
     let pairs: Vec<String> = scene

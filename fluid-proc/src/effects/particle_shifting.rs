@@ -69,7 +69,10 @@ impl<const D: usize> FluidEffect<D> for ParticleShifting<D> {
         let derived = match &scene.fluid {
             None => Derived::Impossible("the scene has no fluid".into()),
             Some(_) if scene.has_wide_support() => Derived::On("a wide kernel's sums ask for order".into()),
-            Some(_) => Derived::Off("for kernels wider than h / dx = 1.75".into()),
+            Some(_) if scene.has_free_bodies() => {
+                Derived::On("a body that nothing holds rides on waves, which order keeps".into())
+            }
+            Some(_) => Derived::Off("for kernels wider than h / dx = 1.75 and free bodies".into()),
         };
         Decision::new(scene, EffectName::ParticleShifting, derived)
     }

@@ -8,7 +8,7 @@
 //! density of the fluid that it displaces, c_ij = c_f.
 
 use crate::{Interface, InterfaceParticles};
-use halfstep_scene::Treatment;
+use halfstep_scene::{Interface as Coefficients, Treatment};
 use halfstep_sph::artificial_viscosity::damping;
 use halfstep_sph::fade::Fade;
 use halfstep_sph::kernel::Kernel;
@@ -16,9 +16,6 @@ use halfstep_sph::lane::{Arch, LANES, Lane, Lanes};
 use halfstep_sph::neighbours::ClusterList;
 use halfstep_sph::pair::{self, PairLaw, distance, dot, pair_sum};
 use halfstep_sph::with_kernel;
-
-/// Up to where C is whole, and from where on it is the far one, over the spacing: with a narrow kernel and a wide one.
-const REACH: [[f64; 2]; 2] = [[1.0, 1.25], [0.75, 1.0]];
 
 struct Law<'a, K, const D: usize> {
     kernel: K,
@@ -127,8 +124,8 @@ impl<const D: usize> CrossViscosity<D> {
         };
         let far = p.cross_viscosity_far * sound_speed;
         let added = (p.cross_viscosity - p.cross_viscosity_far) * sound_speed;
-        let [full, gone] = REACH[usize::from(p.wide_support)];
-        let near = Fade::new(full * p.resolution, gone * p.resolution);
+        let gone = p.cross_viscosity_reach;
+        let near = Fade::new((gone - Coefficients::FADE) * p.resolution, gone * p.resolution);
         self.sums.resize(list.fours(), Sum::default());
         with_kernel!(p.kernel, p.smoothing_length, D, |kernel| {
             let law = Law { kernel, targets, sources, far, added, near };

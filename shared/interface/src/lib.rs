@@ -100,8 +100,8 @@ pub struct Parameters<const D: usize> {
     pub cross_viscosity_far: f64,
     /// The fluid's viscosity mu where viscous stress crosses the interface, Pa s.
     pub viscosity: Option<f64>,
-    /// C is that of a wide kernel: near.
-    pub wide_support: bool,
+    /// Distance from which on C is the far one, over the fluid's spacing.
+    pub cross_viscosity_reach: f64,
     /// Instruction set of the pair loop.
     pub isa: Isa,
 }
@@ -139,7 +139,7 @@ impl<const D: usize> Parameters<D> {
             cross_viscosity: scene.interface.cross_viscosity,
             cross_viscosity_far: scene.interface.cross_viscosity_far,
             viscosity: interface_viscosity(scene).on.then_some(fluid.viscosity),
-            wide_support: scene.has_wide_support(),
+            cross_viscosity_reach: scene.interface.cross_viscosity_reach,
             isa,
         })
     }

@@ -21,7 +21,10 @@ pub fn wall_separation(scene: &Scene) -> Decision {
     let derived = match scene.fluid.is_some() && (walls || solids) {
         false => Derived::Impossible("no fluid at walls or solids".into()),
         true if scene.has_wide_support() => Derived::On("a wide kernel thins out water that leaves".into()),
-        true => Derived::Off("for kernels wider than h / dx = 1.75".into()),
+        true if scene.has_free_bodies() => {
+            Derived::On("f_i that ends at dx lets water by that a free body thinned out".into())
+        }
+        true => Derived::Off("for kernels wider than h / dx = 1.75 and free bodies".into()),
     };
     Decision::new(scene, EffectName::WallSeparation, derived)
 }

@@ -33,7 +33,7 @@ impl Scene {
             let body = &mut bodies[piece as usize];
             body.particles += 1;
             body.clamped += usize::from(point.clamped);
-            body.held |= point.clamped || self.is_held(&self.shapes[point.body as usize]);
+            body.held |= point.clamped || is_held(&self.solids, &self.shapes[point.body as usize]);
             if let Err(place) = body.shapes.binary_search(&(point.body as usize)) {
                 body.shapes.insert(place, point.body as usize);
             }
@@ -65,15 +65,6 @@ impl Scene {
         given.iter().filter_map(of).fold(lightest, f64::min)
     }
 
-    /// A joint or a motion of its own holds a shape's rigid body.
-    fn is_held(&self, shape: &Shape) -> bool {
-        let keys = shape.solid.and_then(|k| self.solids.get(k)).and_then(Solid::rigid);
-        keys.is_some_and(|keys| {
-            let names = |joint: &Joint| joint.body == shape.body() || joint.with == shape.body();
-            shape.motion.is_some() || keys.joints.iter().any(|joint| joint.holds() && names(joint))
-        })
-    }
-
     /// What nothing holds would fall through walls: those that say nothing of `contact` can be touched where a body is
     /// not held.
     pub(crate) fn touch_free_bodies(&mut self, said: &[bool]) {
@@ -88,6 +79,15 @@ impl Scene {
             shape.contact = shape.phase == Phase::Wall;
         }
     }
+}
+
+/// A joint or a motion of its own holds a shape's rigid body.
+pub(super) fn is_held(solids: &[Solid], shape: &Shape) -> bool {
+    let keys = shape.solid.and_then(|k| solids.get(k)).and_then(Solid::rigid);
+    keys.is_some_and(|keys| {
+        let names = |joint: &Joint| joint.body == shape.body() || joint.with == shape.body();
+        shape.motion.is_some() || keys.joints.iter().any(|joint| joint.holds() && names(joint))
+    })
 }
 
 #[cfg(test)]

@@ -247,6 +247,13 @@ pub struct Interface {
     pub cross_viscosity: f64,
     /// C beyond that.
     pub cross_viscosity_far: f64,
+    /// Distance from which on C is the far one, over the spacing; it is whole up to [`Interface::FADE`] before that.
+    pub cross_viscosity_reach: f64,
+}
+
+impl Interface {
+    /// Over which distance C fades from the near to the far one, over the spacing.
+    pub const FADE: f64 = 0.25;
 }
 
 /// The treatments of the interface.

@@ -11,8 +11,8 @@ pub(crate) struct Defaults {
     pub(crate) smoothing_ratio: Option<f64>,
     pub(crate) time_step: TimeStep,
     pub(crate) fluid_viscosity: ArtificialViscosity,
-    /// A where the water's kernel is wide.
-    pub(crate) wide_linear: f64,
+    /// A where the water's kernel is wide, and where bodies float.
+    pub(crate) waves_linear: f64,
     /// A is less by what the fluid's own viscosity is worth.
     pub(crate) own_viscosity_counts: bool,
     pub(crate) density_diffusion: DensityDiffusion,
@@ -25,6 +25,8 @@ pub(crate) struct Defaults {
     pub(crate) cross_viscosity: f64,
     /// C far off over C near by.
     pub(crate) cross_viscosity_far: f64,
+    /// Where C is the far one, over the spacing.
+    pub(crate) cross_viscosity_reach: f64,
     pub(crate) kernel: KernelName,
     pub(crate) lattice: Lattice,
     pub(crate) effects: &'static [(EffectName, Switch)],
@@ -37,7 +39,7 @@ impl Defaults {
             smoothing_ratio: None,
             time_step: TimeStep::Auto,
             fluid_viscosity: ArtificialViscosity { linear: 0.05, quadratic: 0.0 },
-            wide_linear: 0.02,
+            waves_linear: 0.02,
             own_viscosity_counts: true,
             density_diffusion: DensityDiffusion::DeltaSph,
             density_diffusion_coefficient: 0.1,
@@ -48,6 +50,7 @@ impl Defaults {
             treatment: Treatment::MovingWall,
             cross_viscosity: 1.0,
             cross_viscosity_far: 0.0,
+            cross_viscosity_reach: Self::CROSS_VISCOSITY_REACH,
             kernel: KernelName::WendlandC2,
             lattice: Lattice::Centred,
             effects: &[],
@@ -61,7 +64,7 @@ impl Defaults {
                 smoothing_ratio: Some(1.33),
                 time_step: TimeStep::Fixed(1e-5),
                 fluid_viscosity: ArtificialViscosity { linear: 1.0, quadratic: 1.0 },
-                wide_linear: 1.0,
+                waves_linear: 1.0,
                 own_viscosity_counts: false,
                 density_diffusion: DensityDiffusion::DeltaSph,
                 density_diffusion_coefficient: 0.1,
@@ -72,6 +75,7 @@ impl Defaults {
                 treatment: Treatment::PhaseBlind,
                 cross_viscosity: 1.0,
                 cross_viscosity_far: 1.0,
+                cross_viscosity_reach: Self::CROSS_VISCOSITY_REACH,
                 kernel: KernelName::CubicSpline,
                 lattice: Lattice::Nodal,
                 // Kayaki's scheme evaluates everything at both stages, the viscous stress however small, and the solid

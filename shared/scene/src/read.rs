@@ -5,6 +5,7 @@ use super::error::{Report, listed, nearest};
 use super::preset::Defaults;
 use super::read_motion::Around;
 use super::section::{Range, Section};
+use super::support::Company;
 use super::*;
 use super::{read_contact, read_metric, read_motion, read_probe, read_shape, read_solid};
 use std::path::Path;
@@ -25,11 +26,12 @@ pub(crate) const SMOOTHING: Range = Range::at_least(1.0)
     .why("below, neighbours are too few; above, they are too many to resolve anything at this spacing");
 // Ends beyond any material, within which no formula overflows.
 pub(crate) const DENSITY: Range = Range::at_least(1e-6).up_to(1e9);
-/// C where the kernel is wide.
-const NEAR_CROSS_VISCOSITY: f64 = 4.0;
 /// Most worker threads of a process.
 pub(crate) const MAX_THREADS: u32 = 1024;
 pub(crate) const COEFFICIENT: Range = Range::at_least(0.0).up_to(100.0);
+pub(crate) const REACH: Range = Range::at_least(0.5)
+    .up_to(5.0)
+    .why("below, particles pass each other before f_i is whole; no kernel reaches farther than 5 spacings");
 
 pub(crate) const PRESETS: [(&str, Preset); 2] = [("kayaki", Preset::Kayaki), ("waves", Preset::Waves)];
 pub(crate) const DIFFUSIONS: [(&str, DensityDiffusion); 4] = [
@@ -59,21 +61,6 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&s
         .choice("treatment", Some(defaults.treatment), &TREATMENTS)
         .unwrap_or(defaults.treatment);
     let solids = read_solid::solids(&top, defaults.with_treatment(treatment), &numerics);
-    let alone = solids.is_empty() && top.section("fluid").is_present();
-    let smoothing_ratio = top.number("smoothing_ratio", Some(defaults.smoothing_ratio(alone)));
-    let defaults = defaults.with_width(smoothing_ratio);
-    let interface = interface(interface_section, treatment, &defaults, smoothing_ratio);
-    let linear_auto = defaults.own_viscosity_counts && {
-        let table = top.section("fluid").section("artificial_viscosity");
-        table.node("linear").is_none()
-    };
-    let (fluid, sound_speed_auto) = match top.section("fluid") {
-        section if section.is_present() => {
-            let (fluid, auto) = fluid(section, &defaults);
-            (Some(fluid), auto)
-        }
-        _ => (None, false),
-    };
     let names: Vec<&str> = solids.iter().map(|s| s.name.as_str()).collect();
     let tables = top.tables("shape");
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -88,6 +75,21 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&s
         contact_said.push(table.node("contact").is_some());
         shapes.push(read_shape::shape(table, &around, &names, numerics.lattice));
     }
+    let company = Company::of(&shapes, &solids, treatment);
+    let smoothing_ratio = top.number("smoothing_ratio", Some(defaults.smoothing_ratio(company)));
+    let defaults = defaults.suited(smoothing_ratio, company, treatment);
+    let interface = interface(interface_section, treatment, &defaults);
+    let linear_auto = defaults.own_viscosity_counts && {
+        let table = top.section("fluid").section("artificial_viscosity");
+        table.node("linear").is_none()
+    };
+    let (fluid, sound_speed_auto) = match top.section("fluid") {
+        section if section.is_present() => {
+            let (fluid, auto) = fluid(section, &defaults);
+            (Some(fluid), auto)
+        }
+        _ => (None, false),
+    };
     let probe = |p| read_probe::probe(p, dimension, &names, &shapes);
     let probes = top.tables("probe").into_iter().filter_map(probe).collect();
     let contact = |table| read_contact::contact(table, &names);
@@ -218,24 +220,17 @@ pub(super) fn viscosity(section: &Section<'_>, default: ArtificialViscosity) -> 
     viscosity
 }
 
-fn interface(
-    section: Section<'_>,
-    treatment: Treatment,
-    defaults: &Defaults,
-    smoothing_ratio: f64,
-) -> Interface {
-    let strong = treatment == Treatment::MovingWall && super::support::is_wide(smoothing_ratio);
-    let default = if strong { NEAR_CROSS_VISCOSITY } else { defaults.cross_viscosity };
-    let near = section.number("cross_viscosity", Some(default));
-    // Phase-blind, f_i is the paper's, whose C is the same everywhere.
-    let share = if treatment == Treatment::PhaseBlind { 1.0 } else { defaults.cross_viscosity_far };
+fn interface(section: Section<'_>, treatment: Treatment, defaults: &Defaults) -> Interface {
+    let near = section.number("cross_viscosity", Some(defaults.cross_viscosity));
     let range = Range::at_least(0.0).up_to(if near.is_finite() { near } else { f64::MAX });
     let range = range
         .why("f_i keeps particles apart: it acts between near ones at least as much as between far ones");
+    let far = defaults.cross_viscosity_far * near;
     let interface = Interface {
         treatment,
         cross_viscosity: near,
-        cross_viscosity_far: section.number_within("cross_viscosity_far", Some(share * near), range),
+        cross_viscosity_far: section.number_within("cross_viscosity_far", Some(far), range),
+        cross_viscosity_reach: section.number("cross_viscosity_reach", Some(defaults.cross_viscosity_reach)),
     };
     section.finish();
     interface

@@ -86,24 +86,33 @@ fn a_preset_forces_effects_and_keys_override_it() {
     assert_eq!(switch(&["preset=kayaki", "effects.frozen-diffusion=on"]), Switch::On);
 }
 
-/// h / dx, A, C near by: water alone has a wide kernel, with a solid it has not, and what is said holds.
+/// h / dx, A, C near by and its reach: water alone has a wide kernel, with a solid it has not; free bodies ride on
+/// waves; and what is said holds.
 #[test]
 fn the_kernels_width_follows_from_solids_and_the_rest_from_the_width() {
     let values = |name: &str, overrides: &[&str]| {
         let scene = shipped(name, overrides);
         let linear = scene.fluid.as_ref().expect("water").artificial_viscosity.linear;
-        [scene.smoothing_ratio, linear, scene.interface.cross_viscosity]
+        [
+            scene.smoothing_ratio,
+            linear,
+            scene.interface.cross_viscosity,
+            scene.interface.cross_viscosity_reach,
+        ]
     };
-    assert_eq!(values("hydrostatic-tank", &[]), [2.0, 0.02, 4.0]);
-    assert_eq!(values("hydrostatic-tank", &["smoothing_ratio=1.5"]), [1.5, 0.05, 1.0]);
-    assert_eq!(values("hydrostatic-tank", &["smoothing_ratio=1.75"]), [1.75, 0.02, 4.0]);
-    assert_eq!(values("hydrostatic-tank", &["fluid.artificial_viscosity.linear=0.1"]), [2.0, 0.1, 4.0]);
+    assert_eq!(values("hydrostatic-tank", &[]), [2.0, 0.02, 4.0, 1.0]);
+    assert_eq!(values("hydrostatic-tank", &["smoothing_ratio=1.5"]), [1.5, 0.05, 1.0, 1.25]);
+    assert_eq!(values("hydrostatic-tank", &["smoothing_ratio=1.75"]), [1.75, 0.02, 4.0, 1.0]);
+    assert_eq!(values("hydrostatic-tank", &["fluid.artificial_viscosity.linear=0.1"]), [2.0, 0.1, 4.0, 1.0]);
     for name in ["spring-block", "floating-box"] {
-        assert_eq!(values(name, &[]), [1.5, 0.05, 1.0]);
-        assert_eq!(values(name, &["preset=waves"]), [2.0, 0.02, 4.0]);
+        assert_eq!(values(name, &[]), [1.5, 0.02, 1.0, 1.0]);
+        assert_eq!(values(name, &["preset=waves"]), [2.0, 0.02, 4.0, 1.0]);
     }
-    assert_eq!(values("hydrostatic-tank", &["preset=kayaki"]), [1.33, 1.0, 1.0]);
-    assert_eq!(values("hydrostatic-tank", &["preset=kayaki", "smoothing_ratio=2.0"]), [2.0, 1.0, 1.0]);
+    // Held at its root, a plate has the longer reach.
+    assert_eq!(values("elastic-gate", &[])[2..], [1.0, 1.25]);
+    assert_eq!(values("floating-box", &["interface.cross_viscosity_reach=1.5"])[3], 1.5);
+    assert_eq!(values("hydrostatic-tank", &["preset=kayaki"]), [1.33, 1.0, 1.0, 1.25]);
+    assert_eq!(values("hydrostatic-tank", &["preset=kayaki", "smoothing_ratio=2.0"]), [2.0, 1.0, 1.0, 1.0]);
 }
 
 #[test]

@@ -28,6 +28,7 @@ pub(crate) fn scene() -> Scene {
             treatment: Treatment::MovingWall,
             cross_viscosity: 0.0,
             cross_viscosity_far: 0.0,
+            cross_viscosity_reach: 1.25,
         },
         output: Output { frame_interval: 0.02, probe_interval: 0.001, checkpoint_interval: 0.0 },
         pair_contacts: Vec::new(),

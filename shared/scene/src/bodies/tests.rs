@@ -87,3 +87,37 @@ fn the_lightest_density_knows_given_masses_and_shapes() {
     assert!((light - 50.0).abs() < 1e-9, "{light}");
     assert_eq!(density(block, "bodies = [{ name = \"s\", mass = 100.0 }]"), 1000.0);
 }
+
+/// Whether waves carry a body of a scene of water and these shapes of a solid.
+fn carried(model: &str, shapes: &str, more: &str) -> bool {
+    let text = format!(
+        "resolution = 0.01\nend_time = 1.0\n{more}\n[fluid]\ndensity = 1000.0\nsound_speed = 20.0\n[solid]\n\
+         model = \"{model}\"\ndensity = 500.0\nyoungs_modulus = 1e6\npoissons_ratio = 0.3\n[[shape]]\n\
+         name = \"water\"\nphase = \"fluid\"\nbox = {{ min = [0.0, -0.2], max = [0.2, -0.1] }}\n{shapes}"
+    );
+    let text = if model == "rigid" {
+        text.replace("youngs_modulus = 1e6\npoissons_ratio = 0.3\n", "")
+    } else {
+        text
+    };
+    let scene = parse(&text, Path::new("x.toml"), &[]).expect("a right scene");
+    assert_eq!(scene.interface.cross_viscosity_reach, if scene.has_free_bodies() { 1.0 } else { 1.25 });
+    scene.has_free_bodies()
+}
+
+#[test]
+fn waves_carry_what_nothing_holds() {
+    let shape = |name: &str, text: &str| format!("[[shape]]\nname = \"{name}\"\nphase = \"solid\"\n{text}\n");
+    let (free, held) = (shape("a", LEFT), shape("b", &(BESIDE.to_owned() + HELD)));
+    assert!(carried("total-lagrangian", &free, ""));
+    assert!(!carried("total-lagrangian", &held, ""));
+    assert!(carried("total-lagrangian", &format!("{free}{held}"), ""), "one of two is free");
+    // Of one body a clamp of any shape holds all.
+    let [a, b] = [("a", LEFT.to_owned()), ("b", BESIDE.to_owned() + HELD)]
+        .map(|(name, text)| shape(name, &(text + ONE)));
+    assert!(!carried("total-lagrangian", &format!("{a}{b}"), ""));
+    assert!(!carried("hypoelastic", &free, "interface.treatment = \"phase-blind\""));
+    assert!(carried("rigid", &free, ""));
+    let moved = shape("a", &format!("{LEFT}\nmotion = {{ velocity = [0.1, 0.0] }}"));
+    assert!(!carried("rigid", &moved, ""));
+}

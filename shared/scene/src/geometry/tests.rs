@@ -45,6 +45,7 @@ fn scene(shapes: Vec<Shape>) -> Scene {
             treatment: Treatment::MovingWall,
             cross_viscosity: 1.0,
             cross_viscosity_far: 1.0,
+            cross_viscosity_reach: 1.25,
         },
         output: Output { frame_interval: 0.1, probe_interval: 0.1, checkpoint_interval: 0.0 },
         pair_contacts: Vec::new(),

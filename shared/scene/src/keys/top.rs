@@ -5,7 +5,7 @@ use super::measure::{METRIC, PROBE, REFERENCE};
 use super::motion::MOTION;
 use super::shape::{BOX, SHAPE};
 use super::{Key, Kind, Table, words};
-use crate::read::{self, COEFFICIENT, DENSITY, MAX_THREADS, SMOOTHING};
+use crate::read::{self, COEFFICIENT, DENSITY, MAX_THREADS, REACH, SMOOTHING};
 use crate::section::Range;
 
 pub(crate) static SCENE: Table = Table::new(
@@ -106,7 +106,8 @@ static VISCOSITY: Table = Table::new(
     "Coefficients of Monaghan's artificial viscosity.",
     &[
         Key::number("linear", COEFFICIENT, "A: in proportion to the sound speed.").default(
-            "fluid 0.05, with `smoothing_ratio` 1.75 or more 0.02, less by what its own viscosity is worth; \
+            "fluid 0.05, with `smoothing_ratio` 1.75 or more, or a free body, 0.02, less by what its own viscosity \
+             is worth; \
              solid by its model; or the preset's",
         ),
         Key::number("quadratic", COEFFICIENT, "B: in proportion to the square of the approach speed.")
@@ -143,9 +144,15 @@ static INTERFACE: Table = Table::new(
         Key::number(
             "cross_viscosity_far",
             COEFFICIENT,
-            "C from 1.25 dx on, with a wide kernel from dx on, at most `cross_viscosity`.",
+            "C from `cross_viscosity_reach` on, at most `cross_viscosity`.",
         )
         .default("0; phase-blind: `cross_viscosity`"),
+        Key::number(
+            "cross_viscosity_reach",
+            REACH,
+            "Distance from which on C is the far one, over `resolution`; a straight line over the last 0.25.",
+        )
+        .default("1.25; with `smoothing_ratio` 1.75 or more, or a free body, 1.0"),
     ],
 );
 
