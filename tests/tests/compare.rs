@@ -5,7 +5,11 @@ use halfstep_tests::run::{program, repository, whole_machine};
 use std::process::{Command, Output};
 
 fn compare(arguments: &[&str]) -> Output {
-    let scene = repository().join("scenes/elastic-gate.toml");
+    compare_in("elastic-gate", arguments)
+}
+
+fn compare_in(scene: &str, arguments: &[&str]) -> Output {
+    let scene = repository().join(format!("scenes/{scene}.toml"));
     Command::new(program()).arg("compare").arg(scene).arg("--quiet").args(arguments).output().unwrap()
 }
 
@@ -48,6 +52,47 @@ fn what_cannot_be_compared_is_refused() {
         assert_eq!(output.status.code(), Some(1), "{said}");
         assert!(said.contains(reason), "{said}");
     }
+}
+
+/// Of two solids one is exchanged, and the other stays what it is: the curve that is compared is the first plate's.
+#[test]
+fn one_of_several_solids_is_exchanged() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    let short = ["--until", "0.002", "--out", out, "--json"];
+    let models = ["--solid", "total-lagrangian", "--solid", "finite-element"];
+    let unsaid = compare_in("two-plates", &[&short[..], &models].concat());
+    assert_eq!(unsaid.status.code(), Some(1));
+    let said = String::from_utf8_lossy(&unsaid.stderr).into_owned();
+    assert!(said.contains("say which with --of NAME, one of soft, stiff"), "{said}");
+    let output = compare_in("two-plates", &[&short[..], &models, &["--of", "soft"]].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    for (model, runs) in [("total-lagrangian", "total-lagrangian"), ("finite-element", "finite-element")] {
+        let path = folder.path().join("runs").join(runs).join("run.json");
+        let report: serde_json::Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
+        let solids = report["scene"]["solid"].as_array().unwrap();
+        let of = |name: &str| &solids.iter().find(|solid| solid["name"] == name).unwrap()["model"];
+        assert_eq!((of("soft"), of("stiff")), (&model.into(), &"hypoelastic".into()), "{report}");
+    }
+}
+
+/// Without water models can be compared, and programs cannot: they meet the water alone.
+#[test]
+fn models_are_compared_without_water_and_programs_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let dry =
+        ["--until", "0.01", "--set", "resolution=0.004", "--out", folder.path().to_str().unwrap(), "--json"];
+    let models = ["--solid", "total-lagrangian", "--solid", "finite-element"];
+    let output = compare_in("oscillating-plate", &[&dry[..], &models].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(told["solids"][1]["distance"][0].as_f64().unwrap() < 0.03, "{told}");
+    let refused = compare_in("oscillating-plate", &[&dry[..], &models, &["--solid", "mine=true 1"]].concat());
+    let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(
+        refused.status.code() == Some(1) && said.contains("has no [fluid]: mine cannot join it"),
+        "{said}"
+    );
 }
 
 /// The gate by NGSolve, to beyond its peak: within 3 % of the built-in plate. NGSolve comes with its own environment.

@@ -2,7 +2,8 @@
 //! reach.
 
 use halfstep_tests::process::{is_alive, kill};
-use halfstep_tests::run::program;
+use halfstep_tests::python::python;
+use halfstep_tests::run::{program, repository};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant, SystemTime};
@@ -48,13 +49,19 @@ to = 0.3
 
 struct Study {
     dir: tempfile::TempDir,
+    scene: PathBuf,
 }
 
 impl Study {
     fn new() -> Self {
         let dir = tempfile::tempdir().unwrap();
-        std::fs::write(dir.path().join("pool.toml"), SCENE).unwrap();
-        Self { dir }
+        let scene = dir.path().join("pool.toml");
+        std::fs::write(&scene, SCENE).unwrap();
+        Self { dir, scene }
+    }
+
+    fn of(scene: PathBuf) -> Self {
+        Self { dir: tempfile::tempdir().unwrap(), scene }
     }
 
     fn out(&self) -> PathBuf {
@@ -63,12 +70,7 @@ impl Study {
 
     fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(program());
-        command
-            .arg("study")
-            .arg(self.dir.path().join("pool.toml"))
-            .arg("--quiet")
-            .arg("--out")
-            .arg(self.out());
+        command.arg("study").arg(&self.scene).arg("--quiet").arg("--out").arg(self.out());
         command.args(arguments).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
         command
     }
@@ -200,4 +202,35 @@ fn a_sweep_tells_what_physics_does() {
     assert!(table.starts_with("fluid.density,gravity.1,reach [m],late [m],status,"), "{table}");
     assert_eq!(table.lines().count(), 7);
     assert!(study.out().join("sweep.png").metadata().unwrap().len() > 5000);
+}
+
+/// The block on a spring is a program: each run starts it, and a changed program makes other runs.
+#[test]
+fn a_solid_of_ones_own_takes_part_in_a_study() {
+    let study = Study::of(repository().join("scenes/spring-block.toml"));
+    let script = study.dir.path().join("spring_block.py");
+    std::fs::copy(repository().join("tests/python/spring_block.py"), &script).unwrap();
+    let line = |stiffness: &str| format!("{} {} {stiffness}", python().display(), script.display());
+    let way = |stiffness: &str| {
+        let command = line(stiffness);
+        let ladder = ["--vary", "resolution=0.02,0.01", "--until", "0.2", "--set", "resolution=0.02"];
+        let done = study.run(&[&ladder[..], &["--solid", &command, "--json"]].concat());
+        assert_eq!(done.status.code(), Some(0), "{done:?}");
+        let rows = study.json()["rows"].as_array().unwrap().clone();
+        assert!(rows.iter().all(|row| row["error"].is_null()), "{rows:?}");
+        rows.len()
+    };
+    assert_eq!(way("20000"), 2);
+    let first = study.done();
+    let report = std::fs::read_to_string(first[0].0.join("run.json")).unwrap();
+    assert!(report.contains("spring_block.py"), "the report names the program: {report}");
+    way("20000");
+    assert_eq!(study.done(), first, "runs of the same program are there already");
+    way("40000");
+    let stiffer = study.done();
+    assert!(stiffer.iter().zip(&first).all(|(new, old)| new.0 == old.0 && new.1 > old.1), "other runs");
+    let text = std::fs::read_to_string(&script).unwrap();
+    std::fs::write(&script, format!("{text}\n")).unwrap();
+    way("40000");
+    assert!(study.done().iter().zip(&stiffer).all(|(new, old)| new.1 > old.1), "the program has changed");
 }

@@ -37,6 +37,9 @@ pub struct StudyArguments {
     /// Prints the results as JSON and nothing else
     #[arg(long, conflicts_with_all = ["error", "budget"])]
     json: bool,
+    /// A solid of your own in every run: a command that speaks the protocol; with several solids NAME=COMMAND, repeated
+    #[arg(long, value_name = "COMMAND")]
+    solid: Vec<String>,
     /// All combinations of the values instead of one change at a time
     #[arg(long)]
     full: bool,
@@ -151,6 +154,7 @@ fn run(arguments: StudyArguments) -> Result<ExitCode, StudyError> {
         scene: arguments.scene,
         base,
         vary: if sweeps { arguments.sweep } else { arguments.vary },
+        solids: arguments.solid,
         full: arguments.full || sweeps,
         repeat: arguments.repeat,
         jobs: arguments.jobs as usize,

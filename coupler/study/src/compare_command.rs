@@ -9,6 +9,7 @@ use halfstep_coupling::say;
 use halfstep_coupling::supervise::StopFlags;
 use halfstep_output::read_probes;
 use halfstep_output::run_json::RunStatus;
+use halfstep_scene::Scene;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -17,11 +18,14 @@ use std::process::ExitCode;
 /// Exit status: 0 done; 1 scene or usage error; 2 no run finished; 130 interrupted.
 #[derive(Clone, Debug, clap::Args)]
 pub struct CompareArguments {
-    /// Scene file (TOML) with [fluid] and [solid]
+    /// Scene file (TOML) with a solid
     scene: PathBuf,
     /// A solid: the name of a built-in model, or a command that speaks the protocol, [NAME=]COMMAND; two or more
     #[arg(long, value_name = "MODEL|COMMAND", required = true)]
     solid: Vec<String>,
+    /// Which of the scene's solids is exchanged, where there are several
+    #[arg(long, value_name = "NAME")]
+    of: Option<String>,
     /// Overrides a key of the scene in every run
     #[arg(long = "set", value_name = "KEY=VALUE")]
     set: Vec<String>,
@@ -60,9 +64,15 @@ fn run(arguments: CompareArguments) -> Result<ExitCode, StudyError> {
     let mut base = arguments.set;
     base.extend(arguments.until.map(|t| format!("end_time={t}")));
     let scene = halfstep_scene::load(&arguments.scene, &base)?;
-    if scene.fluid.is_none() || scene.solids.len() != 1 {
-        let reason = "a comparison needs a scene with [fluid] and one solid, [solid]";
-        return Err(StudyError::Usage(format!("{}: {reason}", scene.name)));
+    let exchanged = exchanged(&scene, arguments.of.as_deref()).map_err(StudyError::Usage)?;
+    // Without water there is nothing that a program could exchange its state with.
+    let program = candidates.iter().find(|candidate| matches!(candidate, Candidate::Program { .. }));
+    if let (None, Some(program)) = (&scene.fluid, program) {
+        return Err(StudyError::Usage(format!(
+            "{} has no [fluid]: {} cannot join it",
+            scene.name,
+            program.name()
+        )));
     }
     let probe = arguments.probe.or_else(|| default_probe(&scene));
     let probe = probe.ok_or_else(|| StudyError::Usage(format!("{} has no [[probe]]", scene.name)))?;
@@ -75,8 +85,10 @@ fn run(arguments: CompareArguments) -> Result<ExitCode, StudyError> {
         let mut overrides = base.clone();
         let mut more = Vec::new();
         match candidate {
-            Candidate::Model(name) => overrides.push(format!("solid.model={name}")),
-            Candidate::Program { command, .. } => more = vec!["--solid".into(), command.clone()],
+            Candidate::Model(name) => overrides.push(format!("solid.{exchanged}model={name}")),
+            Candidate::Program { command, .. } => {
+                more = vec!["--solid".into(), format!("{}{command}", exchanged.replace('.', "="))];
+            }
         }
         // A model that cannot compute the scene is refused before anything runs.
         halfstep_scene::load(&arguments.scene, &overrides)?;
@@ -106,4 +118,21 @@ fn run(arguments: CompareArguments) -> Result<ExitCode, StudyError> {
     let finished = comparison.solids.iter().any(|solid| solid.status == Some(RunStatus::Finished));
     let made = ("compare.json, compare.png and the runs", folder.as_path());
     Ok(tell(json, || comparison.text(), made, finished).unwrap_or(ExitCode::SUCCESS))
+}
+
+/// What stands between `solid.` and a key of the solid that is exchanged: `NAME.`, or nothing where it is the only one.
+fn exchanged(scene: &Scene, name: Option<&str>) -> Result<String, String> {
+    let known: Vec<&str> = scene.solids.iter().map(|solid| solid.name.as_str()).collect();
+    match (known.as_slice(), name) {
+        ([], _) => Err(format!("{} has no solid", scene.name)),
+        ([_], None) => Ok(String::new()),
+        (_, None) => {
+            Err(format!("there are several solids: say which with --of NAME, one of {}", known.join(", ")))
+        }
+        (_, Some(name)) if !known.contains(&name) => {
+            Err(format!("--of {name}: the scene's solids are {}", known.join(", ")))
+        }
+        ([_], Some(_)) => Ok(String::new()),
+        (_, Some(name)) => Ok(format!("{name}.")),
+    }
 }

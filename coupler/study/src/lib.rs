@@ -42,6 +42,8 @@ pub struct Options {
     pub base: Vec<String>,
     /// The ladder; empty: the default one.
     pub vary: Vec<Vary>,
+    /// Commands of external solids, `[NAME=]COMMAND`, of every run.
+    pub solids: Vec<String>,
     /// All combinations instead of one change at a time.
     pub full: bool,
     /// Runs of each setting.
@@ -88,7 +90,7 @@ impl<'s> Session<'s> {
         std::fs::create_dir_all(&folder).map_err(StudyError::system(folder.display()))?;
         let claim = claim(&folder)?;
         let left_out = left_out.into_iter().map(|m| m.name).collect();
-        let program = Program::own()?;
+        let program = Program::own()?.with_solids(&options.solids);
         Ok(Self { options, program, stop, folder, scene, metrics, left_out, rows: Vec::new(), _claim: claim })
     }
 
@@ -117,7 +119,7 @@ impl<'s> Session<'s> {
         let jobs: Vec<(&Setting, Job)> = settings
             .iter()
             .flat_map(|s| (1..=self.options.repeat).map(move |r| (s, r)))
-            .map(|(s, repeat)| (s, Job::new(&self.folder, s, repeat)))
+            .map(|(s, repeat)| (s, Job::new(&self.folder, s, repeat, &self.options.solids)))
             .collect();
         let open = |(s, job): &&(&Setting, Job)| runs::reusable(&job.dir, s, &self.program).is_none();
         let to_run: Vec<Job> = jobs.iter().filter(open).map(|(_, job)| job.clone()).collect();

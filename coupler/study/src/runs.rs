@@ -30,6 +30,9 @@ pub struct Program {
     pub version: String,
     /// Hash of its file: versions under development have the same number.
     pub build: String,
+    /// The programs that compute solids, each with a hash of the files that its command names.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub solids: Vec<(String, String)>,
 }
 
 impl Program {
@@ -39,8 +42,23 @@ impl Program {
     /// The program's file cannot be read.
     pub fn own() -> Result<Self, StudyError> {
         let bytes = own_path().and_then(std::fs::read).map_err(StudyError::system("the own program"))?;
-        Ok(Self { version: env!("CARGO_PKG_VERSION").into(), build: format!("{:016x}", xxh3_64(&bytes)) })
+        let build = format!("{:016x}", xxh3_64(&bytes));
+        Ok(Self { version: env!("CARGO_PKG_VERSION").into(), build, solids: Vec::new() })
     }
+
+    /// With solids that these commands compute, `[NAME=]COMMAND`.
+    pub fn with_solids(mut self, commands: &[String]) -> Self {
+        let with_files =
+            |command: &String| (command.clone(), format!("{:016x}", xxh3_64(&files_of(command))));
+        self.solids = commands.iter().map(with_files).collect();
+        self
+    }
+}
+
+/// The content of all files that a command names, one after the other.
+fn files_of(command: &str) -> Vec<u8> {
+    let words = command.split(|c: char| c.is_whitespace() || "='\"".contains(c));
+    words.filter(|word| !word.is_empty()).filter_map(|word| std::fs::read(word).ok()).flatten().collect()
 }
 
 fn own_path() -> std::io::Result<PathBuf> {
@@ -67,8 +85,8 @@ pub struct Job {
 }
 
 impl Job {
-    /// The run of a setting, repeated for the time of that number.
-    pub fn new(folder: &Path, setting: &Setting, repeat: u32) -> Self {
+    /// The run of a setting with solids by these commands, repeated for the time of that number.
+    pub fn new(folder: &Path, setting: &Setting, repeat: u32, solids: &[String]) -> Self {
         let scene = &setting.scene;
         let particles = halfstep_scene::geometry::estimate(scene).total() as f64;
         Self {
@@ -76,7 +94,7 @@ impl Job {
             dir: folder.join("runs").join(format!("{}-{repeat}", setting.slug())),
             scene: scene.path.clone(),
             overrides: setting.overrides.clone(),
-            more: Vec::new(),
+            more: solids.iter().flat_map(|command| ["--solid".into(), command.clone()]).collect(),
             end_time: scene.end_time,
             // Steps go with end over spacing.
             cost: particles * scene.end_time / (scene.resolution * scene.numerics.cfl),
@@ -239,7 +257,7 @@ mod tests {
             Setting::load(&path, &[], &set).unwrap()
         };
         let own = load(&[]);
-        let program = Program { version: "1".into(), build: "a".into() };
+        let program = Program { version: "1".into(), build: "a".into(), solids: Vec::new() };
         let mut report = RunReport {
             status: Some(RunStatus::Finished),
             scene: serde_json::to_value(&own.scene).unwrap(),
@@ -249,6 +267,16 @@ mod tests {
         assert!(!matches(&Program { build: "b".into(), ..program.clone() }, &report, &own, &program));
         assert!(!matches(&Program { version: "2".into(), ..program.clone() }, &report, &own, &program));
         assert!(!matches(&program, &report, &load(&["fluid.density=900"]), &program));
+        // A program that computes a solid is another one when its file changes.
+        let script = dir.path().join("plate.py");
+        let with_script = |text: &str| {
+            std::fs::write(&script, text).unwrap();
+            program.clone().with_solids(&[format!("plate=python3 '{}'", script.display())])
+        };
+        let before = with_script("E = 1");
+        assert!(matches(&before, &report, &own, &before));
+        assert!(!matches(&program, &report, &own, &before));
+        assert!(!matches(&before, &report, &own, &with_script("E = 2")));
         // A metric changes what is made of a run, not the run.
         let metric = "[[metric]]\nname = \"reach\"\nprobe = \"front.x\"\nkind = \"peak\"\n";
         std::fs::write(&path, format!("{text}{metric}")).unwrap();
