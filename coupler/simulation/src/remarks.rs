@@ -6,6 +6,7 @@ mod bodies;
 mod clamp_faces;
 mod contacts;
 mod frame;
+mod loads;
 mod magnitudes;
 mod outcome;
 mod settings;
@@ -38,6 +39,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     bodies::parted(scene, &bodies, &mut all);
     bodies::voids(scene, &mut all);
     bodies::cracks(scene, &mut all);
+    loads::tractions(scene, layout, &mut all);
     bodies::touching(scene, layout, &bodies, &mut all);
     bodies::standing(scene, layout, &bodies, &mut all);
     contacts::overlaps(scene, &mut all);

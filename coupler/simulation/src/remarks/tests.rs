@@ -376,6 +376,25 @@ fn a_wall_that_slides_along_the_fluid_does_not_push_it() {
     assert!(pushed.iter().any(|r| r.contains("can come to 4.00 m/s")), "{pushed:?}");
 }
 
+/// The plate's right face, 20 rows of 5 mm of which 18 are free: one column is a surface, two are twice its force.
+#[test]
+fn a_traction_on_several_rows() {
+    let loaded = |from: f64| {
+        let load = format!(
+            "load = {{ within = {{ min = [{from}, 0.0], max = [0.22, 0.1] }}, traction = [-1000.0, 0.0] }}\n"
+        );
+        plain(&[TANK, WATER, &format!("{PLATE}{load}")])
+    };
+    assert_eq!(loaded(0.215), [""; 0]);
+    assert_eq!(
+        loaded(0.21),
+        [
+            "the traction on `plate` acts on one face of each of 36 particles in 2 rows: 1.800e2 N/m in all, 2 times that \
+             on a surface (a box around one row loads a surface)"
+        ]
+    );
+}
+
 #[test]
 fn settings_that_cannot_act() {
     let probe = |keys: &str| format!("[[probe]]\nname = \"p\"\n{keys}\n");
