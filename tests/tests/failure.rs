@@ -13,7 +13,13 @@ const PROMISE: f64 = 2.0;
 
 /// A run that would take long, with a handful of frames on disk.
 fn under_way() -> Running {
+    under_way_with_rows_each(0.0005)
+}
+
+/// The same with a row of probes at this interval, s.
+fn under_way_with_rows_each(probe_interval: f64) -> Running {
     let running = scene("elastic-gate")
+        .set("output.probe_interval", probe_interval)
         .set("resolution", 0.0025)
         .set("output.frame_interval", 0.001)
         .set("end_time", 6.0)
@@ -259,11 +265,18 @@ fn a_run_with_a_silent_role_can_be_interrupted() {
     }
 }
 
-/// The coupler waits for the solid, and the solid can tell nobody that the fluid has gone.
+/// The coupler waits for the solid, for its state or for its probes, and the solid can tell nobody that the fluid has
+/// gone. With a row each step about every second wait is one for probes.
 #[test]
 fn the_end_of_one_role_ends_the_wait_for_another() {
+    for probe_interval in [0.0005, 1e-5, 1e-5, 1e-5, 1e-5] {
+        the_fluid_ends_while_the_solid_is_awaited(probe_interval);
+    }
+}
+
+fn the_fluid_ends_while_the_solid_is_awaited(probe_interval: f64) {
     let _machine = whole_machine();
-    let running = under_way();
+    let running = under_way_with_rows_each(probe_interval);
     let launcher = running.pid();
     let [fluid, solid] = ["fluid", "solid"].map(|role| role_of(launcher, role).expect("a child"));
     kill(solid, libc::SIGSTOP);

@@ -189,7 +189,7 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
     pub fn note(&mut self, course: &mut Course) -> Result<(), RunError> {
         let Some(tick) = self.tick else { return Ok(()) };
         let _turn = timeline::turn(Name::COUPLER);
-        self.measure(&tick)?;
+        self.measure(&course.progress, &tick)?;
         let _phase = timeline::phase_of(Kind::Output, "recorder");
         let of = self.phases.iter().zip(&self.states).zip(&self.probes);
         let measured: Vec<Measured<'_>> =
@@ -347,7 +347,7 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
     }
 
     /// Fetches the probe values of the state at n where a row is due, and writes the frames of external solids.
-    fn measure(&mut self, tick: &Tick) -> Result<(), RunError> {
+    fn measure(&mut self, progress: &Progress, tick: &Tick) -> Result<(), RunError> {
         for (place, state) in self.states.iter().enumerate() {
             let values = &mut self.probes[place];
             values.clear();
@@ -366,7 +366,9 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
             if tick.row {
                 let (from, times) = (self.port.name(place), P::times);
                 let take = |port: &mut P| port.receive_probes(place, tick.step, values);
+                progress.await_message(place);
                 timeline::receive(&mut self.port, "wait for probes", from, times, take)?;
+                progress.note_message();
             }
         }
         Ok(())
