@@ -22,7 +22,7 @@ use halfstep_sph::tensor::determinant;
 use halfstep_wire::half_step::Stage;
 use nalgebra::SMatrix;
 
-/// sigma: Sun et al. 2017 with a fastest flow of c0 / 10 have 0.4; with 0.6 a vortex keeps 2 % more of its energy.
+/// sigma: the formula of Sun et al. 2017 gives 0.2 for a fastest flow of c0 / 10; with 0.6 a vortex keeps more energy.
 pub(crate) const STRENGTH: f64 = 0.6;
 /// R, against pairing.
 const PAIRING: f64 = 0.2;
