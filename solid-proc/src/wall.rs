@@ -1,37 +1,36 @@
-//! Rigid walls toward the solid (Kayaki section 4.1, after Adami): velocity as prescribed, pressure extrapolated from
-//! the solid around, density rho_w = rho_s0 (1 + p_w / K), no deviatoric stress. A wall that could pull would glue the
-//! solid to it, so only pressures above zero act, and only walls that the scene lets the solid touch are here.
+//! Rigid walls toward the solid. Below the spacing dx (the mean of the two), at which two surfaces meet, particles
+//! repel each other as those of different bodies do, and what approaches is damped as soon as surfaces overlap:
+//!   F = [k (dx - r) - c w(r) min(v_sw . x_sw / r, 0)] x_sw / r,   k = (K + 4 G / 3) / 2 dx^(D-2),
+//!   c = 2 zeta sqrt(k m_s), w = 1 below 0.75 dx, 0 from dx on, a straight line between.
 //!
-//! The pressure at a surface is nearly zero, so that alone a wall would carry a body by its damping only, and a body at
-//! rest would creep into it. Below the spacing dx (the mean of the two), at which two surfaces meet, particles repel
-//! each other as those of different bodies do: F = k (dx - r) x / r with k = (K + 4 G / 3) / 2 dx^(D-2).
+//! Kayaki's section 4.1 extrapolates the solid's pressure to its walls, after Adami. Here a wall has none: such a push
+//! follows from no energy, begins 2h off the wall and pushes a body up that lies on it.
 
 use crate::columns::{Vectors, vectors};
 use halfstep_scene::geometry::WallPoint;
 use halfstep_scene::{Motion, Placement, Scene};
-use halfstep_sph::artificial_viscosity::damping;
 use halfstep_sph::columns::{bounds, fit};
-use halfstep_sph::extrapolation::{Extrapolation, ExtrapolationSum};
-use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Arch, Isa, LANES, Lane, Lanes, Unfused};
+use halfstep_sph::fade::Fade;
+use halfstep_sph::lane::{Arch, Isa, LANES, Lane, Lanes};
 use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_sph::pair::{self, PairLaw, distance, dot, pair_sum};
+
+/// zeta. A disc of rubber, 20 particles across, loses 0.3 % of its energy by it.
+const DAMPING_RATIO: f64 = 0.2;
+/// Distance up to which the whole damping acts, over the spacing; from the spacing on there is none.
+const TOUCH: f64 = 0.75;
 
 /// Wall particles that the solid may touch.
 pub(crate) struct Walls<const D: usize> {
     id: Vec<u32>,
     position: Vectors<D>,
     velocity: Vectors<D>,
-    pressure: Vec<f64>,
-    density: Vec<f64>,
     rows: Rows<D>,
+    /// Of the rows, m.
     height: f64,
     moving: Option<Moving<D>>,
-    /// Walls' solid neighbours.
-    sources: ClusterList,
     /// The solid's wall neighbours.
     neighbours: ClusterList,
-    sums: Vec<ExtrapolationSum>,
     forces: Vec<WallForce<D>>,
 }
 
@@ -99,14 +98,10 @@ impl<const D: usize> Walls<D> {
             id: (0..n as u32).collect(),
             position: vectors(n),
             velocity: vectors(n),
-            pressure: Vec::new(),
-            density: Vec::new(),
             rows: Rows::default(),
             height,
             moving: Moving::new(&points, scene),
-            sources: ClusterList::new(isa),
             neighbours: ClusterList::new(isa),
-            sums: Vec::new(),
             forces: Vec::new(),
         };
         for (i, p) in points.iter().enumerate() {
@@ -126,8 +121,6 @@ impl<const D: usize> Walls<D> {
             fit(&mut self.velocity[d], self.rows.slots(), 0.0);
         }
         self.rows.permute_ids(&mut self.id);
-        fit(&mut self.pressure, self.rows.slots(), 0.0);
-        fit(&mut self.density, self.rows.slots(), 0.0);
     }
 
     /// Brings the walls that move to where they are at a time, s.
@@ -166,8 +159,8 @@ impl<const D: usize> Walls<D> {
         }
     }
 
-    /// Lists who is near whom, to `reach`. The solid is sorted by `rows`.
-    pub(crate) fn relist(&mut self, solid: &Vectors<D>, rows: &Rows<D>, reach: f64) {
+    /// Lists who is near whom, to `reach`, m. The solid is sorted.
+    pub(crate) fn relist(&mut self, solid: &Vectors<D>, reach: f64) {
         if let Some(moving) = &mut self.moving {
             moving.listed_at = moving.time;
             moving.listed = (0..moving.motions.len()).map(|shape| moving.of(shape)).collect();
@@ -180,82 +173,51 @@ impl<const D: usize> Walls<D> {
             self.set_time(self.moving.as_ref().map_or(0.0, |moving| moving.time));
         }
         self.neighbours.build(solid, &self.position, &self.rows, reach);
-        self.sources.build(&self.position, solid, rows, reach);
-        fit(&mut self.sums, self.sources.fours(), ExtrapolationSum::default());
         fit(&mut self.forces, self.neighbours.fours(), WallForce::default());
     }
 
-    /// Pairs that the passes between walls and solid evaluate.
+    /// Pairs that the pass between walls and solid evaluates.
     pub(crate) fn pairs(&self) -> usize {
-        self.sources.pairs() + self.neighbours.pairs()
+        self.neighbours.pairs()
     }
 
     /// Evaluates the push on every solid particle.
-    pub(crate) fn act<K: Kernel<D>>(
-        &mut self,
-        isa: Isa,
-        kernel: K,
-        gravity: [f64; D],
-        solid: Touching<'_, D>,
-    ) {
-        let law = Extrapolation {
-            kernel,
-            gravity,
-            targets: &self.position,
-            sources: solid.position,
-            density: solid.density,
-            pressure: solid.pressure,
-        };
-        pair::pass(isa, &law, &self.sources, &mut self.sums);
-        self.show(solid.reference_density, solid.bulk_modulus);
+    pub(crate) fn act(&mut self, isa: Isa, solid: Touching<'_, D>) {
         let mut forces = std::mem::take(&mut self.forces);
-        pair::pass(isa, &self.push(kernel, solid), &self.neighbours, &mut forces);
+        pair::pass(isa, &self.push(solid), &self.neighbours, &mut forces);
         self.forces = forces;
     }
 
-    fn push<'a, K>(&'a self, kernel: K, solid: Touching<'a, D>) -> Push<'a, K, D> {
+    fn push<'a>(&'a self, solid: Touching<'a, D>) -> Push<'a, D> {
         Push {
-            kernel,
             solid,
             position: &self.position,
             velocity: &self.velocity,
-            pressure: &self.pressure,
-            density: &self.density,
+            touch: Fade::new(TOUCH * solid.spacing, solid.spacing),
+            dashpot: solid.dashpot(),
         }
     }
 
     /// What walls add to the square of a particle's frequency, 1/s², and its damping, 1/s.
-    pub(crate) fn stiffness<K: Kernel<D>>(
-        &self,
-        kernel: K,
-        solid: Touching<'_, D>,
-        slot: usize,
-    ) -> (f64, f64) {
+    pub(crate) fn stiffness(&self, solid: Touching<'_, D>, slot: usize) -> (f64, f64) {
         if self.acceleration(slot) == [0.0; D] {
             return (0.0, 0.0);
         }
-        let h = kernel.smoothing_length();
-        let (mut spring, mut damping) = (0.0, 0.0);
-        for &j in self.neighbours.of(slot / LANES) {
-            let j = j as usize;
-            let r2: f64 = (0..D).map(|d| (solid.position[d][slot] - self.position[d][j]).powi(2)).sum();
-            if r2 < solid.spacing * solid.spacing {
-                spring += solid.repulsion;
-            }
-            let slope = kernel.gradient_over_r::<Unfused, Lane>(distance(Lane::splat(r2), h)).0[0];
-            let viscosity = 2.0 * solid.linear * h / (solid.density[slot] + self.density[j]);
-            damping -= solid.wall_mass * slope * viscosity * r2 / (r2 + 0.01 * h * h);
-        }
-        (spring, damping)
+        let touches = |&&j: &&u32| {
+            let apart = |d: usize| solid.position[d][slot] - self.position[d][j as usize];
+            (0..D).map(|d| apart(d).powi(2)).sum::<f64>() < solid.spacing * solid.spacing
+        };
+        let count = self.neighbours.of(slot / LANES).iter().filter(touches).count() as f64;
+        (count * solid.repulsion, count * solid.dashpot())
     }
 
     /// Power of walls that move on all solid particles, in the state that was evaluated last, over a particle's mass,
     /// W/kg. `id` are the numbers of the solid's slots.
-    pub(crate) fn power<K: Kernel<D>>(&self, isa: Isa, kernel: K, solid: Touching<'_, D>, id: &[u32]) -> f64 {
+    pub(crate) fn power(&self, isa: Isa, solid: Touching<'_, D>, id: &[u32]) -> f64 {
         if self.moving.is_none() {
             return 0.0;
         }
-        let law = PushPower(self.push(kernel, solid));
+        let law = PushPower(self.push(solid));
         let mut sums = vec![Power::default(); self.neighbours.fours()];
         pair::pass(isa, &law, &self.neighbours, &mut sums);
         let real = (0..id.len()).filter(|&slot| id[slot] != PADDING);
@@ -266,17 +228,6 @@ impl<const D: usize> Walls<D> {
     pub(crate) fn acceleration(&self, slot: usize) -> [f64; D] {
         self.forces[slot / LANES].0.map(|a| a.0[slot % LANES])
     }
-
-    /// Pressure and density shown to the solid.
-    fn show(&mut self, density: f64, bulk_modulus: f64) {
-        for (c, sum) in self.sums.iter().enumerate() {
-            for k in 0..LANES {
-                let p = sum.pressure(k).unwrap_or(0.0).max(0.0);
-                self.pressure[c * LANES + k] = p;
-                self.density[c * LANES + k] = density * (1.0 + p / bulk_modulus);
-            }
-        }
-    }
 }
 
 /// The solid as walls see it: columns sorted by the rows that the lists were made with.
@@ -286,24 +237,17 @@ pub(crate) struct Touching<'a, const D: usize> {
     pub(crate) position: &'a Vectors<D>,
     /// m/s.
     pub(crate) velocity: &'a Vectors<D>,
-    /// kg/m³.
-    pub(crate) density: &'a [f64],
-    /// Pa.
-    pub(crate) pressure: &'a [f64],
-    /// What a wall particle's cell holds of the solid's material, kg (2D: kg/m).
-    pub(crate) wall_mass: f64,
-    /// kg/m³.
-    pub(crate) reference_density: f64,
-    /// Pa.
-    pub(crate) bulk_modulus: f64,
-    /// A c_s of the artificial viscosity.
-    pub(crate) linear: f64,
-    /// B of the artificial viscosity.
-    pub(crate) quadratic: f64,
     /// Mean of the spacings of solid and walls, m.
     pub(crate) spacing: f64,
     /// k over a particle's mass, 1/s²: see [`repulsion`].
     pub(crate) repulsion: f64,
+}
+
+impl<const D: usize> Touching<'_, D> {
+    /// c over a particle's mass, 1/s.
+    fn dashpot(&self) -> f64 {
+        2.0 * DAMPING_RATIO * self.repulsion.sqrt()
+    }
 }
 
 /// k over a particle's mass, 1/s², for a material's pressure waves and spacing.
@@ -317,42 +261,28 @@ struct WallForce<const D: usize, L = Lane>([L; D]);
 pair_sum!(WallForce { D } { 0 });
 
 /// The walls push the solid.
-struct Push<'a, K, const D: usize> {
-    kernel: K,
+struct Push<'a, const D: usize> {
     solid: Touching<'a, D>,
     /// Of the wall particles, m.
     position: &'a Vectors<D>,
     /// Of the wall particles, m/s.
     velocity: &'a Vectors<D>,
-    /// Of the wall particles, Pa.
-    pressure: &'a [f64],
-    /// Of the wall particles, kg/m³.
-    density: &'a [f64],
+    touch: Fade,
+    /// c over a particle's mass, 1/s.
+    dashpot: f64,
 }
 
-#[derive(Clone, Copy)]
-struct Target<L, const D: usize> {
-    velocity: [L; D],
-    density: L,
-    pressure_term: L,
-}
-
-impl<K: Kernel<D>, const D: usize> PairLaw<D> for Push<'_, K, D> {
-    type Target<L: Lanes> = Target<L, D>;
+impl<const D: usize> PairLaw<D> for Push<'_, D> {
+    /// Velocity, m/s.
+    type Target<L: Lanes> = [L; D];
     type Sum<L: Lanes> = WallForce<D, L>;
     #[inline(always)]
     fn target_positions(&self) -> &[Vec<f64>; D] {
         self.solid.position
     }
     #[inline(always)]
-    fn target<L: Lanes>(&self, slot: usize) -> Target<L, D> {
-        let density = L::load(self.solid.density, slot);
-        let pressure = L::load(self.solid.pressure, slot).max(L::ZERO);
-        Target {
-            velocity: std::array::from_fn(|d| L::load(&self.solid.velocity[d], slot)),
-            density,
-            pressure_term: pressure / (density * density),
-        }
+    fn target<L: Lanes>(&self, slot: usize) -> [L; D] {
+        std::array::from_fn(|d| L::load(&self.solid.velocity[d], slot))
     }
     #[inline(always)]
     fn source_position(&self, j: usize) -> [f64; D] {
@@ -361,30 +291,18 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for Push<'_, K, D> {
     #[inline(always)]
     fn add<A: Arch, L: Lanes>(
         &self,
-        i: &Target<L, D>,
+        velocity: &[L; D],
         j: usize,
         dx: [L; D],
         r2: L,
         sum: &mut WallForce<D, L>,
     ) {
-        let h = self.kernel.smoothing_length();
-        let f = self.kernel.gradient_over_r::<A, L>(distance(r2, h));
-        let dv = std::array::from_fn(|d| i.velocity[d] - L::splat(self.velocity[d][j]));
-        let approach = dot::<D, A, L>(dv, dx);
-        let rho = self.density[j];
-        let pi = damping::<A, L>(
-            h,
-            L::splat(self.solid.linear),
-            L::splat(self.solid.quadratic),
-            approach,
-            r2,
-            i.density + L::splat(rho),
-        );
-        let term = i.pressure_term + L::splat(self.pressure[j] / (rho * rho)) + pi;
+        let dv = std::array::from_fn(|d| velocity[d] - L::splat(self.velocity[d][j]));
         let r = distance(r2, self.solid.spacing);
         let overlap = (L::splat(self.solid.spacing) - r).max(L::ZERO);
-        let coefficient =
-            L::splat(-self.solid.wall_mass) * f * term + L::splat(self.solid.repulsion) * overlap / r;
+        let approach = dot::<D, A, L>(dv, dx).min(L::ZERO) / r;
+        let damping = L::splat(self.dashpot) * self.touch.at(r) * approach;
+        let coefficient = (L::splat(self.solid.repulsion) * overlap - damping) / r;
         for d in 0..D {
             sum.0[d] = A::mul_add(coefficient, dx[d], sum.0[d]);
         }
@@ -397,17 +315,17 @@ struct Power<L = Lane>(L);
 pair_sum!(Power {} { 0 });
 
 /// The power of [`Push`] that comes from the walls' motion.
-struct PushPower<'a, K, const D: usize>(Push<'a, K, D>);
+struct PushPower<'a, const D: usize>(Push<'a, D>);
 
-impl<K: Kernel<D>, const D: usize> PairLaw<D> for PushPower<'_, K, D> {
-    type Target<L: Lanes> = Target<L, D>;
+impl<const D: usize> PairLaw<D> for PushPower<'_, D> {
+    type Target<L: Lanes> = [L; D];
     type Sum<L: Lanes> = Power<L>;
     #[inline(always)]
     fn target_positions(&self) -> &[Vec<f64>; D] {
         self.0.target_positions()
     }
     #[inline(always)]
-    fn target<L: Lanes>(&self, slot: usize) -> Target<L, D> {
+    fn target<L: Lanes>(&self, slot: usize) -> [L; D] {
         self.0.target(slot)
     }
     #[inline(always)]
@@ -415,9 +333,9 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for PushPower<'_, K, D> {
         self.0.source_position(j)
     }
     #[inline(always)]
-    fn add<A: Arch, L: Lanes>(&self, i: &Target<L, D>, j: usize, dx: [L; D], r2: L, sum: &mut Power<L>) {
+    fn add<A: Arch, L: Lanes>(&self, velocity: &[L; D], j: usize, dx: [L; D], r2: L, sum: &mut Power<L>) {
         let mut push = WallForce::default();
-        self.0.add::<A, L>(i, j, dx, r2, &mut push);
+        self.0.add::<A, L>(velocity, j, dx, r2, &mut push);
         for d in 0..D {
             sum.0 = A::mul_add(push.0[d], L::splat(self.0.velocity[d][j]), sum.0);
         }

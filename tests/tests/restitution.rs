@@ -51,21 +51,23 @@ fn bounce(model: &str, dx: f64) -> (f64, f64) {
     (left, contact)
 }
 
-/// The wall stops a body by its damping, which acts over the interface's smoothing length: contact takes 30 % of the
-/// energy with 20 particles across and 12 % with 40, a part that falls with the spacing, and the rest is motion again.
-/// Both models meet the wall in the same way. Bands: a hundredth about what is measured.
+/// The wall's spring gives back what it took, and its damping takes 0.3 % of the energy with 20 particles across and
+/// 0.14 % with 40; the rest of the loss is the solid's own: vibrations, and its artificial viscosity. Bands: a hundredth
+/// about the speed that is measured, a thousandth about the part.
 #[test]
 fn a_rubber_disc_comes_back_with_most_of_its_speed() {
     let measured = [
-        ("total-lagrangian", 0.002, 0.798, -0.296),
-        ("total-lagrangian", 0.001, 0.915, -0.116),
-        ("hypoelastic", 0.002, 0.793, -0.283),
-        ("hypoelastic", 0.001, 0.912, -0.108),
+        ("total-lagrangian", 0.002, 0.960, -0.0031),
+        ("total-lagrangian", 0.001, 0.966, -0.0014),
+        ("finite-element", 0.002, 0.960, -0.0031),
+        ("finite-element", 0.001, 0.965, -0.0013),
+        ("hypoelastic", 0.002, 0.944, -0.0024),
+        ("hypoelastic", 0.001, 0.944, -0.0012),
     ];
     for (model, dx, left, taken) in measured {
         let (found, contact) = bounce(model, dx);
         assert!((found - left).abs() < 0.01, "{model} at {dx} m: e = {found}");
-        assert!((contact - taken).abs() < 0.01, "{model} at {dx} m: contact took {contact} of the energy");
+        assert!((contact - taken).abs() < 0.001, "{model} at {dx} m: contact took {contact} of the energy");
     }
 }
 

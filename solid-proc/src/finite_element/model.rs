@@ -22,11 +22,8 @@ use crate::verlet::Kinematics;
 use halfstep_role::timeline;
 use halfstep_scene::bounds::Excess;
 use halfstep_scene::geometry::{self, SolidPoint};
-use halfstep_scene::{
-    EffectName, EnergyPart, KernelName, ModelKeys, Motion, Plane, Scene, Solid, TimeIntegration,
-};
+use halfstep_scene::{EffectName, EnergyPart, ModelKeys, Motion, Plane, Scene, Solid, TimeIntegration};
 use halfstep_sph::lane::Isa;
-use halfstep_sph::with_kernel;
 use halfstep_wire::half_step::{HalfStep, Stage};
 use halfstep_wire::protocol::StateRecord;
 use halfstep_wire::wide;
@@ -43,7 +40,6 @@ pub struct FiniteElement<const D: usize> {
     pub(super) viscosity: f64,
     /// Deceleration by side friction, m/s².
     side_friction: Option<f64>,
-    pub(super) kernel: KernelName,
     pub(super) isa: Isa,
     pub(super) spacing: f64,
     pub(super) gravity: [f64; D],
@@ -119,7 +115,6 @@ impl<const D: usize> FiniteElement<D> {
             viscosity: material.density * kinematic,
             side_friction: takes_part(scene, solid, EffectName::SideFriction)
                 .then(|| material.side_friction / material.density),
-            kernel: scene.numerics.kernel,
             isa,
             spacing: dx,
             gravity: std::array::from_fn(|d| scene.gravity[d]),
@@ -282,17 +277,10 @@ impl<const D: usize> FiniteElement<D> {
     /// Contacts of the present state.
     pub(super) fn touch(&self, contact: &mut Contact<D>) {
         contact.update(|id| {
-            let (p, j) = (id as usize, self.volume_ratio[id as usize]);
-            Present {
-                position: self.position(p),
-                velocity: self.mesh.mean(p, &self.now.velocity),
-                density: self.material.density / j,
-                pressure: self.law.cauchy(&self.gradient[p], j).pressure,
-            }
+            let p = id as usize;
+            Present { position: self.position(p), velocity: self.mesh.mean(p, &self.now.velocity) }
         });
-        let material = &self.material;
-        with_kernel!(self.kernel, contact.smoothing_length(), D, |kernel| contact
-            .act(self.isa, kernel, material));
+        contact.act(self.isa, &self.material);
     }
 
     fn show_particles(&mut self) {
@@ -373,9 +361,6 @@ impl<const D: usize> SolidModel<D> for FiniteElement<D> {
 
     fn set_gravity(&mut self, gravity: [f64; D]) {
         self.gravity = gravity;
-        if let Some(contact) = &mut self.contact {
-            contact.gravity = gravity;
-        }
     }
 
     fn records(&self, particles: &[u32], out: &mut Vec<StateRecord>) {
@@ -385,10 +370,8 @@ impl<const D: usize> SolidModel<D> for FiniteElement<D> {
     /// omega² = 4 D M / (rho0 dx²) bounds that of every element, M the largest eigenvalue of the present acoustic
     /// tensor: D M is no less than the stiffness against any gradient, and a node has a 2^D-th of an element's mass.
     fn sub_step_limit(&self) -> f64 {
-        let (springs, walls) = self
-            .contact
-            .as_ref()
-            .map_or((0.0, 0.0), |contact| contact.stiffness(self.kernel, &self.material));
+        let (springs, walls) =
+            self.contact.as_ref().map_or((0.0, 0.0), |contact| contact.stiffness(&self.material));
         let part = self.courant.min(LARGEST_PART);
         if self.equations.is_some() {
             let touched = springs + walls > 0.0;

@@ -108,10 +108,7 @@ impl<const D: usize> Hypoelastic<D> {
             let clamped = self.points[self.id[slot] as usize].clamped;
             if clamped { [0.0; D] } else { walls.acceleration(slot) }
         });
-        let moving = with_kernel!(self.kernel, self.wall_smoothing_length, D, |kernel| {
-            walls.power(self.isa, kernel, self.touching(), &self.id)
-        });
-        (contact, self.mass * moving)
+        (contact, self.mass * walls.power(self.isa, self.touching(), &self.id))
     }
 
     /// Notes what side friction took of these velocities, m/s, before it acted.

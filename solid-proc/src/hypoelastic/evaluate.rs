@@ -87,9 +87,7 @@ impl<const D: usize> Hypoelastic<D> {
 
     fn touch_walls(&mut self) {
         if let Some(mut walls) = self.walls.take() {
-            with_kernel!(self.kernel, self.wall_smoothing_length, D, |kernel| {
-                walls.act(self.isa, kernel, self.gravity, self.touching());
-            });
+            walls.act(self.isa, self.touching());
             self.pair_evaluations += walls.pairs() as u64;
             self.walls = Some(walls);
         }
@@ -100,13 +98,6 @@ impl<const D: usize> Hypoelastic<D> {
         Touching {
             position: &self.now.position,
             velocity: &self.now.velocity,
-            density: &self.now.density,
-            pressure: &self.pressure,
-            wall_mass: self.wall_mass,
-            reference_density: self.material.density,
-            bulk_modulus: self.material.bulk_modulus(),
-            linear: self.material.artificial_viscosity.linear * self.material.sound_speed(),
-            quadratic: self.material.artificial_viscosity.quadratic,
             spacing: self.wall_spacing,
             repulsion: repulsion(self.material.pressure_wave_speed(), self.spacing),
         }

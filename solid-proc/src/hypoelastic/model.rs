@@ -35,12 +35,8 @@ pub struct Hypoelastic<const D: usize> {
     pub(super) isa: Isa,
     pub(super) smoothing_length: f64,
     skin: f64,
-    /// The walls' particles' smoothing length toward the solid, m.
-    pub(super) wall_smoothing_length: f64,
     /// Mean of the solid's spacing and the walls', m.
     pub(super) wall_spacing: f64,
-    /// What a wall particle's cell holds of the solid's material, kg (2D: kg/m).
-    pub(super) wall_mass: f64,
     /// dx of its own, m.
     pub(super) spacing: f64,
     pub(super) gravity: [f64; D],
@@ -88,14 +84,13 @@ impl<const D: usize> Hypoelastic<D> {
         let layout = geometry::layout::<D>(scene).with_solid(scene, solid);
         let dx = scene.solid_spacing(solid);
         let h = material.smoothing_ratio * dx;
-        // Walls have the scene's spacing, which is no finer.
-        let wall_smoothing_length = material.smoothing_ratio * scene.resolution.max(dx);
+        let wall_spacing = scene.interface_spacing(solid);
         let n = layout.solid.len();
         let ModelKeys::Hypoelastic(keys) = &material.model else { return None };
         let artificial_stress =
             takes_part(scene, solid, EffectName::ArtificialStress).then_some(keys.artificial_stress);
         let walls = takes_part(scene, solid, EffectName::WallContact)
-            .then(|| Walls::new(scene, &layout.wall, (2.0 + SKIN) * wall_smoothing_length, isa))
+            .then(|| Walls::new(scene, &layout.wall, wall_spacing + SKIN * h, isa))
             .flatten();
         let side_friction = takes_part(scene, solid, EffectName::SideFriction)
             .then(|| material.side_friction / material.density);
@@ -108,9 +103,7 @@ impl<const D: usize> Hypoelastic<D> {
             isa,
             smoothing_length: h,
             skin: SKIN * h,
-            wall_smoothing_length,
-            wall_spacing: scene.interface_spacing(solid),
-            wall_mass: material.density * scene.resolution.powi(D as i32),
+            wall_spacing,
             spacing: dx,
             gravity: std::array::from_fn(|d| scene.gravity[d]),
             domain: (std::array::from_fn(|d| domain.min[d]), std::array::from_fn(|d| domain.max[d])),
@@ -171,8 +164,7 @@ impl<const D: usize> Hypoelastic<D> {
         self.neighbours.build(&self.reference, &self.reference, &self.rows, reach);
         fit(&mut self.sums, self.neighbours.fours(), SolidSum::default());
         if let Some(walls) = &mut self.walls {
-            let reach = 2.0 * self.wall_smoothing_length + self.skin;
-            walls.relist(&self.reference, &self.rows, reach);
+            walls.relist(&self.reference, self.wall_spacing + self.skin);
         }
     }
 

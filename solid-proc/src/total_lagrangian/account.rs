@@ -51,7 +51,7 @@ impl<const D: usize> TotalLagrangian<D> {
                     }
                 }
             });
-            sinks.moving_walls = self.mass * contact.power_of_walls(self.isa, self.kernel, &self.material);
+            sinks.moving_walls = self.mass * contact.power_of_walls(self.isa, &self.material);
         }
         let inner = |slot: usize| std::array::from_fn(|d| self.sums[slot / LANES].0[d].0[slot % LANES]);
         sinks.driven = self.driven.iter().map(|(slot, _)| inner(*slot)).collect();

@@ -4,33 +4,31 @@
 //! bodies repel each other as soon as they are closer than the spacing dx, which is where two surfaces meet:
 //!   F_ij = k (dx - r) x_ij / r,   k = M/2 dx^(D-2),   M = K + 4 G / 3,
 //! pairwise, without friction and without loss. A body does not see itself. Walls push as they push any solid
-//! (see `crate::wall`), with the smoothing length of the interface.
+//! (see `crate::wall`).
 
 use crate::columns::{Vectors, vectors};
 use crate::effects::takes_part;
 use crate::surface::surface_set;
 use crate::wall::{Touching, Walls, repulsion};
 use halfstep_scene::geometry::{self, Layout, SolidPoint};
-use halfstep_scene::{EffectName, KernelName, Scene, Solid};
+use halfstep_scene::{EffectName, Scene, Solid};
 use halfstep_sph::columns::{copy, fit, moved_farther};
-use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::{Arch, Isa, LANES, Lane, Lanes};
 use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_sph::pair::{self, PairLaw, distance, pair_sum};
-use halfstep_sph::with_kernel;
 use halfstep_wire::order;
 use halfstep_wire::state::StateError;
 
 /// Distance, in smoothing lengths of the interface, that lists hold beyond reach.
 const SKIN: f64 = 0.3;
+/// Distance from the surface within which particles may touch a wall, in spacings: its two outer rows.
+const OUTER: f64 = 1.1;
 
 /// Particles that may touch something, sorted by where they are now.
 pub(crate) struct Contact<const D: usize> {
     pub(super) id: Vec<u32>,
     position: Vectors<D>,
     velocity: Vectors<D>,
-    density: Vec<f64>,
-    pressure: Vec<f64>,
     body: Vec<f64>,
     /// Positions at the last sort.
     pub(super) listed: Vectors<D>,
@@ -43,21 +41,17 @@ pub(crate) struct Contact<const D: usize> {
     spacing: f64,
     /// Mean of that and the walls', m.
     wall_spacing: f64,
-    smoothing_length: f64,
+    /// Distance that lists hold beyond reach, m.
+    skin: f64,
     domain: ([f64; D], [f64; D]),
-    pub(crate) gravity: [f64; D],
     stiffness: f64,
     mass: f64,
-    /// What a wall particle's cell holds of the solid's material, kg (2D: kg/m).
-    wall_mass: f64,
 }
 
 /// State of a particle, for [`Contact::act`].
 pub(crate) struct Present<const D: usize> {
     pub position: [f64; D],
     pub velocity: [f64; D],
-    pub density: f64,
-    pub pressure: f64,
 }
 
 impl<const D: usize> Contact<D> {
@@ -71,17 +65,18 @@ impl<const D: usize> Contact<D> {
         isa: Isa,
     ) -> Option<Self> {
         let dx = scene.solid_spacing(solid);
-        let h = scene.smoothing_ratio * scene.resolution;
+        let skin = SKIN * scene.smoothing_ratio * scene.resolution;
+        let wall_spacing = scene.interface_spacing(solid);
         let walls = takes_part(scene, solid, EffectName::WallContact)
-            .then(|| Walls::new(scene, &layout.wall, (2.0 + SKIN) * h, isa))
+            .then(|| Walls::new(scene, &layout.wall, wall_spacing + skin, isa))
             .flatten();
         let breaks = takes_part(scene, solid, EffectName::Fracture);
         let several = body.iter().any(|&b| b != body[0]);
         let id = match (&walls, several) {
             (None, false) if !breaks => return None,
-            // The pressure at a wall comes from what is behind the surface, too; cracks open surfaces everywhere.
-            (Some(_), _) => (0..layout.solid.len() as u32).collect(),
-            (None, _) if breaks => (0..layout.solid.len() as u32).collect(),
+            // Cracks open surfaces everywhere.
+            _ if breaks => (0..layout.solid.len() as u32).collect(),
+            (Some(_), _) => surface_set(&layout.solid, body, OUTER * dx, dx),
             (None, _) => surface_set(&layout.solid, body, 0.1 * dx, dx),
         };
         let column = |of: &dyn Fn(&SolidPoint<D>) -> f64| -> Vec<f64> {
@@ -93,8 +88,6 @@ impl<const D: usize> Contact<D> {
         let mut contact = Self {
             position: std::array::from_fn(|d| column(&|p| p.position[d])),
             velocity: vectors(n),
-            density: vec![material.density; n],
-            pressure: vec![0.0; n],
             body: id.iter().map(|&p| f64::from(body[p as usize])).collect(),
             listed: vectors(0),
             rows: Rows::default(),
@@ -103,12 +96,10 @@ impl<const D: usize> Contact<D> {
             several,
             walls,
             spacing: dx,
-            wall_spacing: scene.interface_spacing(solid),
-            smoothing_length: h,
+            wall_spacing,
+            skin,
             domain: (std::array::from_fn(|d| domain.min[d]), std::array::from_fn(|d| domain.max[d])),
-            gravity: std::array::from_fn(|d| scene.gravity[d]),
             stiffness: 0.5 * modulus * dx.powi(D as i32 - 2),
-            wall_mass: material.density * scene.resolution.powi(D as i32),
             mass: material.density * dx.powi(D as i32),
             id,
         };
@@ -116,34 +107,24 @@ impl<const D: usize> Contact<D> {
         Some(contact)
     }
 
-    /// Smoothing length of the walls' kernel, m.
-    pub(crate) fn smoothing_length(&self) -> f64 {
-        self.smoothing_length
-    }
-
-    /// Distance that lists hold beyond reach, m.
-    fn skin(&self) -> f64 {
-        SKIN * self.smoothing_length
-    }
-
     /// Reach of the lists of walls, m.
     fn wall_reach(&self) -> f64 {
-        2.0 * self.smoothing_length + self.skin()
+        self.wall_spacing + self.skin
     }
 
     fn row_height(&self) -> f64 {
-        if self.walls.is_some() { self.wall_reach() } else { self.spacing + self.skin() }
+        if self.walls.is_some() { self.wall_reach() } else { self.spacing + self.skin }
     }
 
     /// Lists who is near whom, from the positions at the sort.
     fn list(&mut self) {
-        let (reach, wall_reach) = (self.spacing + self.skin(), self.wall_reach());
+        let (reach, wall_reach) = (self.spacing + self.skin, self.wall_reach());
         if self.several {
             self.list.build(&self.listed, &self.listed, &self.rows, reach);
             fit(&mut self.sums, self.list.fours(), Repulsion::default());
         }
         if let Some(walls) = &mut self.walls {
-            walls.relist(&self.listed, &self.rows, wall_reach);
+            walls.relist(&self.listed, wall_reach);
         }
     }
 
@@ -154,9 +135,7 @@ impl<const D: usize> Contact<D> {
             self.rows.permute(&mut self.position[d]);
             self.rows.permute(&mut self.velocity[d]);
         }
-        for column in [&mut self.density, &mut self.pressure, &mut self.body] {
-            self.rows.permute(column);
-        }
+        self.rows.permute(&mut self.body);
         self.rows.permute_ids(&mut self.id);
         for d in 0..D {
             copy(&mut self.listed[d], &self.position[d]);
@@ -189,8 +168,6 @@ impl<const D: usize> Contact<D> {
         }
         self.position = self.listed.clone();
         self.velocity = vectors(n);
-        self.density = vec![0.0; n];
-        self.pressure = vec![0.0; n];
         Ok(())
     }
 
@@ -245,43 +222,32 @@ impl<const D: usize> Contact<D> {
                     self.position[d][slot] = p.position[d];
                     self.velocity[d][slot] = p.velocity[d];
                 }
-                self.density[slot] = p.density;
-                self.pressure[slot] = p.pressure;
             }
         }
-        let margin = 0.5 * SKIN * self.smoothing_length;
+        let margin = 0.5 * self.skin;
         let walls_moved = self.walls.as_ref().is_some_and(|walls| walls.displacement() > margin);
         if walls_moved || moved_farther(&self.position, &self.listed, &self.id, margin) {
             self.sort();
         }
     }
 
-    /// Evaluates all contacts of the state last taken over; `kernel` is the walls'.
-    pub(crate) fn act<K: Kernel<D>>(&mut self, isa: Isa, kernel: K, solid: &Solid) {
+    /// Evaluates all contacts of the state last taken over.
+    pub(crate) fn act(&mut self, isa: Isa, solid: &Solid) {
         if self.several {
             let law = Repel { position: &self.position, body: &self.body, spacing: self.spacing };
             pair::pass(isa, &law, &self.list, &mut self.sums);
         }
         if let Some(mut walls) = self.walls.take() {
-            walls.act(isa, kernel, self.gravity, self.touching(solid));
+            walls.act(isa, self.touching(solid));
             self.walls = Some(walls);
         }
     }
 
     /// The particles as walls see them.
     fn touching(&self, solid: &Solid) -> Touching<'_, D> {
-        let viscosity = solid.artificial_viscosity;
         Touching {
             position: &self.position,
             velocity: &self.velocity,
-            density: &self.density,
-            pressure: &self.pressure,
-            wall_mass: self.wall_mass,
-            reference_density: solid.density,
-            bulk_modulus: solid.bulk_modulus(),
-            // The wall begins to push a body by stopping it: a solid without viscosity would not be stopped.
-            linear: viscosity.linear.max(1.0) * solid.sound_speed(),
-            quadratic: viscosity.quadratic,
             spacing: self.wall_spacing,
             repulsion: repulsion(solid.pressure_wave_speed(), self.spacing),
         }
@@ -311,26 +277,20 @@ impl<const D: usize> Contact<D> {
     }
 
     /// Power of walls that move on the solid, over a particle's mass, W/kg.
-    pub(crate) fn power_of_walls(&self, isa: Isa, kernel: KernelName, solid: &Solid) -> f64 {
-        let Some(walls) = &self.walls else { return 0.0 };
-        with_kernel!(kernel, self.smoothing_length, D, |kernel| {
-            walls.power(isa, kernel, self.touching(solid), &self.id)
-        })
+    pub(crate) fn power_of_walls(&self, isa: Isa, solid: &Solid) -> f64 {
+        self.walls.as_ref().map_or(0.0, |walls| walls.power(isa, self.touching(solid), &self.id))
     }
 
     /// What contacts add to the square of a particle's highest frequency, 1/s², and its damping by walls, 1/s: the
     /// largest of any particle in the state that was evaluated last.
-    pub(crate) fn stiffness(&self, kernel: KernelName, solid: &Solid) -> (f64, f64) {
+    pub(crate) fn stiffness(&self, solid: &Solid) -> (f64, f64) {
         let (mut springs, mut damping) = (0.0_f64, 0.0_f64);
         for slot in (0..self.id.len()).filter(|&s| self.id[s] != PADDING) {
             // The other particle gives way, too.
             let bodies = 2.0 * self.stiffness / self.mass * self.touched(slot) as f64;
-            let (spring, viscous) = match &self.walls {
-                Some(walls) => with_kernel!(kernel, self.smoothing_length, D, |kernel| {
-                    walls.stiffness(kernel, self.touching(solid), slot)
-                }),
-                None => (0.0, 0.0),
-            };
+            let walls = self.walls.as_ref();
+            let (spring, viscous) =
+                walls.map_or((0.0, 0.0), |walls| walls.stiffness(self.touching(solid), slot));
             springs = springs.max(bodies + spring);
             damping = damping.max(viscous);
         }

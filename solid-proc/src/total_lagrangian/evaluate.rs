@@ -12,7 +12,7 @@ use halfstep_scene::bounds::Excess;
 use halfstep_scene::{ArtificialViscosity, EffectName, EnergyPart};
 use halfstep_sph::lane::LANES;
 use halfstep_sph::neighbours::PADDING;
-use halfstep_sph::{pair, tensor, with_kernel};
+use halfstep_sph::{pair, tensor};
 
 pub(super) fn at<const D: usize>(entries: &[[halfstep_sph::lane::Lane; D]; D], k: usize) -> Matrix<D> {
     Matrix::from_fn(|a, b| entries[a][b].0[k])
@@ -176,17 +176,12 @@ impl<const D: usize> TotalLagrangian<D> {
     fn touch(&mut self, mut contact: Contact<D>) -> Contact<D> {
         contact.update(|id| {
             let slot = self.slot_of[id as usize] as usize;
-            let j = self.volume_ratio[slot];
             Present {
                 position: self.position_at(slot),
                 velocity: std::array::from_fn(|d| self.now.velocity[d][slot]),
-                density: self.material.density / j,
-                pressure: self.cauchy(slot).pressure,
             }
         });
-        let material = &self.material;
-        with_kernel!(self.kernel, contact.smoothing_length(), D, |kernel| contact
-            .act(self.isa, kernel, material));
+        contact.act(self.isa, &self.material);
         contact.accelerations(|id, a| {
             let slot = self.slot_of[id as usize] as usize;
             if self.fixed.clamped[slot] == 0.0 {

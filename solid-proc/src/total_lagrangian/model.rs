@@ -24,7 +24,7 @@ use halfstep_role::role::Costs;
 use halfstep_role::timeline;
 use halfstep_scene::bounds::Excess;
 use halfstep_scene::geometry::{self, SolidPoint};
-use halfstep_scene::{EffectName, EnergyPart, KernelName, ModelKeys, Motion, Plane, Scene, Solid};
+use halfstep_scene::{EffectName, EnergyPart, ModelKeys, Motion, Plane, Scene, Solid};
 use halfstep_sph::lane::{Isa, LANES};
 use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_sph::pair::FixedPairs;
@@ -45,7 +45,6 @@ pub struct TotalLagrangian<const D: usize> {
     pub(super) driven_load: Vec<[f64; D]>,
     /// Deceleration by side friction, m/s².
     side_friction: Option<f64>,
-    pub(super) kernel: KernelName,
     pub(super) isa: Isa,
     pub(super) smoothing_length: f64,
     /// dx of its own, m.
@@ -171,7 +170,6 @@ impl<const D: usize> TotalLagrangian<D> {
             driven_load: Vec::new(),
             side_friction: takes_part(scene, solid, EffectName::SideFriction)
                 .then(|| material.side_friction / material.density),
-            kernel: scene.numerics.kernel,
             isa,
             smoothing_length: h,
             spacing: dx,
@@ -357,9 +355,6 @@ impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {
 
     fn set_gravity(&mut self, gravity: [f64; D]) {
         self.gravity = gravity;
-        if let Some(contact) = &mut self.contact {
-            contact.gravity = gravity;
-        }
     }
 
     fn records(&self, particles: &[u32], out: &mut Vec<StateRecord>) {

@@ -73,10 +73,8 @@ impl<const D: usize> TotalLagrangian<D> {
             self.law.stiffness(f, self.volume_ratio[slot], squares) + arms
         };
         let stiffest = self.slot_of.iter().map(stiffness).fold(0.0, f64::max);
-        let (springs, walls) = self
-            .contact
-            .as_ref()
-            .map_or((0.0, 0.0), |contact| contact.stiffness(self.kernel, &self.material));
+        let (springs, walls) =
+            self.contact.as_ref().map_or((0.0, 0.0), |contact| contact.stiffness(&self.material));
         let faces = if self.fracture.is_some() { self.face_springs() } else { 0.0 };
         let springs = springs + faces;
         let waves = (stiffest + self.hourglass_modulus) / density;

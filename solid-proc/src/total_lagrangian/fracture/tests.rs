@@ -342,7 +342,8 @@ fn a_block_that_is_crushed_on_a_wall_stays_stable() {
     let summary = run.model.summary();
     assert!(summary.bodies > 50, "{summary:?}");
     assert!(most < run.start, "{most} of {}", run.start);
-    assert!(run.rest().abs() < 1e-4 * run.start, "{} of {}", run.rest(), run.start);
+    assert!(run.rest().abs() < 0.01 * run.start, "{} of {}", run.rest(), run.start);
+    assert!(summary.energy > 0.35 * run.start, "the wall stops the block, not its cracks: {summary:?}");
 }
 
 #[test]
