@@ -97,7 +97,7 @@ fn the_ledger_of_shifted_water_closes() {
     let run = wave.set("resolution", 0.05).until(0.5).in_process().run();
     // Shifting moves water down: half of the kinetic energy.
     closes("standing wave, shifted, 50 mm", &run, 1.5e-3);
-    within("shifting", joules(&run, "fluid", EnergyPart::ParticleShifting), -0.654, 0.02);
+    within("shifting", joules(&run, "fluid", EnergyPart::ParticleShifting), -0.639, 0.02);
 }
 
 /// Phase-blind, with the hypoelastic solid, whose stress has a part of its own.
@@ -113,8 +113,8 @@ fn the_papers_gate_closes() {
 // ---- The fluid alone ------------------------------------------------------------------------------------------------
 
 /// Taylor and Green's vortex loses 4 nu k² of its kinetic energy in a second to viscosity. The ledger says what the
-/// decay alone does not: viscosity takes 5 % less than that, since the stress of a wall's neighbour is that of a
-/// gradient which the wall's particles show, and the walls' pressure takes a fifth of it.
+/// decay alone does not: viscosity takes 6 % less than that, since the stress of a wall's neighbour is that of a
+/// gradient which the wall's particles show, and the walls' pressure takes 7 % of it.
 #[test]
 fn taylor_and_greens_vortex_loses_its_energy_to_viscosity() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -124,8 +124,8 @@ fn taylor_and_greens_vortex_loses_its_energy_to_viscosity() {
     let (k, kinetic) = (std::f64::consts::PI, run.curve("ledger-fluid.kinetic").mean());
     let by = |part| -joules(&run, "fluid", part);
     let theory = 4.0 * nu * k * k * kinetic * run.report.time;
-    within("viscosity", by(EnergyPart::Viscosity), 0.950 * theory, 0.005);
-    within("pressure of the walls", by(EnergyPart::WallPressure), 0.195 * theory, 0.02);
+    within("viscosity", by(EnergyPart::Viscosity), 0.943 * theory, 0.005);
+    within("pressure of the walls", by(EnergyPart::WallPressure), 0.0715 * theory, 0.02);
 }
 
 /// A piston that goes 0.1 m in 2 s turns 0.5 m x 0.2 m of water into 0.4 m x 0.25 m: its work is what the water weighs
@@ -181,11 +181,21 @@ fn clamps_and_floors_that_move_do_the_work() {
                 continue;
             }
             let folder = tempfile::tempdir().expect("a folder");
-            let run = with_ledgers(folder.path(), &format!("{solid}{more}"), &["solid"]);
-            let run = run.set("solid.model", model).in_process().until(0.2).run();
-            closes(&format!("{what}, {model}"), &run, 5e-4);
-            let (work, held) = (joules(&run, "solid", part), joules(&run, "solid", EnergyPart::Potential));
-            assert!(work > held, "{what}, {model}: work {work} J, lifted {held} J");
+            let rest = |cfl: f64, limit: f64| {
+                let run = with_ledgers(folder.path(), &format!("{solid}{more}"), &["solid"]);
+                let run = run.set("solid.model", model).set("numerics.solid_cfl", cfl);
+                let run = run.in_process().until(0.2).run();
+                closes(&format!("{what}, {model}, {cfl}"), &run, limit);
+                let (work, held) =
+                    (joules(&run, "solid", part), joules(&run, "solid", EnergyPart::Potential));
+                assert!(work > held, "{what}, {model}: work {work} J, lifted {held} J");
+                run.report.energy.expect("ledgers").relative_residual
+            };
+            // A contact's spring is stiffer than the solid: 3e-3 with the default step, and of second order.
+            let rests = [rest(0.3, 1e-3), rest(0.15, 2.5e-4)];
+            let order = (rests[0] / rests[1]).log2();
+            println!("order {order:.2}");
+            assert!(order > 1.8, "{what}, {model}: {rests:?}");
         }
     }
 }

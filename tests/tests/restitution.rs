@@ -52,8 +52,8 @@ fn bounce(model: &str, dx: f64) -> (f64, f64) {
 }
 
 /// The wall's spring gives back what it took, and its damping takes 0.3 % of the energy with 20 particles across and
-/// 0.14 % with 40; the rest of the loss is the solid's own: vibrations, and its artificial viscosity. Bands: a hundredth
-/// about the speed that is measured, a thousandth about the part.
+/// 0.14 % with 40; the rest of the loss is the solid's own: vibrations, and its artificial viscosity. Bands: a
+/// hundredth about the speed that is measured, a thousandth about the part.
 #[test]
 fn a_rubber_disc_comes_back_with_most_of_its_speed() {
     let measured = [

@@ -51,6 +51,7 @@ macro_rules! families {
 
 families! {
     contact "contact",
+    corners "corners",
     droplets "droplets",
     fracture "fracture",
     impact "impact",

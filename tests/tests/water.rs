@@ -226,15 +226,15 @@ fn run_up(dx: f64, guard: &str) -> (f64, f64) {
 #[test]
 fn the_guard_does_not_brake_a_run_up() {
     let (guarded, free) = (run_up(0.02, "auto"), run_up(0.02, "off"));
-    within("jet over that without guard at 20 mm", guarded.0 / free.0, 0.77..=0.87);
-    within("pressure over that without guard at 20 mm", guarded.1 / free.1, 0.74..=0.78);
+    within("jet over that without guard at 20 mm", guarded.0 / free.0, 0.82..=0.91);
+    within("pressure over that without guard at 20 mm", guarded.1 / free.1, 0.82..=0.845);
 }
 
 /// Without guard the water at the wall comes apart on its way up: the jet that holds together is lower.
 #[test]
 #[ignore = "long: make validate"]
 fn the_guard_does_not_brake_a_run_up_finer() {
-    for (dx, jets, pressures) in [(0.01, 1.10..=1.20, 0.88..=0.915), (0.005, 1.14..=1.23, 0.90..=0.935)] {
+    for (dx, jets, pressures) in [(0.01, 1.04..=1.13, 0.95..=1.05), (0.005, 1.04..=1.23, 0.95..=1.05)] {
         let (guarded, free) = (run_up(dx, "auto"), run_up(dx, "off"));
         within(&format!("jet over that without guard at {dx} m"), guarded.0 / free.0, jets);
         within(&format!("pressure over that without guard at {dx} m"), guarded.1 / free.1, pressures);
@@ -293,8 +293,13 @@ fn paddle(dx: f64) -> f64 {
 }
 
 #[test]
-#[ignore = "long: make validate"]
 fn a_paddle_makes_its_waves() {
+    within("paddle at 20 mm, height over theory", paddle(0.02), 0.89..=0.91);
+}
+
+#[test]
+#[ignore = "long: make validate"]
+fn a_paddle_makes_its_waves_finer() {
     within("paddle at 10 mm, height over theory", paddle(0.01), 0.955..=0.985);
 }
 
@@ -308,14 +313,14 @@ fn vortex(dx: f64) -> f64 {
 
 #[test]
 fn a_vortex_decays_by_its_viscosity() {
-    within("vortex at 40 mm, energy over the exact one", vortex(0.04), 0.955..=0.97);
+    within("vortex at 40 mm, energy over the exact one", vortex(0.04), 0.985..=1.0);
 }
 
 #[test]
 #[ignore = "long: make validate"]
 fn a_vortex_decays_by_its_viscosity_finer() {
-    within("vortex at 20 mm, energy over the exact one", vortex(0.02), 0.97..=0.985);
-    within("vortex at 10 mm, energy over the exact one", vortex(0.01), 0.981..=0.991);
+    within("vortex at 20 mm, energy over the exact one", vortex(0.02), 0.997..=1.011);
+    within("vortex at 10 mm, energy over the exact one", vortex(0.01), 1.0..=1.013);
 }
 
 // ---- Corners ------------------------------------------------------------------------------------------------------

@@ -24,15 +24,22 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Looks at a run after each of its steps, and may end it.
 type Observer<const D: usize> = Box<dyn FnMut(&Running<D>) -> ControlFlow<()>>;
 
-/// A simulation of a scene that has not begun, in `D` dimensions. `X` is an effect on the fluid that halfstep does not
-/// have itself.
+/// An effect on the fluid that halfstep does not have itself.
+struct OwnEffect {
+    name: &'static str,
+    decide: fn(&Scene) -> Decision,
+    /// The fluid with it. Here and not in [`Simulation`], so that only who brings an effect compiles the fluid anew.
+    fluid: Box<dyn FnOnce(&Scene, Isa) -> Option<Box<dyn Role>>>,
+}
+
+/// A simulation of a scene that has not begun, in `D` dimensions.
 ///
 /// Everything runs in the calling thread, with a pool of worker threads of its own for the sums over neighbours; the
 /// bits are those of the same scene run as processes. Nothing else of the process is touched: no signal handler, no
 /// log, and no file without [`Self::folder`].
-pub struct Simulation<X: FluidEffect<D> = (), const D: usize = 2> {
+pub struct Simulation<const D: usize = 2> {
     scene: Scene,
-    effect: Option<X>,
+    effect: Option<OwnEffect>,
     solids: Vec<(String, Box<dyn SolidModel<D>>)>,
     observers: Vec<Observer<D>>,
     folder: Option<PathBuf>,
@@ -90,13 +97,17 @@ impl Simulation {
     }
 }
 
-impl<X: FluidEffect<D>, const D: usize> Simulation<X, D> {
+impl<const D: usize> Simulation<D> {
     /// With one more effect on the fluid, whose passes are compiled with it. It takes part where its
     /// [`FluidEffect::decide`] says so; its name is a key of `[effects]` in a scene read by
     /// [`halfstep_scene::load_with`].
-    pub fn effect<E: FluidEffect<D>>(self, effect: E) -> Simulation<E, D> {
-        let Self { scene, solids, observers, folder, replace, threads, stop, .. } = self;
-        Simulation { scene, effect: Some(effect), solids, observers, folder, replace, threads, stop }
+    #[must_use]
+    pub fn effect<E: FluidEffect<D>>(mut self, effect: E) -> Self {
+        let fluid = |scene: &Scene, isa: Isa| -> Option<Box<dyn Role>> {
+            Some(Box::new(Fluid::<D, E>::with_effect(scene, isa, effect)?))
+        };
+        self.effect = Some(OwnEffect { name: E::NAME, decide: E::decide, fluid: Box::new(fluid) });
+        self
     }
 
     /// With a model of one's own for a solid of the scene. Its material in the scene decides what the fluid takes it
@@ -198,10 +209,11 @@ impl<X: FluidEffect<D>, const D: usize> Simulation<X, D> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let pool = pool.map_err(|e| Error::Setup(format!("cannot start {threads} threads: {e}")))?;
         let names: Vec<String> = solids.iter().map(|(name, _)| name.clone()).collect();
-        if let Some(stranger) = scene.own_effects.keys().find(|name| effect.is_none() || *name != X::NAME) {
+        let known = effect.as_ref().map(|own| own.name);
+        if let Some(stranger) = scene.own_effects.keys().find(|name| known != Some(name.as_str())) {
             return Err(Error::Setup(format!("effects.{stranger}: the simulation has no such effect")));
         }
-        let own_effect = (effect.is_some() && scene.fluid.is_some()).then(|| X::decide(&scene));
+        let own_effect = effect.as_ref().filter(|_| scene.fluid.is_some()).map(|own| (own.decide)(&scene));
         let own = owners(&scene, effect, solids, isa)?;
         let path = folder.as_ref().map(RunDirectory::path);
         let at = from.as_ref().map(|from| from.folder.as_path());
@@ -226,20 +238,18 @@ impl<X: FluidEffect<D>, const D: usize> Simulation<X, D> {
 }
 
 /// Owners of the particles, in the scene's order.
-fn owners<X: FluidEffect<D>, const D: usize>(
+fn owners<const D: usize>(
     scene: &Scene,
-    effect: Option<X>,
+    mut effect: Option<OwnEffect>,
     mut solids: Vec<(String, Box<dyn SolidModel<D>>)>,
     isa: Isa,
 ) -> Result<Vec<Box<dyn Role>>, Error> {
     let participants = scene.participants();
-    let mut effect = effect;
     let missing = |name: &str| Error::Setup(format!("the participant {name} cannot be made"));
     let owner = |place: usize| -> Result<Box<dyn Role>, Error> {
         let participant = &participants[place];
-        if let (Phase::Fluid, Some(effect)) = (participant.phase, effect.take()) {
-            let fluid = Fluid::with_effect(scene, isa, effect).ok_or_else(|| missing(&participant.name))?;
-            return Ok(Box::new(fluid));
+        if let (Phase::Fluid, Some(own)) = (participant.phase, effect.take()) {
+            return (own.fluid)(scene, isa).ok_or_else(|| missing(&participant.name));
         }
         match solids.iter().position(|(name, _)| *name == participant.name) {
             Some(k) => {

@@ -2,6 +2,7 @@
 
 use super::document::Node;
 use super::error::Report;
+use super::support::free_shapes;
 use super::*;
 use crate::dispatch;
 use crate::geometry::{self, Counts};
@@ -149,8 +150,9 @@ pub(super) fn check_solids(scene: &Scene, root: &Node, report: &Report) {
     }
 }
 
-/// The speed that a scene's fluid may reach, m/s: the larger of that of a fall from its highest point to the lowest
-/// floor, sqrt(2 g H), and the fastest shape's initial speed, or field's.
+/// The speed that a scene's fluid may reach, m/s: the largest of that of a fall from its highest point to the lowest
+/// floor or solid, sqrt(2 g H), of a free body's fall to the fluid, and of the fastest shape's initial speed, or
+/// field's.
 pub fn expected_speed(scene: &Scene) -> f64 {
     speed_with(scene, |_| true)
 }
@@ -170,7 +172,7 @@ pub fn expected_speed_of_fluid(scene: &Scene) -> f64 {
 fn speed_with(scene: &Scene, pushes: impl Fn(&Shape) -> bool) -> f64 {
     let speed = |v: &[f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
     let g = speed(&scene.gravity);
-    let height = if g > 0.0 { fall(scene, scene.gravity.map(|c| c / g)) } else { 0.0 };
+    let falls = if g > 0.0 { falls(scene, scene.gravity.map(|c| c / g)) } else { [0.0; 2] };
     let field = |s: &Shape| s.velocity_field.map_or(0.0, |field| field.fastest(g));
     let moving = |s: &Shape| match s.motion.as_ref().filter(|_| pushes(s)) {
         Some(motion) => motion.fastest(&geometry::bounding_box(s, scene)),
@@ -179,7 +181,7 @@ fn speed_with(scene: &Scene, pushes: impl Fn(&Shape) -> bool) -> f64 {
     let fastest = scene.shapes.iter().map(|s| speed(&s.velocity) + field(s) + moving(s)).fold(0.0, f64::max);
     let frame = scene.frame.as_ref().zip(geometry::around(geometry::fluid_boxes(scene)));
     let frame = frame.map_or(0.0, |(frame, water)| frame.motion.fastest(&water));
-    (2.0 * g * height).sqrt().max(fastest + frame)
+    falls.into_iter().map(|height| (2.0 * g * height).sqrt()).fold(fastest + frame, f64::max)
 }
 
 /// The sound speed that keeps a fluid weakly compressible: ten times the expected speed.
@@ -195,8 +197,8 @@ pub(super) fn sound_speed(scene: &Scene, root: &Node, report: &Report) -> Option
 }
 
 /// How far the fluid may fall along a unit vector, m: from where it is highest to where it is lowest, or to the lowest
-/// wall's upper side.
-fn fall(scene: &Scene, down: [f64; 3]) -> f64 {
+/// wall's or solid's upper side. And how far a free body falls until it meets the fluid.
+fn falls(scene: &Scene, down: [f64; 3]) -> [f64; 2] {
     let project = |v: &[f64; 3]| (0..3).map(|a| v[a] * down[a]).sum::<f64>();
     let ends = |shape: &Shape| match &shape.geometry {
         Geometry::Disc { center, radius: r } | Geometry::Ring { center, outer: r, .. } => {
@@ -217,11 +219,14 @@ fn fall(scene: &Scene, down: [f64; 3]) -> f64 {
             (Phase::Fluid, _) => (highest, lowest) = (highest.min(upper), lowest.max(lower)),
             // What lies in a tank may reach its floor.
             (Phase::Wall, Geometry::Tank { .. }) => lowest = lowest.max(lower),
-            (Phase::Wall, _) => lowest = lowest.max(upper),
-            (Phase::Solid, _) => {}
+            (Phase::Wall | Phase::Solid, _) => lowest = lowest.max(upper),
         }
     }
-    (lowest - highest).max(0.0)
+    if highest.is_infinite() {
+        return [0.0; 2];
+    }
+    let free = free_shapes(&scene.shapes, &scene.solids).map(|shape| highest - ends(shape)[1]);
+    [(lowest - highest).max(0.0), free.fold(0.0, f64::max)]
 }
 
 #[cfg(test)]

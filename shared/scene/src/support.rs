@@ -38,14 +38,18 @@ impl Company {
     }
 }
 
-/// Whether there is a body of which no shape is clamped, and no joint and no prescribed motion holds it.
-fn any_free(shapes: &[Shape], solids: &[Solid]) -> bool {
+/// Shapes of bodies of which no shape is clamped, and no joint and no prescribed motion holds it.
+pub(super) fn free_shapes<'a>(shapes: &'a [Shape], solids: &'a [Solid]) -> impl Iterator<Item = &'a Shape> {
     let of_solids = || shapes.iter().filter(|shape| shape.solid.is_some());
     let holds = |shape: &Shape| !shape.clamp.is_empty() || super::bodies::is_held(solids, shape);
-    let held = |body: &Shape| {
+    let held = move |body: &Shape| {
         of_solids().any(|shape| shape.solid == body.solid && shape.body() == body.body() && holds(shape))
     };
-    of_solids().any(|shape| !held(shape))
+    of_solids().filter(move |shape| !held(shape))
+}
+
+fn any_free(shapes: &[Shape], solids: &[Solid]) -> bool {
+    free_shapes(shapes, solids).next().is_some()
 }
 
 /// Whether guards of a scene with this h / dx are strong and near.

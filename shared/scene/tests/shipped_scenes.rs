@@ -1,7 +1,7 @@
 //! The scenes that come with the program load, and their particles are where their comments say.
 
 use halfstep_scene::geometry::{estimate, layout};
-use halfstep_scene::{EffectName, Scene, Switch, Treatment, load};
+use halfstep_scene::{EffectName, Scene, Switch, Treatment, load, parse};
 use std::path::{Path, PathBuf};
 
 fn scenes() -> PathBuf {
@@ -139,4 +139,29 @@ fn the_sound_speed_is_ten_times_that_of_a_fall_through_the_water() {
     assert!((fluid.sound_speed - 10.0 * (2.0_f64 * 9.81 * 0.14).sqrt()).abs() < 1e-12);
     let fast = shipped("elastic-gate", &["shape.water.velocity=[3,4]"]).fluid.unwrap();
     assert_eq!(fast.sound_speed, 50.0);
+}
+
+/// Water that falls on a solid, and a body that falls into water: each is as fast as its fall makes it.
+#[test]
+fn the_sound_speed_knows_what_falls() {
+    let sound_speed = |shapes: &str| {
+        let text = format!(
+            "resolution = 0.01\nend_time = 1.0\ngravity = [0.0, -9.81]\n[fluid]\ndensity = 1000.0\n[solid]\n\
+             density = 800.0\nyoungs_modulus = 1e7\npoissons_ratio = 0.3\n{shapes}"
+        );
+        parse(&text, Path::new("falls.toml"), &[])
+            .unwrap_or_else(|e| panic!("{e:?}"))
+            .fluid
+            .unwrap()
+            .sound_speed
+    };
+    let beam = "[[shape]]\nname = \"beam\"\nphase = \"solid\"\nbox = { min = [0.0, 0.0], max = [0.5, 0.04] }\n\
+        clamp = { min = [0.0, 0.0], max = [0.05, 0.04] }\n[[shape]]\nname = \"water\"\nphase = \"fluid\"\n\
+        box = { min = [0.2, 0.6], max = [0.4, 0.75] }\n";
+    assert!((sound_speed(beam) - 10.0 * (2.0_f64 * 9.81 * 0.71).sqrt()).abs() < 1e-12);
+    let block = "[[shape]]\nname = \"block\"\nphase = \"solid\"\nbox = { min = [0.4, 1.1], max = [0.6, 1.2] }\n\
+        [[shape]]\nname = \"water\"\nphase = \"fluid\"\nbox = { min = [0.0, 0.0], max = [1.0, 0.1] }\n";
+    assert!((sound_speed(block) - 10.0 * (2.0_f64 * 9.81).sqrt()).abs() < 1e-12);
+    let held = block.replace("[0.6, 1.2] }", "[0.6, 1.2] }\nclamp = { min = [0.4, 1.1], max = [0.6, 1.2] }");
+    assert!((sound_speed(&held) - 10.0 * (2.0_f64 * 9.81 * 0.1).sqrt()).abs() < 1e-12);
 }

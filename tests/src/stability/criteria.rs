@@ -26,7 +26,7 @@ pub struct Criterion {
     /// What is taken of a probe's curve.
     #[serde(default)]
     pub of: Of,
-    /// Where the part of the curve that counts begins, s.
+    /// Where the part of the curve that counts begins, or of the frames for `outside`, s.
     pub from: Option<f64>,
     /// The probe's value, or its range, is given over this.
     pub over: Option<f64>,
@@ -41,6 +41,9 @@ pub struct Criterion {
     pub above: bool,
     /// For `beyond`: only particles whose other coordinate lies here count, m.
     pub between: Option<[f64; 2]>,
+    /// For `outside`: corners of the region, in order, m.
+    #[serde(default)]
+    pub region: Vec<[f64; 2]>,
     /// For `difference`: overrides of the run to compare with.
     #[serde(default)]
     pub to_run: Vec<String>,
@@ -67,6 +70,8 @@ pub enum What {
     Beyond,
     /// The same for a solid particle.
     SolidBeyond,
+    /// How far a fluid particle got out of a region in any frame, dx; below 0: how far the nearest stayed inside.
+    Outside,
     /// Pieces of the solid in the last frame, for neighbours at most 1.5 dx apart.
     Pieces,
     /// Largest solid sub-steps.
@@ -121,6 +126,7 @@ impl Criterion {
             What::Probe => return self.probe.clone(),
             What::Beyond => "behind the wall, dx",
             What::SolidBeyond => "solid behind the wall, dx",
+            What::Outside => "out of the walls, dx",
             What::Pieces => "pieces",
             What::SubSteps => "sub-steps",
             What::Difference => "difference",
@@ -154,6 +160,15 @@ impl Criterion {
             What::Probe => self.of_curve(run),
             What::Beyond => self.farthest(&run.frames_or_empty("fluid"), FLUID) / dx,
             What::SolidBeyond => self.farthest(&run.frames_or_empty("solid"), SOLID) / dx,
+            What::Outside => {
+                let from = self.from.unwrap_or(0.0);
+                let frames = run.frames_or_empty("fluid").into_iter().filter(|frame| frame.time >= from);
+                let distances = frames.map(|frame| {
+                    let own = places(&frame, FLUID).map(|place| outside(&self.region, place));
+                    own.fold(f64::NEG_INFINITY, f64::max)
+                });
+                distances.fold(f64::NEG_INFINITY, f64::max) / dx
+            }
             What::Pieces => {
                 let Some(frame) = run.frames_or_empty("solid").pop() else { return f64::NAN };
                 let points: Vec<_> = places(&frame, SOLID).collect();
@@ -206,6 +221,21 @@ impl Criterion {
     }
 }
 
+/// Distance of a place from a polygon, m; below 0 inside of it.
+fn outside(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> f64 {
+    let (mut nearest, mut inside) = (f64::INFINITY, false);
+    for (k, &[x1, y1]) in corners.iter().enumerate() {
+        let [x2, y2] = corners[(k + 1) % corners.len()];
+        let (dx, dy) = (x2 - x1, y2 - y1);
+        let along = (((x - x1) * dx + (y - y1) * dy) / (dx * dx + dy * dy)).clamp(0.0, 1.0);
+        nearest = nearest.min((x1 + along * dx - x).hypot(y1 + along * dy - y));
+        if (y1 > y) != (y2 > y) && x < x1 + (y - y1) / dy * dx {
+            inside = !inside;
+        }
+    }
+    if inside { -nearest } else { nearest }
+}
+
 fn places(frame: &Frame, phase: u8) -> impl Iterator<Item = [f64; 2]> + '_ {
     let own = (0..frame.len()).filter(move |&k| frame.phase[k] == phase);
     own.map(|k| [f64::from(frame.points[k][0]), f64::from(frame.points[k][1])])
@@ -255,4 +285,18 @@ fn numbers(run: &Outcome) -> bool {
         let finite = |column: &[[f32; 3]]| column.as_flattened().iter().all(|v| v.is_finite());
         finite(&frame.points) && finite(&frame.velocity) && frame.pressure.iter().all(|p| p.is_finite())
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::outside;
+
+    #[test]
+    fn distances_from_a_triangle() {
+        let triangle = [[0.0, 0.0], [4.0, 0.0], [0.0, 3.0]];
+        // Its inscribed circle has the radius 1 and the middle (1, 1).
+        assert!((outside(&triangle, [1.0, 1.0]) + 1.0).abs() < 1e-15);
+        assert!((outside(&triangle, [2.0, -0.5]) - 0.5).abs() < 1e-15);
+        assert!((outside(&triangle, [7.0, 4.0]) - 5.0).abs() < 1e-15);
+    }
 }

@@ -341,7 +341,8 @@ fn a_block_that_is_crushed_on_a_wall_stays_stable() {
     let most = run_on(&mut run, 10_000);
     let summary = run.model.summary();
     assert!(summary.bodies > 50, "{summary:?}");
-    assert!(most < run.start, "{most} of {}", run.start);
+    // What flies has the start's energy but for rounding.
+    assert!(most < (1.0 + 1e-9) * run.start, "{most} of {}", run.start);
     assert!(run.rest().abs() < 0.01 * run.start, "{} of {}", run.rest(), run.start);
     assert!(summary.energy > 0.35 * run.start, "the wall stops the block, not its cracks: {summary:?}");
 }
