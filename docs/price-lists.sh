@@ -21,7 +21,7 @@ price() {
 }
 
 all="oscillating-plate hydrostatic-tank taylor-green standing-wave dam-break hydrostatic-plate elastic-gate"
-all="$all breaking-wall"
+all="$all breaking-wall wave-paddle solitary-wave-wall floating-box gate-lift rolling-tank"
 wanted=${*:-$all}
 price oscillating-plate --until 0.4 --set resolution=0.004 \
     --vary resolution=0.002,0.0028571428571428571,0.0066666666666666667 \
@@ -41,14 +41,22 @@ price dam-break --set resolution=0.0028575 --vary resolution=0.00408214285714285
     --vary numerics.kernel=cubic-spline --vary fluid.density_diffusion=simple,none
 price hydrostatic-plate --until 0.25 --set resolution=0.01666666666666666667 --vary resolution=0.0125,0.025 \
     --vary solid.model=hypoelastic --vary fluid.density_diffusion=simple
-price elastic-gate --until 0.25 --set resolution=0.00166666666666666667 --vary resolution=0.00125,0.0025 \
-    --vary solid.model=hypoelastic --vary interface.treatment=phase-blind --vary solid.sub_steps=20 \
+price elastic-gate --until 0.25 --set resolution=0.00166666666666666667 --set shape.plate.across=5 \
+    --vary resolution=0.00125,0.0025 --vary shape.plate.across=3,4 \
+    --vary solid.model=hypoelastic,finite-element --vary solid.sub_steps=20 \
     --vary numerics.cfl=0.2,0.6 \
     --vary numerics.kernel=cubic-spline --vary fluid.density_diffusion=simple \
     --vary fluid.artificial_viscosity.linear=0.02 --vary smoothing_ratio=2
 # The wall goes as deep into the floor as it is thick: whole rows of every spacing, above the floor, too.
 price breaking-wall --until 0.2 --set resolution=0.004 --set 'shape.wall.box.min=[0.286,-0.012]' \
     --vary resolution=0.0024,0.003 --vary numerics.cfl=0.2
+price wave-paddle --set resolution=0.02 --vary resolution=0.0133333333333333333,0.04 --vary smoothing_ratio=1.5 \
+    --vary effects.particle-shifting=off
+price solitary-wave-wall --set resolution=0.02 --vary resolution=0.04 --vary smoothing_ratio=1.5
+price floating-box --set resolution=0.0125 --vary resolution=0.01,0.02 --vary smoothing_ratio=2 \
+    --vary interface.cross_viscosity_reach=1.25 --vary effects.particle-shifting=off
+price gate-lift --until 0.45 --set resolution=0.002 --vary shape.plate.across=3,5 --vary solid.model=finite-element
+price rolling-tank --until 1.0 --set resolution=0.002 --vary solid.model=finite-element
 
 {
     cat <<'HEAD'

