@@ -3,10 +3,12 @@
 mod edges;
 mod faces;
 mod rows;
+mod standing;
 mod validity;
 
 pub(crate) use edges::{Edge, Edges};
 pub(super) use rows::rows;
+pub(super) use standing::set_into_walls;
 pub(crate) use validity::Fault;
 
 use super::points::{Point, Spacing};

@@ -171,3 +171,61 @@ fn lines_that_bound_no_region_are_refused_with_the_place() {
     let nested = [&rectangle([0.1, 0.1], [0.9, 0.9])[..], &rectangle([0.4, 0.4], [0.6, 0.6])[..]];
     assert_eq!(fault(&square, &nested), "lies in hole 0");
 }
+
+#[test]
+fn a_wedge_on_a_floor_is_set_into_it() {
+    // 45 degrees: the upper side goes on to (-0.04, -0.04), and into a wall on the right to (0.34, 0.34).
+    let wedge = polygon(&[[0.0, 0.0], [0.3, 0.0], [0.3, 0.3]], &[]);
+    let floor = |p: &[f64; 2]| (-0.5..=0.5).contains(&p[0]) && (-0.04 - 1e-9..=1e-9).contains(&p[1]);
+    let walls = |p: &[f64; 2]| p[0] >= 0.3 - 1e-9 && p[0] <= 0.4 && p[1] >= -0.1 || floor(p);
+    for (held, expected) in [
+        (&floor as &dyn Fn(&[f64; 2]) -> bool, [[-0.04, -0.04], [0.3, -0.04], [0.3, 0.3]]),
+        (&walls, [[-0.04, -0.04], [0.34, -0.04], [0.34, 0.34]]),
+    ] {
+        let set = standing::set_into(&wedge, 0.04, DX, held).expect("it stands on walls");
+        for (found, expected) in set.outline.iter().zip(expected) {
+            assert!((0..2).all(|a| (found[a] - expected[a]).abs() < 1e-12), "{found:?} {expected:?}");
+        }
+    }
+    assert_eq!(
+        standing::set_into(&wedge, 0.04, DX, |p| p[1] < -0.02 && floor(p)),
+        None,
+        "it does not stand on the floor"
+    );
+    let short = |p: &[f64; 2]| p[0] > 0.02 && floor(p);
+    assert_eq!(standing::set_into(&wedge, 0.04, DX, short), None, "a part of its side lies on no wall");
+}
+
+/// Below the surface of a beach whose tip lies on the floor, whichever stands first in the scene, walls are filled as
+/// far as the kernel reaches: the farthest place from any particle of a lattice is 0.71 dx away, where two lattices
+/// meet somewhat more.
+#[test]
+fn the_tip_of_a_beach_has_no_gaps() {
+    let beach =
+        "[[shape]]\nname = \"beach\"\nphase = \"wall\"\npolygon = [[0.5, 0.0], [1.6, 0.0], [1.6, 0.2947]]\n";
+    let tank = "[[shape]]\nname = \"tank\"\nphase = \"wall\"\n\
+        tank = { min = [0.0, 0.0], max = [1.6, 0.8], open = [\"top\"] }\n";
+    for shapes in [[beach, tank], [tank, beach]] {
+        let text = format!(
+            "resolution = 0.01\nend_time = 1.0\n[fluid]\ndensity = 1000.0\n[[shape]]\nname = \"water\"\n\
+             phase = \"fluid\"\nbox = {{ min = [0.0, 0.0], max = [0.3, 0.3] }}\n{}",
+            shapes.concat()
+        );
+        let scene = crate::parse(&text, std::path::Path::new("beach.toml"), &[]).expect("a scene");
+        let walls = crate::geometry::layout::<2>(&scene).wall;
+        let (sin, cos) = (0.2947_f64 / 1.1).atan().sin_cos();
+        let mut farthest = 0.0_f64;
+        for i in 0..200 {
+            for depth in (1..=7).map(|k| 0.5 * f64::from(k) * DX) {
+                let along = 0.005 * f64::from(i);
+                let at = [0.5 + along * cos + depth * sin, along * sin - depth * cos];
+                let apart = |p: &crate::geometry::WallPoint<2>| {
+                    libm::hypot(p.position[0] - at[0], p.position[1] - at[1])
+                };
+                farthest = farthest.max(walls.iter().map(apart).fold(f64::INFINITY, f64::min));
+            }
+        }
+        println!("{:.3} dx from the nearest particle", farthest / DX);
+        assert!(farthest < 0.9 * DX, "{} dx", farthest / DX);
+    }
+}
