@@ -35,6 +35,7 @@ pub use pieces::{pieces, touching};
 pub use plate::Plate;
 pub(crate) use plate::least_thickness;
 use points::Spacing;
+use polygon::Standing;
 pub(crate) use polygon::{Fault, twice_area};
 pub use polygon::{MAX_CORNERS, Polygon};
 use region::{Region, voids_before};
@@ -165,16 +166,20 @@ fn of_phases<const D: usize>(scene: &Scene, phases: &[Phase]) -> Layout<D> {
     let mut layout = Layout { fluid: Vec::new(), solid: Vec::new(), wall: Vec::new() };
     let widest = scene.shapes.iter().map(|shape| scene.spacing(shape)).fold(scene.resolution, f64::max);
     let mut occupied = Occupied::new(widest);
-    let standing: Vec<Option<Geometry>> = match phases.contains(&Phase::Wall) {
-        true => (0..scene.shapes.len()).map(|index| polygon::set_into_walls(scene, index)).collect(),
+    let standing: Vec<Option<Standing>> = match phases.contains(&Phase::Wall) {
+        true => (0..scene.shapes.len()).map(|index| polygon::standing(scene, index)).collect(),
         false => Vec::new(),
     };
     for &phase in phases {
         for (index, shape) in scene.shapes.iter().enumerate().filter(|(_, s)| s.phase == phase) {
             let spacing = Spacing::of(scene, shape);
-            let geometry = standing.get(index).and_then(Option::as_ref).unwrap_or(&shape.geometry);
-            let region = Region::new(geometry, spacing, &voids_before(scene, index));
-            let mut kept = points::with_copies::<D>(geometry, spacing);
+            let standing = standing.get(index).and_then(Option::as_ref);
+            let [held, rows] = standing.map_or([&shape.geometry; 2], |own| [&own.region, &own.rows]);
+            let region = Region::new(held, spacing, &voids_before(scene, index));
+            let mut kept = points::with_copies::<D>(rows, spacing);
+            if standing.is_some() {
+                kept.retain(|(p, _)| region.contains(&p.position, TOLERANCE * spacing.dx));
+            }
             kept.retain(|(p, _)| !region.is_void(&p.position) && occupied.is_free(&p.position, spacing.dx));
             occupied.add(region, spacing, phase, kept.iter().map(|(p, _)| p.position));
             let velocity = truncated(shape.velocity);

@@ -8,7 +8,7 @@ mod validity;
 
 pub(crate) use edges::{Edge, Edges};
 pub(super) use rows::rows;
-pub(super) use standing::set_into_walls;
+pub(super) use standing::{Standing, standing};
 pub(crate) use validity::Fault;
 
 use super::points::{Point, Spacing};

@@ -1,11 +1,11 @@
-//! Polygons of walls that stand on other walls: a side that lies on another wall's surface is set into that wall, by
-//! the kernel's support.
+//! Polygons of walls that stand on other walls: a side that lies on another wall's surface and ends in a wedge is set
+//! into that wall, by the kernel's support, and has no rows of its own.
 //!
 //! Rows end on the bisector of two sides, so a wedge whose lower side lies on a floor would have few particles near its
 //! tip, in rows of two directions, with gaps between them and the floor's lattice. No fluid comes to the lower side:
-//! below the floor's surface the rows of the upper side go on.
+//! the rows of the upper side go on below the floor's surface.
 
-use super::{Edges, Polygon, dot};
+use super::{Edge, Edges, Polygon, dot};
 use crate::geometry::TOLERANCE;
 use crate::geometry::points::Spacing;
 use crate::geometry::region::{Region, voids_before};
@@ -13,9 +13,20 @@ use crate::{Geometry, Phase, Scene, Shape};
 
 /// Where along a side other walls are looked for.
 const ALONG: [f64; 5] = [0.02, 0.25, 0.5, 0.75, 0.98];
+/// How many times as deep the sides lie in a polygon whose rows are taken: so deep that no bisector is near.
+const DEEPER: f64 = 4.0;
 
-/// The polygon of a wall that stands on other walls, which move as it does, set into them; `None` where it does not.
-pub(in crate::geometry) fn set_into_walls(scene: &Scene, index: usize) -> Option<Geometry> {
+/// A polygon of wall that stands on others.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::geometry) struct Standing {
+    /// The places that it holds.
+    pub(in crate::geometry) region: Geometry,
+    /// The wall whose rows of particles it has in these places.
+    pub(in crate::geometry) rows: Geometry,
+}
+
+/// The polygon of a wall that stands on other walls, which move as it does; `None` where it does not.
+pub(in crate::geometry) fn standing(scene: &Scene, index: usize) -> Option<Standing> {
     let shape = &scene.shapes[index];
     let Geometry::Polygon(polygon) = &shape.geometry else { return None };
     let along = |other: &Shape| other.phase == Phase::Wall && other.motion == shape.motion;
@@ -28,55 +39,68 @@ pub(in crate::geometry) fn set_into_walls(scene: &Scene, index: usize) -> Option
     }
     let spacing = Spacing::of(scene, shape);
     let held = |p: &[f64; 2]| others.iter().any(|region| region.contains(p, TOLERANCE * spacing.dx));
-    set_into(polygon, spacing.thickness(), spacing.dx, held).map(Geometry::Polygon)
+    let [region, rows] = set_into(polygon, spacing.thickness(), spacing.dx, held)?.map(Geometry::Polygon);
+    Some(Standing { region, rows })
 }
 
-/// The polygon with all sides that lie on other walls moved out by `depth`, m, a multiple of `dx`; `None` where there
-/// are none, or where more than these sides would move out of the walls. `held` says whether another wall holds a
-/// place.
+/// The polygon with all sides that lie on other walls and end in a wedge moved out by `depth`, m, a multiple of `dx`,
+/// and with the same sides [`DEEPER`]; `None` where there are none, or where more than these sides would move out of
+/// the walls. `held` says whether another wall holds a place.
 pub(super) fn set_into(
     polygon: &Polygon,
     depth: f64,
     dx: f64,
     held: impl Fn(&[f64; 2]) -> bool,
-) -> Option<Polygon> {
+) -> Option<[Polygon; 2]> {
     let edges = Edges::new(polygon);
     let sides = &edges.all[..polygon.outline.len()];
-    let offsets: Vec<f64> = sides
-        .iter()
-        .map(|edge| {
-            let normal = edge.normal();
-            let beside = |share: f64, out: f64| {
-                [0, 1].map(|a| edge.from[a] + share * (edge.to[a] - edge.from[a]) + out * normal[a])
-            };
-            let lies =
-                |&share: &f64| held(&beside(share, 0.25 * dx)) && held(&beside(share, depth - 0.25 * dx));
-            if ALONG.iter().all(lies) { depth } else { 0.0 }
-        })
-        .collect();
-    if offsets.iter().all(|&offset| offset == 0.0) {
+    let lies = |edge: &Edge| {
+        let normal = edge.normal();
+        let beside = |share: f64, out: f64| {
+            [0, 1].map(|a| edge.from[a] + share * (edge.to[a] - edge.from[a]) + out * normal[a])
+        };
+        ALONG.iter().all(|&share| held(&beside(share, 0.25 * dx)) && held(&beside(share, depth - 0.25 * dx)))
+    };
+    let lying: Vec<bool> = sides.iter().map(|edge| ends_in_a_wedge(sides, edge) && lies(edge)).collect();
+    if !lying.contains(&true) {
         return None;
     }
-    let corner = |k: usize| -> Option<[f64; 2]> {
-        let (before, after) = (sides[k].before, k);
-        let [a, b] = [before, after].map(|side| sides[side].normal());
-        let [p, q] =
-            [before, after].map(|side| dot(&sides[side].from, &sides[side].normal()) + offsets[side]);
-        let cross = a[0] * b[1] - a[1] * b[0];
-        if offsets[before] == 0.0 && offsets[after] == 0.0 {
-            return Some(sides[k].from);
-        }
-        (cross.abs() > 1e-6).then(|| [(p * b[1] - q * a[1]) / cross, (q * a[0] - p * b[0]) / cross])
-    };
-    let outline: Vec<[f64; 2]> = (0..sides.len()).map(corner).collect::<Option<_>>()?;
-    let inside = |(edge, to): (&super::Edge, &[f64; 2])| {
+    let region = moved_out(sides, &lying, depth)?;
+    let inside = |(edge, to): (&Edge, &[f64; 2])| {
         let from = edge.from;
         let steps = (libm::hypot(to[0] - from[0], to[1] - from[1]) / dx).ceil();
         let place = |k: usize| [0, 1].map(|a| from[a] + (k as f64 + 1.0) / steps * (to[a] - from[a]));
         from == *to || (0..steps as usize).all(|k| held(&place(k)))
     };
-    if !sides.iter().zip(&outline).all(inside) {
+    if !sides.iter().zip(&region).all(inside) {
         return None;
     }
-    Polygon::new(outline, polygon.holes.clone()).ok()
+    let rows = moved_out(sides, &lying, DEEPER * depth)?;
+    let of = |outline| Polygon::new(outline, polygon.holes.clone()).ok();
+    Some([of(region)?, of(rows)?])
+}
+
+/// Whether a side ends in a corner of less than 45 degrees. In blunter ones both sides' rows have room.
+fn ends_in_a_wedge(sides: &[Edge], edge: &Edge) -> bool {
+    let wedge = |before: &Edge, after: &Edge| {
+        let (a, b) = (before.direction(), after.direction());
+        a[0] * b[1] - a[1] * b[0] > 0.0 && -dot(&a, &b) > std::f64::consts::FRAC_1_SQRT_2 + 1e-9
+    };
+    wedge(&sides[edge.before], edge) || wedge(edge, &sides[edge.after])
+}
+
+/// The corners where the sides meet once those that lie on walls have moved out; `None` where parallel ones do not.
+fn moved_out(sides: &[Edge], lying: &[bool], depth: f64) -> Option<Vec<[f64; 2]>> {
+    let corner = |k: usize| -> Option<[f64; 2]> {
+        let meeting = [sides[k].before, k];
+        if meeting.iter().all(|&side| !lying[side]) {
+            return Some(sides[k].from);
+        }
+        let [a, b] = meeting.map(|side| sides[side].normal());
+        let out = |side: usize| if lying[side] { depth } else { 0.0 };
+        let [p, q] = meeting.map(|side| dot(&sides[side].from, &sides[side].normal()) + out(side));
+        let cross = a[0] * b[1] - a[1] * b[0];
+        (cross.abs() > 1e-6).then(|| [(p * b[1] - q * a[1]) / cross, (q * a[0] - p * b[0]) / cross])
+    };
+    (0..sides.len()).map(corner).collect()
 }

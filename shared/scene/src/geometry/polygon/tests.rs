@@ -174,26 +174,23 @@ fn lines_that_bound_no_region_are_refused_with_the_place() {
 
 #[test]
 fn a_wedge_on_a_floor_is_set_into_it() {
-    // 45 degrees: the upper side goes on to (-0.04, -0.04), and into a wall on the right to (0.34, 0.34).
-    let wedge = polygon(&[[0.0, 0.0], [0.3, 0.0], [0.3, 0.3]], &[]);
+    // The slope 3 : 4 goes on to (-0.16 / 3, -0.04). The right side is upright and ends in no wedge.
+    let wedge = polygon(&[[0.0, 0.0], [0.4, 0.0], [0.4, 0.3]], &[]);
     let floor = |p: &[f64; 2]| (-0.5..=0.5).contains(&p[0]) && (-0.04 - 1e-9..=1e-9).contains(&p[1]);
-    let walls = |p: &[f64; 2]| p[0] >= 0.3 - 1e-9 && p[0] <= 0.4 && p[1] >= -0.1 || floor(p);
-    for (held, expected) in [
-        (&floor as &dyn Fn(&[f64; 2]) -> bool, [[-0.04, -0.04], [0.3, -0.04], [0.3, 0.3]]),
-        (&walls, [[-0.04, -0.04], [0.34, -0.04], [0.34, 0.34]]),
-    ] {
-        let set = standing::set_into(&wedge, 0.04, DX, held).expect("it stands on walls");
-        for (found, expected) in set.outline.iter().zip(expected) {
+    let walls = |p: &[f64; 2]| p[0] >= 0.4 - 1e-9 && p[0] <= 0.5 && p[1] >= -0.1 || floor(p);
+    for held in [&floor as &dyn Fn(&[f64; 2]) -> bool, &walls] {
+        let [set, rows] = standing::set_into(&wedge, 0.04, DX, held).expect("it stands on walls");
+        for (found, expected) in set.outline.iter().zip([[-0.16 / 3.0, -0.04], [0.4, -0.04], [0.4, 0.3]]) {
             assert!((0..2).all(|a| (found[a] - expected[a]).abs() < 1e-12), "{found:?} {expected:?}");
         }
+        assert!((rows.outline[0][1] + 0.16).abs() < 1e-12, "four times as deep: {rows:?}");
     }
-    assert_eq!(
-        standing::set_into(&wedge, 0.04, DX, |p| p[1] < -0.02 && floor(p)),
-        None,
-        "it does not stand on the floor"
-    );
+    let above = |p: &[f64; 2]| p[1] < -0.02 && floor(p);
+    assert_eq!(standing::set_into(&wedge, 0.04, DX, above), None, "it does not stand on the floor");
     let short = |p: &[f64; 2]| p[0] > 0.02 && floor(p);
     assert_eq!(standing::set_into(&wedge, 0.04, DX, short), None, "a part of its side lies on no wall");
+    let block = polygon(&rectangle([0.0, 0.0], [0.3, 0.2]), &[]);
+    assert_eq!(standing::set_into(&block, 0.04, DX, floor), None, "no wedge");
 }
 
 /// Below the surface of a beach whose tip lies on the floor, whichever stands first in the scene, walls are filled as
