@@ -2,7 +2,7 @@
 
 use crate::models::own_effects;
 use crate::sleep::TOLERANCE;
-use halfstep_scene::{Decision, Derived, EffectName, Scene, Shape, SolidModelName};
+use halfstep_scene::{ContactKeys, Decision, Derived, EffectName, Scene, Shape, SolidModelName};
 
 /// Effects that every model has.
 const COMMON: [EffectName; 3] =
@@ -37,6 +37,11 @@ pub fn decision(scene: &Scene, solid: usize, effect: EffectName) -> Decision {
 /// An effect of the scene's solid of that index takes part.
 pub(crate) fn takes_part(scene: &Scene, solid: usize, effect: EffectName) -> bool {
     decision(scene, solid, effect).on
+}
+
+/// The model of the scene's solid of that index evaluates contact with walls.
+pub(crate) fn touches_walls(scene: &Scene, solid: usize) -> bool {
+    !scene.leaves_walls_to_coupler(solid) && takes_part(scene, solid, EffectName::WallContact)
 }
 
 fn derive(scene: &Scene, k: usize, effect: EffectName) -> Derived {
@@ -85,6 +90,11 @@ fn derive(scene: &Scene, k: usize, effect: EffectName) -> Derived {
             100.0 * TOLERANCE,
             TOLERANCE * scene.solid_spacing(k)
         )),
+        _ if scene.shapes.iter().any(|s| s.contact) && scene.leaves_walls_to_coupler(k) => {
+            let ContactKeys { friction, restitution } = solid.contact().unwrap_or_default();
+            let how = format!("friction {friction}, restitution {restitution}");
+            Derived::On(format!("a wall has contact = true: in the coupler, {how}"))
+        }
         _ if scene.shapes.iter().any(|s| s.contact) => Derived::On("a wall has contact = true".into()),
         _ => Derived::Impossible("no wall has contact = true".into()),
     }

@@ -61,6 +61,12 @@ impl<const D: usize> Particles<'_, D> {
         self.reference.is_empty()
     }
 
+    /// Sum over some particles of m v² / 2, J (2D: J/m).
+    pub fn kinetic_energy_of(&self, particles: &[u32]) -> f64 {
+        let of = |p: usize| 0.5 * self.mass[p] * self.velocity[p].iter().map(|v| v * v).sum::<f64>();
+        particles.iter().map(|&p| of(p as usize)).sum()
+    }
+
     /// Sum over all particles of m v² / 2, J (2D: J/m).
     pub fn kinetic_energy(&self) -> f64 {
         let of = |(m, v): (&f64, &[f64; D])| 0.5 * m * v.iter().map(|v| v * v).sum::<f64>();
@@ -182,6 +188,11 @@ pub trait SolidModel<const D: usize>: Send {
             [] => self.particles().kinetic_energy(),
             bodies => bodies.iter().map(|body| body.kinetic_energy).sum(),
         }
+    }
+    /// Kinetic and strain energy of some particles of a model that strains, J (2D: J/m), without what contacts between
+    /// bodies hold.
+    fn energy_of(&self, particles: &[u32]) -> f64 {
+        self.particles().kinetic_energy_of(particles)
     }
     /// What fracture has done; of a model that does not break nothing.
     fn fracture(&self) -> FractureSummary {

@@ -2,7 +2,7 @@
 
 use crate::model::{Load, SolidModel};
 use halfstep_role::ledger::Ledger;
-use halfstep_scene::geometry::{self, holds, nearest};
+use halfstep_scene::geometry::{self, SolidPoint, holds, nearest};
 use halfstep_scene::{Block, BodyQuantity, EnergyPart, Phase, ProbeKind, Scene};
 use halfstep_wire::frame::von_mises;
 use halfstep_wire::wide;
@@ -27,6 +27,8 @@ pub(crate) enum Measurement<const D: usize> {
     Moment(Vec<u32>, [f64; D]),
     /// Something of the rigid body of that index.
     Body(usize, BodyQuantity),
+    /// Kinetic and strain energy of these particles.
+    EnergyOf(Vec<u32>),
     /// The ledger or a part of it.
     Energy(Option<EnergyPart>),
 }
@@ -68,6 +70,13 @@ pub(crate) fn of_solid<const D: usize>(
         ProbeKind::Force { within, shape } => Some(Measurement::Force(loaded(*within, *shape))),
         ProbeKind::Moment { about, within, shape } => {
             Some(Measurement::Moment(loaded(*within, *shape), std::array::from_fn(|d| about[d])))
+        }
+        ProbeKind::Body { body, quantity: BodyQuantity::Energy } if model.rigid_bodies().is_empty() => {
+            let points = geometry::layout::<D>(scene).with_solid(scene, solid).solid;
+            let own =
+                |(_, point): &(usize, &SolidPoint<D>)| scene.shapes[point.body as usize].body() == *body;
+            let particles = points.iter().enumerate().filter(own).map(|(p, _)| p as u32).collect();
+            Some(Measurement::EnergyOf(particles))
         }
         ProbeKind::Body { body, quantity } => {
             let of_name = model.rigid_bodies().iter().position(|state| state.name == *body);
@@ -150,6 +159,7 @@ impl<const D: usize> Measurement<D> {
                 };
                 put(particles.iter().map(of).sum());
             }
+            Self::EnergyOf(particles) => put(model.energy_of(particles)),
             Self::Body(body, quantity) => of_body(model, load, *body, *quantity, &mut put),
             Self::Energy(_) => {}
         }
@@ -190,6 +200,7 @@ fn of_body<const D: usize>(
         BodyQuantity::Moment => moment(),
         BodyQuantity::ContactForce => wide(state.contact_force),
         BodyQuantity::ContactMoment => state.contact_moment,
+        BodyQuantity::Energy => return put(state.kinetic_energy),
     };
     if quantity.turns() && D == 2 { put(vector[2]) } else { vector[..D].iter().for_each(|&x| put(x)) }
 }

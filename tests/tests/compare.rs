@@ -76,6 +76,34 @@ fn one_of_several_solids_is_exchanged() {
     }
 }
 
+/// A rigid plate beside an elastic one: it does not move, and the table says what was left out of the scene for it.
+#[test]
+fn a_rigid_plate_stands_beside_an_elastic_one() {
+    let _machine = whole_machine();
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    let coarse = ["--set", "resolution=0.0025", "--until", "0.02", "--out", out];
+    let models = ["--solid", "total-lagrangian", "--solid", "rigid"];
+    let output = compare(&[&coarse[..], &models, &["--json"]].concat());
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{said}");
+    let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let [elastic, rigid] = told["solids"].as_array().unwrap().as_slice() else { panic!("{told}") };
+    assert!(elastic["peak"].as_f64().unwrap() > 1e-3 && rigid["peak"].as_f64() == Some(0.0), "{told}");
+    assert_eq!(elastic["note"], "");
+    let note = rigid["note"].as_str().unwrap();
+    for part in ["`solid.youngs_modulus`", "`shape.plate.clamp`", "`plate` fixed where it was clamped"] {
+        assert!(note.contains(part) && said.contains(part), "{part}: {note}\n{said}");
+    }
+    // 0.6 dx / c_P, c_P = sqrt((K + 4 G / 3) / rho), of the plate; what does not strain has no such limit.
+    let stable = |solid: &serde_json::Value| solid["stable_step"].as_f64().unwrap();
+    println!("stable to {} s and {} s", stable(elastic), stable(rigid));
+    assert!(stable(rigid) > 10.0 * stable(elastic), "{told}");
+    let shown = compare(&[&coarse[..], &models].concat());
+    let table = String::from_utf8_lossy(&shown.stdout).into_owned();
+    assert!(table.contains("stable step [s]") && table.contains("rigid: without `"), "{table}");
+}
+
 /// Without water models can be compared, and programs cannot: they meet the water alone.
 #[test]
 fn models_are_compared_without_water_and_programs_refused() {

@@ -3,7 +3,7 @@
 //!
 //! Their bar ends in the round side of a cylinder, 0.35 m from its tip; here the side of the clamp is straight.
 
-use halfstep_tests::{Finished, scene_at};
+use halfstep_tests::{Curve, Finished, scene_at};
 
 const SCENE: &str = r#"
 resolution = 0.005
@@ -33,28 +33,59 @@ kind = "displacement"
 at = [0.6, 0.2]
 "#;
 
-/// Amplitudes and mean of y, m, and the frequency, Hz: from the first turning point to the return to the top.
-fn swing(run: &Finished) -> ([f64; 2], f64) {
-    let (y, x) = (run.curve("tip.y"), run.curve("tip.x"));
-    // It hangs lowest half a period after its release, and is back at the top after a whole one.
-    let lowest = y.between(0.2, 0.7).values.iter().copied().fold(f64::INFINITY, f64::min);
-    let inmost = x.between(0.2, 0.7).values.iter().copied().fold(f64::INFINITY, f64::min);
-    let rest = 0.5 * lowest;
-    let crossings: Vec<f64> = (1..y.values.len())
-        .filter(|&k| (y.values[k - 1] > rest) != (y.values[k] > rest))
-        .map(|k| {
-            let part = (rest - y.values[k - 1]) / (y.values[k] - y.values[k - 1]);
-            y.times[k - 1] + part * (y.times[k] - y.times[k - 1])
-        })
-        .collect();
-    // Down through the middle, up through it: half a period apart.
-    ([lowest, inmost], 0.5 / (crossings[1] - crossings[0]))
+/// What the tip does from its release to its return to the top.
+#[derive(Debug)]
+struct Swing {
+    /// Lowest and highest y, m.
+    y: [f64; 2],
+    /// Inmost x, m.
+    x: f64,
+    /// Hz.
+    frequency: f64,
 }
 
-fn bar(model: &str, across: u32) -> Finished {
+impl Swing {
+    fn of(run: &Finished) -> Self {
+        let (y, x) = (run.curve("tip.y"), run.curve("tip.x"));
+        let least = |curve: Curve| curve.values.into_iter().fold(f64::INFINITY, f64::min);
+        // It hangs lowest half a period after its release, and is back at the top after a whole one.
+        let lowest = least(y.between(0.2, 0.7));
+        let top = y.between(0.7, 1.05).values.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        let rest = 0.5 * lowest;
+        let crossings: Vec<f64> = (1..y.values.len())
+            .filter(|&k| (y.values[k - 1] > rest) != (y.values[k] > rest))
+            .map(|k| {
+                let part = (rest - y.values[k - 1]) / (y.values[k] - y.values[k - 1]);
+                y.times[k - 1] + part * (y.times[k] - y.times[k - 1])
+            })
+            .collect();
+        // Down through the middle, up through it: half a period apart.
+        let frequency = 0.5 / (crossings[1] - crossings[0]);
+        Self { y: [lowest, top], x: least(x.between(0.2, 0.7)), frequency }
+    }
+
+    fn amplitude(&self) -> f64 {
+        0.5 * (self.y[1] - self.y[0])
+    }
+
+    fn say(&self, model: &str) {
+        let mean = 0.5 * (self.y[1] + self.y[0]);
+        println!(
+            "{model}: y {:.2} ± {:.2} mm, from {:.2} to {:.2}, x {:.2} mm, {:.4} Hz",
+            1e3 * mean,
+            1e3 * self.amplitude(),
+            1e3 * self.y[0],
+            1e3 * self.y[1],
+            1e3 * self.x,
+            self.frequency
+        );
+    }
+}
+
+fn bar(text: &str, model: &str, across: u32) -> Finished {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("csm3.toml");
-    std::fs::write(&path, SCENE).expect("a scene");
+    std::fs::write(&path, text).expect("a scene");
     scene_at(&path).set("resolution", 0.02 / f64::from(across)).set("solid.model", model).run()
 }
 
@@ -63,10 +94,23 @@ fn bar(model: &str, across: u32) -> Finished {
 #[test]
 fn bars_of_both_models_swing_as_turek_and_hron_say() {
     for model in ["total-lagrangian", "finite-element"] {
-        let ([lowest, inmost], frequency) = swing(&bar(model, 4));
-        println!("{model}: y {:.2} mm, x {:.2} mm, {frequency:.4} Hz", 1e3 * lowest, 1e3 * inmost);
+        let swing = Swing::of(&bar(SCENE, model, 4));
+        swing.say(model);
+        let ([lowest, top], inmost, frequency) = (swing.y, swing.x, swing.frequency);
         assert!((lowest / -0.128767 - 1.0).abs() < 0.02, "{model}: {lowest}");
         assert!((inmost / -0.02861 - 1.0).abs() < 0.02, "{model}: {inmost}");
         assert!((frequency / 1.0995 - 1.0).abs() < 0.01, "{model}: {frequency}");
+        assert!(top.abs() < 2.0, "{model}: {top}");
+        assert!((swing.amplitude() / 0.06516 - 1.0).abs() < 0.04, "{model}: {}", swing.amplitude());
+    }
+}
+
+#[test]
+fn a_bar_of_the_hypoelastic_model_is_shown() {
+    let text = SCENE.replace("material = \"st-venant-kirchhoff\"\n", "");
+    let damped = text.replace("artificial_viscosity = { linear = 0.0, quadratic = 0.0 }\n", "");
+    for (what, text) in [("undamped", &text), ("damped", &damped)] {
+        let swing = Swing::of(&bar(text, "hypoelastic", 4));
+        swing.say(what);
     }
 }

@@ -72,6 +72,14 @@ impl Block {
         Self { _folder: folder, path }
     }
 
+    /// The same with a model that strains in the scene.
+    fn as_elastic(self) -> Self {
+        let text = std::fs::read_to_string(&self.path).expect("a scene");
+        let elastic = "model = \"hypoelastic\"\nyoungs_modulus = 1e7\npoissons_ratio = 0.3";
+        std::fs::write(&self.path, text.replace("model = \"rigid\"", elastic)).expect("a scene");
+        self
+    }
+
     fn built_in(&self) -> RunBuilder {
         scene_at(&self.path)
     }
@@ -150,6 +158,19 @@ fn a_sliding_block_stops_as_coulomb_says_and_as_the_built_in_one_does() {
     // Its kinetic energy.
     assert!((contact(&run).friction / -5.0 - 1.0).abs() < 0.01, "{:?}", contact(&run));
     assert!(run.report.audit.action_reaction.expect("an audit") <= 1e-12);
+}
+
+/// A program has the friction that the scene gives its solid, whatever the model beside it.
+#[test]
+fn a_block_whose_scene_names_an_elastic_model_slides_as_coulomb_says() {
+    let elastic = Block::new(0.0, 1.0, 0.3).as_elastic();
+    let run = elastic.external("").run();
+    let (way, expected) = (run.curve("block.x").at(0.5), 1.0 / (2.0 * 0.3 * 9.81));
+    println!("way {way} m of {expected}; {:?}", contact(&run));
+    assert!((way / expected - 1.0).abs() < 5e-3, "{way}");
+    assert!(
+        log(&run).contains("contact of the solid with walls: by the coupler, friction 0.3, restitution 0")
+    );
 }
 
 #[test]

@@ -72,3 +72,26 @@ fn a_solid_that_fails_says_why() {
         assert!(error.contains(reason), "{error}");
     }
 }
+
+/// The load grows over T = 0.1 s: x = F / k (t / T - sin(omega t) / (omega T)); then the block swings about F / k.
+#[test]
+fn a_load_that_grows_moves_the_block_as_its_formula_says() {
+    const STIFFNESS: f64 = 2e4;
+    const FORCE: f64 = 100.0;
+    const RAMP: f64 = 0.1;
+    let _machine = whole_machine();
+    let folder = tempfile::tempdir().unwrap();
+    let script = repository().join("tests/python/spring_block.py");
+    let line = format!("{} {} {STIFFNESS}", python().display(), script.display());
+    let more = ["--force=100,0", "--ramp", "0.1", "--until", "0.2", "--time-step", "2e-4"];
+    let output = trial("spring-block.toml", &line, folder.path(), &more);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let omega = (STIFFNESS / (8000.0 * 0.04 * 0.14)).sqrt();
+    let table = read_probes(&folder.path().join("probes.csv")).unwrap();
+    for (time, x) in table.times().iter().zip(table.column("block.x").unwrap()) {
+        // Beyond the ramp less what would have gone on.
+        let grown = |t: f64| (t - (omega * t).sin() / omega) / RAMP;
+        let exact = FORCE / STIFFNESS * (grown(*time) - grown((time - RAMP).max(0.0)));
+        assert!((x - exact).abs() < 1e-6, "{time} s: {x}, exactly {exact}");
+    }
+}

@@ -75,11 +75,12 @@ conformance!(whole relaxing_total_lagrangian 2: TotalLagrangian,
 // With the neighbours of the other model.
 conformance!(whole wide_total_lagrangian 2: TotalLagrangian,
     "model = \"total-lagrangian\"\nsmoothing_ratio = 1.33");
-// Without the cases of what strains: swings of a cantilever, clamps, and a time step that a stiffness limits. In space
+// Without the cases of what strains: sub-steps of a swing, clamps, and a time step that a stiffness limits. In space
 // without `uniform_force`, over whose long steps rounding of the moments turns the block by more than 1e-12.
 conformance!(rigid_plane 2: Rigid, "model = \"rigid\"\ncontact = { restitution = 0.5 }", Scene::clone; identity
-    interface_set rest uniform_force stage_0_is_forgotten bodies_collide wall_contact interruption);
+    interface_set rest uniform_force stage_0_is_forgotten conservation bodies_collide wall_contact threads
+    interruption);
 conformance!(rigid_space 3: Rigid, "model = \"rigid\"\ncontact = { restitution = 0.5 }", Scene::clone; identity
-    interface_set rest stage_0_is_forgotten bodies_collide wall_contact interruption);
+    interface_set rest stage_0_is_forgotten conservation bodies_collide wall_contact threads interruption);
 conformance!(finer_rigid 2: Rigid, "model = \"rigid\"\ncontact = { restitution = 0.5 }", finer_than_the_rest; identity
-    rest uniform_force stage_0_is_forgotten bodies_collide interruption);
+    rest uniform_force stage_0_is_forgotten conservation bodies_collide threads interruption);

@@ -56,6 +56,7 @@ families! {
     fracture "fracture",
     impact "impact",
     rest "rest",
+    rigid "rigid",
     solids "solids",
     tension "tension",
     thin_plates "thin-plates",

@@ -1,6 +1,6 @@
 //! The participants of a scene as owners of particles.
 
-use halfstep_interface::contact::Contact;
+use halfstep_interface::contact::{Contact, WallContact};
 use halfstep_output::checkpoint::{StateWriter, file, file_name};
 use halfstep_output::{FrameWriter, OutputError};
 use halfstep_role::Member;
@@ -32,7 +32,13 @@ pub struct ContactAsks {
 
 /// What contact asks before anything is run.
 pub fn contact_asks(scene: &Scene, roles: &mut [Box<dyn Role>]) -> ContactAsks {
-    let Some(mut contact) = Contact::new(scene) else { return ContactAsks::default() };
+    let held = |solid: &usize| scene.leaves_walls_to_coupler(*solid);
+    let walls = |solid| Some((solid, WallContact::new(scene, solid)?));
+    let mut walls: Vec<_> = (0..scene.solids.len()).filter(held).filter_map(walls).collect();
+    let mut contact = Contact::new(scene);
+    if contact.is_none() && walls.is_empty() {
+        return ContactAsks::default();
+    }
     let first = |role: &mut Box<dyn Role>| {
         let mut records = Vec::new();
         role.publish(&[], &mut records);
@@ -40,10 +46,12 @@ pub fn contact_asks(scene: &Scene, roles: &mut [Box<dyn Role>]) -> ContactAsks {
     };
     let solids = roles.iter_mut().filter(|role| role.phase() == Phase::Solid);
     let states: Vec<_> = solids.map(first).collect();
-    contact.begin(states.iter().map(Vec::as_slice));
+    contact.iter_mut().for_each(|contact| contact.begin(states.iter().map(Vec::as_slice)));
+    walls.iter_mut().for_each(|(solid, walls)| walls.begin(&states[*solid]));
+    let limits = contact.iter().map(Contact::limit).chain(walls.iter().map(|(_, walls)| walls.limit()));
     ContactAsks {
-        limit: Some(contact.limit()).filter(|limit| limit.is_finite()),
-        stiffness: contact.booked().map(|(solids, law, _)| (solids, law.stiffness)).collect(),
+        limit: Some(limits.fold(f64::INFINITY, f64::min)).filter(|limit| limit.is_finite()),
+        stiffness: contact.iter().flat_map(Contact::booked).map(|(k, law, _)| (k, law.stiffness)).collect(),
     }
 }
 

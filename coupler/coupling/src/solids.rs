@@ -46,7 +46,7 @@ pub struct ContactSummary {
 pub(crate) struct Work {
     /// Of the fluid on this solid.
     pub(crate) fluid: f64,
-    /// Of the other solids on this one, and of the walls on one of another program.
+    /// Of the other solids on this one, and of the walls that the coupler holds it against.
     pub(crate) contact: f64,
 }
 
@@ -79,7 +79,7 @@ struct CoupledSolid<const D: usize> {
     external: Option<ExternalSolid>,
     /// The scene has walls that solids may touch.
     touches_walls: bool,
-    /// Contact with them, of an external solid that does not evaluate it itself.
+    /// Contact with them, of an external solid that does not evaluate it itself, and of one that leaves it.
     walls: Option<WallContact>,
 }
 
@@ -103,7 +103,9 @@ impl<const D: usize> Solids<D> {
             reach: REACH * scene.smoothing_ratio * scene.resolution,
             saved: 0,
             touches_walls,
-            walls: external.as_ref().and_then(|_| WallContact::new(scene, solid)),
+            walls: (external.is_some() || scene.leaves_walls_to_coupler(solid))
+                .then(|| WallContact::new(scene, solid))
+                .flatten(),
             external,
         };
         Self {
@@ -386,10 +388,11 @@ impl<const D: usize> State for CoupledSolid<D> {
         if let Some(interface) = &mut self.interface {
             fields.part("interface", interface)?;
         }
-        let Some(external) = &mut self.external else { return Ok(()) };
-        fields.part("external", external)?;
-        if external.own_walls {
-            self.walls = None;
+        if let Some(external) = &mut self.external {
+            fields.part("external", external)?;
+            if external.own_walls {
+                self.walls = None;
+            }
         }
         self.walls.as_mut().map_or(Ok(()), |walls| fields.part("walls", walls))
     }

@@ -32,7 +32,7 @@ pub struct Check {
     solids: Vec<Solid>,
     /// Largest stable step of the fluid, s.
     fluid_dt_limit: Option<f64>,
-    /// Largest stable step of contact between solids, s; `None` where no two can touch.
+    /// Largest stable step of contact between solids, and with walls in the coupler, s; `None` where there is none.
     contact_dt_limit: Option<f64>,
     /// First time step, s.
     pub time_step: f64,
@@ -83,6 +83,8 @@ struct Solid {
     spacing: f64,
     /// Largest stable step of the whole, with its most sub-steps, s.
     dt_limit: f64,
+    #[serde(skip)]
+    stable_to: f64,
     /// With a fluid alone.
     sub_steps: Option<SubSteps>,
 }
@@ -92,6 +94,13 @@ struct SubSteps {
     count: u32,
     /// Largest stable one, s.
     stable_to: f64,
+}
+
+impl Check {
+    /// Largest stable sub-step of the solid of that index in its first state, s.
+    pub fn stable_step(&self, solid: usize) -> Option<f64> {
+        self.solids.get(solid).map(|solid| solid.stable_to)
+    }
 }
 
 /// Checks a valid scene, with the instruction set that the estimate of time is made with; `None`: of a dimension that
@@ -126,6 +135,7 @@ fn check_in<const D: usize>(scene: &Scene, isa: Isa) -> Check {
             particles,
             spacing: scene.solid_spacing(k),
             dt_limit,
+            stable_to,
             sub_steps: scene.fluid.as_ref().map(|_| sub_steps),
         }
     });

@@ -44,6 +44,8 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     bodies::standing(scene, layout, &bodies, &mut all);
     contacts::overlaps(scene, &mut all);
     contacts::unsaid(scene, &mut all);
+    contacts::of_walls(scene, &bodies, &mut all);
+    contacts::debris(scene, &mut all);
     clamp_faces::clamp_faces(scene, &mut all);
     shapes::sizes(scene, placed, &mut all);
     shapes::nodal(scene, placed, &mut all);

@@ -75,6 +75,23 @@ impl Candidate {
     }
 }
 
+/// A run of a solid.
+#[derive(Clone, Debug)]
+pub struct Ran {
+    /// The solid.
+    pub solid: Candidate,
+    /// Folder of its run.
+    pub folder: PathBuf,
+    /// How it went.
+    pub report: RunReport,
+    /// Its probes, where there are any.
+    pub table: Option<Table>,
+    /// What was left out of the scene for it; empty where nothing was.
+    pub note: String,
+    /// Largest stable sub-step in its first state, s; `None` of programs.
+    pub stable_step: Option<f64>,
+}
+
 /// What came of a solid.
 #[derive(Clone, Debug, Serialize)]
 pub struct Compared {
@@ -99,6 +116,10 @@ pub struct Compared {
     pub steps: u64,
     /// Mean time step, s.
     pub time_step: Option<f64>,
+    /// Largest stable sub-step of the solid in its first state, s; `None` of programs, which do not tell.
+    pub stable_step: Option<f64>,
+    /// What was left out of the scene for it; empty where nothing was.
+    pub note: String,
     /// Largest number of the solid's sub-steps in a step; 1 for programs that do not tell.
     pub sub_steps: Option<u32>,
     /// Kinetic energy of fluid and solid that nothing explains, over the energy in play: fluid, solid. The solid's is
@@ -151,14 +172,10 @@ impl Comparison {
     ///
     /// # Errors
     /// A run has probes, and the one that is compared is not among them.
-    pub fn new(
-        scene: &Scene,
-        probe: &str,
-        runs: Vec<(Candidate, PathBuf, RunReport, Option<Table>)>,
-    ) -> Result<Self, StudyError> {
+    pub fn new(scene: &Scene, probe: &str, runs: Vec<Ran>) -> Result<Self, StudyError> {
         let mut header = probe.to_owned();
         let mut solids = Vec::new();
-        for (solid, folder, report, table) in runs {
+        for Ran { solid, folder, report, table, note, stable_step } in runs {
             let mut curve = Vec::new();
             if let Some(table) = table {
                 let place = table.position(probe).ok_or_else(|| {
@@ -182,6 +199,8 @@ impl Comparison {
                 wall_seconds: report.wall_seconds,
                 steps: report.steps,
                 time_step: report.dt.mean,
+                stable_step,
+                note,
                 sub_steps: report.sub_steps,
                 solid,
                 folder,
@@ -210,6 +229,7 @@ impl Comparison {
             "wall time [s]",
             "steps",
             "mean step [s]",
+            "stable step [s]",
             "sub-steps",
             "energy from nowhere",
         ];
@@ -230,11 +250,15 @@ impl Comparison {
                 short(solid.wall_seconds),
                 solid.steps.to_string(),
                 number(solid.time_step),
+                number(solid.stable_step),
                 solid.sub_steps.map_or("-".into(), |k| k.to_string()),
                 number(growth),
             ]);
         }
         let mut text = aligned(&table);
+        for solid in self.solids.iter().filter(|solid| !solid.note.is_empty()) {
+            text.push_str(&format!("{}: {}\n", solid.name, solid.note));
+        }
         for solid in &self.solids {
             if let Some(error) = &solid.error {
                 text.push_str(&format!("{}: {error}\n", solid.name));

@@ -1,7 +1,8 @@
 //! The command line of `halfstep compare`.
 
+use super::adapted::{Adapted, adapted};
 use super::command::{ended, tell};
-use super::compare::{Candidate, Comparison, default_probe};
+use super::compare::{Candidate, Comparison, Ran, default_probe};
 use super::error::StudyError;
 use super::runs::{self, Job, Program};
 use super::{claim, report_of};
@@ -80,18 +81,36 @@ fn run(arguments: CompareArguments) -> Result<ExitCode, StudyError> {
         arguments.out.unwrap_or_else(|| PathBuf::from("out").join(format!("compare-{}", scene.name)));
     std::fs::create_dir_all(&folder).map_err(StudyError::system(folder.display()))?;
     let _claim = claim(&folder)?;
+    let (index, key) = exchanged;
     let mut jobs = Vec::new();
+    let mut told = Vec::new();
     for candidate in &candidates {
-        let mut overrides = base.clone();
+        let mut made = Adapted { overrides: base.clone(), ..Adapted::default() };
         let mut more = Vec::new();
+        let mut stable_step = None;
         match candidate {
-            Candidate::Model(name) => overrides.push(format!("solid.{exchanged}model={name}")),
+            // A model that cannot compute the scene is refused before anything runs.
+            Candidate::Model(name) => {
+                made = adapted(&scene, &arguments.scene, &base, (index, &key, name))?;
+                if made.lacks_probe(&probe) {
+                    return Err(StudyError::Usage(format!(
+                        "--probe {probe}: {name} does not know it; name one that all have"
+                    )));
+                }
+                let own = halfstep_scene::load(&arguments.scene, &made.overrides)?;
+                stable_step = stable(&own, index)?;
+            }
             Candidate::Program { command, .. } => {
-                more = vec!["--solid".into(), format!("{}{command}", exchanged.replace('.', "="))];
+                let of = key.strip_prefix("solid.").map_or(String::new(), |name| format!("{name}="));
+                more = vec!["--solid".into(), format!("{of}{command}")];
             }
         }
-        // A model that cannot compute the scene is refused before anything runs.
-        halfstep_scene::load(&arguments.scene, &overrides)?;
+        let note = made.text();
+        if !note.is_empty() {
+            say::warn(format_args!("{}: {note}", candidate.name()));
+        }
+        let overrides = made.overrides;
+        told.push((note, stable_step));
         jobs.push(Job {
             label: candidate.name().into(),
             dir: folder.join("runs").join(candidate.name()),
@@ -108,9 +127,10 @@ fn run(arguments: CompareArguments) -> Result<ExitCode, StudyError> {
         return Ok(ExitCode::from(130));
     }
     let mut ended = Vec::new();
-    for (candidate, job) in candidates.into_iter().zip(&jobs) {
+    for ((candidate, job), (note, stable_step)) in candidates.into_iter().zip(&jobs).zip(told) {
         let table = read_probes(&job.dir.join("probes.csv")).ok();
-        ended.push((candidate, job.dir.clone(), report_of(job), table));
+        let report = report_of(job);
+        ended.push(Ran { solid: candidate, folder: job.dir.clone(), report, table, note, stable_step });
     }
     let comparison = Comparison::new(&scene, &probe, ended)?;
     comparison.write(&scene, &folder)?;
@@ -120,19 +140,28 @@ fn run(arguments: CompareArguments) -> Result<ExitCode, StudyError> {
     Ok(tell(json, || comparison.text(), made, finished).unwrap_or(ExitCode::SUCCESS))
 }
 
-/// What stands between `solid.` and a key of the solid that is exchanged: `NAME.`, or nothing where it is the only one.
-fn exchanged(scene: &Scene, name: Option<&str>) -> Result<String, String> {
+/// Largest stable sub-step of the solid of that index in its first state, s.
+fn stable(scene: &Scene, index: usize) -> Result<Option<f64>, StudyError> {
+    let isa = halfstep::isa::of_environment().map_err(|e| StudyError::System(e.to_string()))?;
+    Ok(halfstep::check::check(scene, isa).and_then(|check| check.stable_step(index)))
+}
+
+/// Index of the solid that is exchanged, and its key: `solid.NAME`, or `solid` where it is the only one.
+fn exchanged(scene: &Scene, name: Option<&str>) -> Result<(usize, String), String> {
     let known: Vec<&str> = scene.solids.iter().map(|solid| solid.name.as_str()).collect();
     match (known.as_slice(), name) {
         ([], _) => Err(format!("{} has no solid", scene.name)),
-        ([_], None) => Ok(String::new()),
+        ([_], None) => Ok((0, "solid".into())),
         (_, None) => {
             Err(format!("there are several solids: say which with --of NAME, one of {}", known.join(", ")))
         }
         (_, Some(name)) if !known.contains(&name) => {
             Err(format!("--of {name}: the scene's solids are {}", known.join(", ")))
         }
-        ([_], Some(_)) => Ok(String::new()),
-        (_, Some(name)) => Ok(format!("{name}.")),
+        ([_], Some(_)) => Ok((0, "solid".into())),
+        (_, Some(name)) => {
+            let index = known.iter().position(|other| *other == name).unwrap_or_default();
+            Ok((index, format!("solid.{name}")))
+        }
     }
 }

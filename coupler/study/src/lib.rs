@@ -1,6 +1,7 @@
 //! `halfstep study`: what accuracy costs. Runs a scene over a ladder of settings, measures errors and costs, and picks
 //! settings for a wanted error or budget.
 
+mod adapted;
 mod chart;
 pub mod choose;
 pub mod command;

@@ -96,7 +96,7 @@ pub struct ParticipantReport {
 /// What [`ContactReport::solids`] calls the walls of a scene: the name of no solid.
 pub const WALLS: &str = "wall";
 
-/// What contact did to a pair of solids, or walls to a solid of another program.
+/// What contact did to a pair of solids, or walls to a solid that the coupler holds against them.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ContactReport {

@@ -1,5 +1,6 @@
 //! What must hold between the tables of contact.
 
+use super::Phase;
 use super::bounds::flow_speed;
 use super::check::Check;
 use super::contact::PairContact;
@@ -16,6 +17,7 @@ impl Check<'_> {
                 self.wrong(&format!("contact.{k}.solids"), "another [[contact]] is about these two solids");
             }
         }
+        self.wall_contacts();
         let unknown = |contact: &PairContact| contact.stiffness.is_none();
         let Some(pair) = self.scene.contacts().into_iter().find(unknown) else { return };
         if flow_speed(self.scene) == 0.0 {
@@ -27,6 +29,19 @@ impl Check<'_> {
                      `stiffness` (Pa/m), or with `touch = false`"
                 ),
             );
+        }
+    }
+
+    /// What the coupler holds against walls has a speed that says how hard.
+    fn wall_contacts(&self) {
+        let walls = self.scene.shapes.iter().any(|shape| shape.phase == Phase::Wall);
+        if !walls || flow_speed(self.scene) > 0.0 {
+            return;
+        }
+        let held = |k: &usize| self.scene.leaves_walls_to_coupler(*k);
+        for k in (0..self.scene.solids.len()).filter(held) {
+            let why = "how stiff contact is follows from gravity and speeds, and nothing in the scene moves";
+            self.wrong(&format!("{}.contact", self.solid_key(k)), format!("says nothing of walls: {why}"));
         }
     }
 }

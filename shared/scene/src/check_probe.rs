@@ -97,9 +97,11 @@ impl Check<'_> {
             ProbeKind::Force { within, shape } | ProbeKind::Moment { within, shape, .. } => {
                 self.loaded(probe, key, within.as_ref(), *shape);
             }
-            ProbeKind::Body { body, .. } => {
+            ProbeKind::Body { body, quantity } => {
                 let key = format!("{key}.body");
-                match probe.solid.filter(|&k| self.scene.solids[k].rigid().is_some()) {
+                let known =
+                    |k: &usize| *quantity == BodyQuantity::Energy || self.scene.solids[*k].rigid().is_some();
+                match probe.solid.filter(known) {
                     Some(solid) => _ = self.is_one_body(solid, &key, body),
                     None => self.wrong(&key, "is no rigid body: the solid's model strains"),
                 }

@@ -38,6 +38,13 @@ impl Scene {
         self.shapes.iter().filter(move |shape| on && shape.phase == Phase::Wall && shape.contact)
     }
 
+    /// The solid of that index strains and says `contact`, so the coupler holds it against walls: its model knows no
+    /// friction. In space the model pushes it.
+    pub fn leaves_walls_to_coupler(&self, solid: usize) -> bool {
+        let solid = &self.solids[solid];
+        self.dimension == 2 && solid.rigid().is_none() && solid.contact().is_some()
+    }
+
     /// Contact of each pair of solids that feel each other, in ascending order; in space there is none.
     pub fn contacts(&self) -> Vec<PairContact> {
         let count = if self.dimension == 2 { self.solids.len() } else { 0 };

@@ -1,4 +1,4 @@
-//! `--set dotted.key=value`: changes to a document before it is read.
+//! `--set dotted.key=value`: changes to a document before it is read; `--set dotted.key=` takes a key out.
 
 use super::document::{Entry, Node, Origin, SourceText, Value, item_index, parse_value};
 use super::error::{Report, listed, nearest};
@@ -37,12 +37,33 @@ pub(super) fn apply(root: &mut Node, text: &str, source: usize, report: &Report)
         report.place("", key_origin, "is no override: a part of its key is empty");
         return;
     }
+    if value.is_empty() {
+        return take_out(root, &parts, key_origin, report);
+    }
     // A text that is no TOML value is a string: `--set preset=kayaki` needs no quotes.
     let node = parse_value(value, source, value_start)
         .unwrap_or_else(|_| Node { value: Value::String(value.to_owned()), origin: value_origin });
     let node = Node { origin: value_origin, ..node };
     if let Some(slot) = find(root, &parts, key_origin, report) {
         *slot = node;
+    }
+}
+
+/// Takes a key, or an item of an array, out of the document.
+fn take_out(root: &mut Node, parts: &[&str], key: Origin, report: &Report) {
+    let Some((last, before)) = parts.split_last() else { return };
+    let missing = || _ = report.place("", key, "takes out what is not there");
+    // What is missing is not made.
+    if root.child_at(&parts.join(".")).is_none() {
+        return missing();
+    }
+    match find(root, before, key, report).map(|node| &mut node.value) {
+        Some(Value::Table(table)) => _ = table.remove(*last),
+        Some(Value::Array(items)) => match item_index(items, last) {
+            Some(index) => _ = items.remove(index),
+            None => missing(),
+        },
+        _ => missing(),
     }
 }
 

@@ -109,7 +109,7 @@ pub enum ProbeKind {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         shape: Option<usize>,
     },
-    /// Something of a rigid body.
+    /// Something of a body.
     Body {
         /// Name of the body.
         body: String,
@@ -118,7 +118,7 @@ pub enum ProbeKind {
     },
 }
 
-/// What is measured of a rigid body.
+/// What is measured of a body: all of a rigid one, the energy of any.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum BodyQuantity {
@@ -139,11 +139,13 @@ pub enum BodyQuantity {
     ContactForce,
     /// Moment of that about the centre of mass, N m (2D: N).
     ContactMoment,
+    /// Kinetic energy, and the elastic one of what strains, J (2D: J/m).
+    Energy,
 }
 
 impl BodyQuantity {
     /// All of them, by the probes' kinds.
-    pub const ALL: [(&str, Self); 8] = [
+    pub const ALL: [(&str, Self); 9] = [
         ("body-position", Self::Position),
         ("body-angle", Self::Angle),
         ("body-velocity", Self::Velocity),
@@ -152,6 +154,7 @@ impl BodyQuantity {
         ("body-moment", Self::Moment),
         ("body-contact-force", Self::ContactForce),
         ("body-contact-moment", Self::ContactMoment),
+        ("body-energy", Self::Energy),
     ];
 
     /// In words.
@@ -165,6 +168,7 @@ impl BodyQuantity {
             Self::Moment => "moment",
             Self::ContactForce => "contact force",
             Self::ContactMoment => "contact moment",
+            Self::Energy => "energy",
         }
     }
 
@@ -181,6 +185,7 @@ impl BodyQuantity {
             Self::AngularVelocity => "rad/s",
             Self::Force | Self::ContactForce => "N",
             Self::Moment | Self::ContactMoment => "N m",
+            Self::Energy => "J",
         }
     }
 
@@ -214,6 +219,7 @@ impl ProbeKind {
             Self::Energy { phase, part } => (EnergyPart::names(*phase, *part), "J"),
             Self::Force { .. } => (axes(), "N"),
             Self::Moment { .. } => (one("moment"), "N m"),
+            Self::Body { quantity: BodyQuantity::Energy, .. } => (one("energy"), "J"),
             Self::Body { quantity, .. } if quantity.turns() && dimension == 2 => {
                 (one(quantity.about_z()), quantity.unit())
             }

@@ -1,5 +1,6 @@
 //! The solid's section of a scene: what all models have. What only one has is in its file in `solid`.
 
+mod contact;
 mod finite_element;
 mod fracture;
 mod hypoelastic;
@@ -7,13 +8,14 @@ mod models;
 mod rigid;
 mod total_lagrangian;
 
+pub use contact::ContactKeys;
+pub(crate) use contact::{FRICTION, RESTITUTION, TABLE as CONTACT};
 pub use finite_element::{FiniteElementKeys, TimeIntegration};
 pub use fracture::Fracture;
 pub use hypoelastic::{ArtificialStress, HypoelasticKeys};
 pub(crate) use models::MODEL_KEYS;
 pub use models::{ModelKeys, SolidModelName};
-pub use rigid::{ContactKeys, Joint, JointKind, RigidBody, RigidKeys};
-pub(crate) use rigid::{FRICTION, RESTITUTION};
+pub use rigid::{Joint, JointKind, RigidBody, RigidKeys};
 pub use total_lagrangian::{Material, Plane, TotalLagrangianKeys};
 
 use super::ArtificialViscosity;

@@ -124,3 +124,23 @@ proptest! {
         prop_assert_eq!(plain, listed);
     }
 }
+
+/// How hard a wall pushes what rubs on it follows from speeds, of which such a scene has none.
+#[test]
+fn contact_without_any_speed_is_refused() {
+    let of = |contact: &str, gravity: f64| {
+        let text = format!(
+            "resolution = 0.01\nend_time = 1.0\ngravity = [0.0, {gravity}]\n[solid]\n{MATERIAL}{contact}\n\
+             [[shape]]\nname = \"block\"\nphase = \"solid\"\nbox = {{ min = [0.0, 0.0], max = [0.1, 0.07] }}\n\
+             [[shape]]\nname = \"floor\"\nphase = \"wall\"\nbox = {{ min = [0.0, -0.05], max = [0.1, 0.0] }}\n"
+        );
+        parse(&text, Path::new("s.toml"), &[])
+    };
+    assert!(of("", 0.0).is_ok());
+    let held = of("contact = { friction = 0.3 }", -9.81).expect("a right scene");
+    assert!(held.leaves_walls_to_coupler(0) && held.solids[0].contact().expect("said").friction == 0.3);
+    let errors = of("contact = { friction = 0.3 }", 0.0).expect_err("no speed");
+    let told: Vec<String> = errors.problems.iter().map(|p| p.to_string()).collect();
+    assert_eq!(told.len(), 1);
+    assert!(told[0].contains("solid.contact") && told[0].contains("says nothing of walls"), "{told:?}");
+}

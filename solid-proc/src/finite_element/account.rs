@@ -20,6 +20,13 @@ impl<const D: usize> FiniteElement<D> {
         (0..self.mesh.nodes()).map(|node| 0.5 * self.mass_of(node) * square(node)).sum()
     }
 
+    /// Kinetic energy of a cell: of its share in the masses of its nodes, J (2D: J/m).
+    pub(super) fn kinetic_energy_in(&self, p: usize) -> f64 {
+        let square = |node: u32| (0..D).map(|d| self.now.velocity[d][node as usize].powi(2)).sum::<f64>();
+        let nodes = self.mesh.of(p);
+        0.5 * self.mass / nodes.len() as f64 * nodes.iter().map(|&node| square(node)).sum::<f64>()
+    }
+
     /// The same where account is kept.
     pub(super) fn accounted_kinetic_energy(&self) -> Option<f64> {
         self.keeps_account().then(|| self.nodal_kinetic_energy())

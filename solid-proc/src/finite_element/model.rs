@@ -425,6 +425,14 @@ impl<const D: usize> SolidModel<D> for FiniteElement<D> {
         inner + self.contact.as_ref().map_or(0.0, Contact::energy)
     }
 
+    fn energy_of(&self, particles: &[u32]) -> f64 {
+        let of = |p: usize| {
+            let stored = self.stored_by(p, &self.gradient[p], self.volume_ratio[p], &self.now.displacement);
+            self.kinetic_energy_in(p) + stored
+        };
+        particles.iter().map(|&p| of(p as usize)).sum()
+    }
+
     fn kinetic_energy(&self) -> f64 {
         self.nodal_kinetic_energy()
     }

@@ -5,7 +5,7 @@ use super::columns::{Rates, Source, State};
 use super::rates::SolidSum;
 use super::wall_clamp::WallClamp;
 use crate::columns::{ParticleColumns, vector};
-use crate::effects::takes_part;
+use crate::effects::{takes_part, touches_walls};
 use crate::model::{Load, OutOfBounds, OuterRates, Particles, SolidModel};
 use crate::shown_velocity::ShownVelocity;
 use crate::side_friction;
@@ -89,7 +89,7 @@ impl<const D: usize> Hypoelastic<D> {
         let ModelKeys::Hypoelastic(keys) = &material.model else { return None };
         let artificial_stress =
             takes_part(scene, solid, EffectName::ArtificialStress).then_some(keys.artificial_stress);
-        let walls = takes_part(scene, solid, EffectName::WallContact)
+        let walls = touches_walls(scene, solid)
             .then(|| Walls::new(scene, &layout.wall, wall_spacing + SKIN * h, isa))
             .flatten();
         let side_friction = takes_part(scene, solid, EffectName::SideFriction)
@@ -217,6 +217,17 @@ impl<const D: usize> Hypoelastic<D> {
             }
         }
         self.apply_state_equation();
+    }
+
+    /// Energy stored by the particle at a slot, J (2D: J/m), of these moduli, Pa.
+    fn stored_at(&self, slot: usize, bulk_modulus: f64, shear_modulus: f64) -> f64 {
+        let t = self.stress_at(slot);
+        let mut norm: f64 = t.as_flattened().iter().map(|v| v * v).sum();
+        if D == 2 {
+            norm += (t[0][0] + t[1][1]).powi(2);
+        }
+        let compressed = self.pressure[slot].powi(2) / (2.0 * bulk_modulus);
+        self.sources[slot].volume * (compressed + norm / (4.0 * shear_modulus))
     }
 
     /// Brings walls that move to where they are at a time, s.
@@ -356,18 +367,13 @@ impl<const D: usize> SolidModel<D> for Hypoelastic<D> {
 
     fn strain_energy(&self) -> f64 {
         let (k, g) = (self.material.bulk_modulus(), self.material.shear_modulus());
-        self.slot_of
-            .iter()
-            .map(|&slot| {
-                let s = slot as usize;
-                let t = self.stress_at(s);
-                let mut norm: f64 = t.as_flattened().iter().map(|v| v * v).sum();
-                if D == 2 {
-                    norm += (t[0][0] + t[1][1]).powi(2);
-                }
-                self.sources[s].volume * (self.pressure[s].powi(2) / (2.0 * k) + norm / (4.0 * g))
-            })
-            .sum()
+        self.slot_of.iter().map(|&slot| self.stored_at(slot as usize, k, g)).sum()
+    }
+
+    fn energy_of(&self, particles: &[u32]) -> f64 {
+        let (k, g) = (self.material.bulk_modulus(), self.material.shear_modulus());
+        let stored = particles.iter().map(|&p| self.stored_at(self.slot_of[p as usize] as usize, k, g));
+        self.particles().kinetic_energy_of(particles) + stored.sum::<f64>()
     }
 
     fn state(&mut self) -> Option<&mut dyn halfstep_wire::state::State> {

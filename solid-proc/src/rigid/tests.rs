@@ -1,5 +1,7 @@
 //! Rigid bodies by hand.
 
+mod hard;
+
 use super::Rigid;
 use crate::model::{Load, SolidModel};
 use halfstep_scene::{Geometry, Phase, Scene};

@@ -7,7 +7,7 @@
 //! (see `crate::wall`).
 
 use crate::columns::{Vectors, vectors};
-use crate::effects::takes_part;
+use crate::effects::{takes_part, touches_walls};
 use crate::surface::surface_set;
 use crate::wall::{Touching, Walls, repulsion};
 use halfstep_scene::geometry::{self, Layout, SolidPoint};
@@ -67,7 +67,7 @@ impl<const D: usize> Contact<D> {
         let dx = scene.solid_spacing(solid);
         let skin = SKIN * scene.smoothing_ratio * scene.resolution;
         let wall_spacing = scene.interface_spacing(solid);
-        let walls = takes_part(scene, solid, EffectName::WallContact)
+        let walls = touches_walls(scene, solid)
             .then(|| Walls::new(scene, &layout.wall, wall_spacing + skin, isa))
             .flatten();
         let breaks = takes_part(scene, solid, EffectName::Fracture);

@@ -241,24 +241,20 @@ impl<const D: usize> TotalLagrangian<D> {
 
     /// sum V0 psi, the hourglass energy and that of contacts between bodies, J.
     pub(super) fn energy(&self) -> f64 {
-        let inner: f64 = self
-            .slot_of
-            .iter()
-            .map(|&slot| {
-                let slot = slot as usize;
-                let f = &self.gradient[slot];
-                let strained = match self.damage_at(slot) {
-                    d if d > 0.0 => self.volume * self.law.damaged(f, self.volume_ratio[slot], d).energy,
-                    _ => self.volume * self.law.energy(f, self.volume_ratio[slot]),
-                };
-                let relaxing = self.memory.energy(slot, &self.arms, self.material.shear_modulus());
-                strained
-                    + self.volume * relaxing
-                    + 0.5 * self.hourglass[slot] * self.volume * self.error_square(slot)
-            })
-            .sum();
+        let inner: f64 = self.slot_of.iter().map(|&slot| self.stored_at(slot as usize)).sum();
         let faces = if self.fracture.is_some() { self.face_energy() } else { 0.0 };
         inner + faces + self.contact.as_ref().map_or(0.0, Contact::energy)
+    }
+
+    /// Energy stored by the particle at a slot, J (2D: J/m).
+    pub(super) fn stored_at(&self, slot: usize) -> f64 {
+        let f = &self.gradient[slot];
+        let strained = match self.damage_at(slot) {
+            d if d > 0.0 => self.volume * self.law.damaged(f, self.volume_ratio[slot], d).energy,
+            _ => self.volume * self.law.energy(f, self.volume_ratio[slot]),
+        };
+        let relaxing = self.memory.energy(slot, &self.arms, self.material.shear_modulus());
+        strained + self.volume * relaxing + 0.5 * self.hourglass[slot] * self.volume * self.error_square(slot)
     }
 
     /// sum_j w |e_ij|² = sum_j w |beta u_ij|² - H : H M, by the definition of H.

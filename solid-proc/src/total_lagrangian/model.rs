@@ -422,6 +422,11 @@ impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {
         self.energy()
     }
 
+    fn energy_of(&self, particles: &[u32]) -> f64 {
+        let stored = particles.iter().map(|&p| self.stored_at(self.slot_of[p as usize] as usize));
+        self.particles().kinetic_energy_of(particles) + stored.sum::<f64>()
+    }
+
     fn state(&mut self) -> Option<&mut dyn halfstep_wire::state::State> {
         Some(self)
     }

@@ -31,6 +31,8 @@ pub(super) fn brief(model: &str) -> &'static str {
     match model {
         "hypoelastic" => "HE",
         "total-lagrangian" => "TL",
+        "finite-element" => "FE",
+        "rigid" => "R",
         _ => "",
     }
 }

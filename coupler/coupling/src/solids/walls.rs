@@ -1,4 +1,5 @@
-//! Who evaluates contact of external solids with walls: the coupler, from their records, unless they do it themselves.
+//! Who evaluates contact with walls: of external solids the coupler, from their records, unless they do it themselves;
+//! of others their models, unless these leave it to the coupler.
 
 use super::Solids;
 use crate::recorder::Recorder;
@@ -6,7 +7,7 @@ use halfstep_interface::contact::WallContact;
 use halfstep_link::StateMessage;
 use halfstep_wire::Name;
 
-/// Who evaluates contact of an external solid with the walls that the scene lets it touch.
+/// Who evaluates contact of a solid with the walls that the scene lets it touch.
 pub(crate) enum Walls<'a> {
     /// The coupler.
     Coupler(&'a WallContact),
@@ -58,14 +59,16 @@ impl<const D: usize> Solids<D> {
         changed
     }
 
-    /// Who evaluates the walls of each external solid that the scene lets touch some, with its place.
+    /// Who evaluates the walls of each solid that the scene lets touch some, with its place, where it is not a model of
+    /// the program.
     pub(crate) fn walls(&self) -> impl Iterator<Item = (usize, Walls<'_>)> {
         self.solids.iter().enumerate().filter_map(|(solid, side)| {
-            let external = side.external.as_ref().filter(|_| side.touches_walls)?;
-            let walls = match &side.walls {
-                _ if external.own_walls => Walls::Own,
-                Some(walls) => Walls::Coupler(walls),
-                None => Walls::Space,
+            let walls = match (&side.walls, &side.external) {
+                _ if !side.touches_walls => return None,
+                (_, Some(external)) if external.own_walls => Walls::Own,
+                (Some(walls), _) => Walls::Coupler(walls),
+                (None, Some(_)) => Walls::Space,
+                (None, None) => return None,
             };
             Some((self.first + solid, walls))
         })

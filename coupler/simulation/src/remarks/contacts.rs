@@ -1,7 +1,7 @@
 //! Remarks on what touches: overlaps at the start, and pairs of solids of which the scene says nothing.
 
 use halfstep_scene::geometry::Surface;
-use halfstep_scene::{Geometry, Phase, Scene, Shape};
+use halfstep_scene::{Body, ContactKeys, EffectName, Geometry, Phase, Scene, Shape, Switch};
 
 /// Part of the spacing that surfaces may lie in each other.
 const OVERLAP: f64 = 1e-3;
@@ -98,17 +98,58 @@ fn tied(scene: &Scene, a: &Shape, b: &Shape) -> bool {
     (moved(a) && moved(b)) || keys.joints.iter().any(|joint| joint.holds() && ties(&joint.body, &joint.with))
 }
 
+/// `contact` of a solid that strains, where there is nothing that it speaks of, or where it does not reach.
+pub(super) fn of_walls(scene: &Scene, bodies: &[Body], all: &mut Vec<String>) {
+    for (k, solid) in scene.solids.iter().enumerate() {
+        if !scene.leaves_walls_to_coupler(k) {
+            continue;
+        }
+        let name = &solid.name;
+        if scene.walls_to_touch().next().is_none() {
+            all.push(format!(
+                "the `contact` of `{name}` changes nothing: it is about walls, and there is none that may touch it \
+                 (contact = true at a wall)"
+            ));
+        }
+        let own =
+            |body: &&Body| body.shapes.first().is_some_and(|&shape| scene.shapes[shape].solid == Some(k));
+        let rubs = solid.contact().unwrap_or_default() != ContactKeys::default();
+        if rubs && bodies.iter().filter(own).count() > 1 {
+            all.push(format!(
+                "the bodies of `{name}` touch each other without friction: its `contact` is about walls (a [[solid]] for \
+                 each and [[contact]] say how they touch)"
+            ));
+        }
+    }
+}
+
+/// Solids that break, and touch others with the surface that they began with.
+pub(super) fn debris(scene: &Scene, all: &mut Vec<String>) {
+    let breaks = |k: &usize| {
+        scene.solids[*k].fracture().is_some() && scene.switch(EffectName::Fracture) != Switch::Off
+    };
+    for contact in scene.contacts() {
+        let Some(broken) = contact.solids.iter().copied().find(breaks) else { continue };
+        let [a, b] = contact.solids.map(|k| &scene.solids[k].name);
+        all.push(format!(
+            "`{a}` and `{b}` touch with the surfaces that they begin with: what cracks open in `{}` is not held against \
+             the other, and a piece that breaks off takes its part of the surface along",
+            scene.solids[broken].name
+        ));
+    }
+}
+
 /// Two solids touch as no table says, although their own bodies rub.
 pub(super) fn unsaid(scene: &Scene, all: &mut Vec<String>) {
-    let friction = |k: usize| scene.solids[k].rigid().map_or(0.0, |keys| keys.contact.friction);
+    let friction = |k: usize| scene.solids[k].contact().map_or(0.0, |keys| keys.friction);
     for contact in scene.contacts() {
         let said = scene.pair_contacts.iter().any(|other| other.solids == contact.solids);
         let [a, b] = contact.solids;
         if !said && friction(a).max(friction(b)) > 0.0 {
             let [a, b] = [a, b].map(|k| &scene.solids[k].name);
             all.push(format!(
-                "`{a}` and `{b}` touch without friction: their own `contact` is about bodies of one solid ([[contact]] \
-                 with solids = [\"{a}\", \"{b}\"] says how the two touch)"
+                "`{a}` and `{b}` touch without friction: their own `contact` is about walls and bodies of one solid \
+                 ([[contact]] with solids = [\"{a}\", \"{b}\"] says how the two touch)"
             ));
         }
     }

@@ -208,6 +208,61 @@ fn a_body_that_falls_through_a_wall() {
 }
 
 #[test]
+fn friction_of_what_strains_is_about_walls() {
+    let rubs = |parts: &[&str]| {
+        let text = format!(
+            "resolution = 0.005\nend_time = 1.0\n[fluid]\ndensity = 1000.0\n[solid]\ndensity = 1100.0\n\
+             youngs_modulus = 12e6\npoissons_ratio = 0.4\ncontact = {{ friction = 0.3 }}\n{}",
+            parts.concat()
+        );
+        remarks(&parse(&text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}")))
+    };
+    // By default walls do not touch what is clamped.
+    let nothing = rubs(&[TANK, WATER, PLATE]);
+    assert!(
+        nothing.len() == 1 && nothing[0].starts_with("the `contact` of `solid` changes nothing"),
+        "{nothing:?}"
+    );
+    let free = PLATE.lines().filter(|line| !line.starts_with("clamp")).collect::<Vec<_>>().join("\n") + "\n";
+    assert_eq!(rubs(&[TANK, WATER, &free]), [""; 0]);
+    let other = free.replace("\"plate\"", "\"block\"").replace("0.22", "0.32").replace("[0.2,", "[0.3,");
+    let two = rubs(&[TANK, WATER, &free, &other]);
+    let text = "the bodies of `solid` touch each other without friction: its `contact` is about walls";
+    assert!(two.len() == 1 && two[0].starts_with(text), "{two:?}");
+}
+
+#[test]
+fn debris_is_not_known_to_contact() {
+    let of = |more: &str| {
+        let shape = |name: &str, from: f64| {
+            format!(
+                "[[shape]]\nname = \"{name}\"\nphase = \"solid\"\nsolid = \"{name}\"\n\
+                 box = {{ min = [{from}, 0.0], max = [{}, 0.1] }}\n",
+                from + 0.04
+            )
+        };
+        let solid = |name: &str, more: &str| {
+            format!(
+                "[[solid]]\nname = \"{name}\"\ndensity = 1100.0\nyoungs_modulus = 1e8\npoissons_ratio = 0.3\n{more}\n"
+            )
+        };
+        let text = format!(
+            "resolution = 0.005\nend_time = 1.0\n{}{}{}{}{more}",
+            solid("glass", "fracture = { strength = 1e5, energy = 10.0 }"),
+            solid("stone", ""),
+            shape("glass", 0.0),
+            shape("stone", 0.1)
+        );
+        remarks(&parse(&text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}")))
+    };
+    let found = of("");
+    let text =
+        "`glass` and `stone` touch with the surfaces that they begin with: what cracks open in `glass` is";
+    assert!(found.len() == 1 && found[0].starts_with(text), "{found:?}");
+    assert_eq!(of("[[contact]]\nsolids = [\"glass\", \"stone\"]\ntouch = false\n"), [""; 0]);
+}
+
+#[test]
 fn water_in_the_air_and_in_a_wall() {
     let high = WATER.replace("[0.0, 0.0], max = [0.1, 0.1]", "[0.0, 0.1], max = [0.1, 0.2]");
     assert_eq!(

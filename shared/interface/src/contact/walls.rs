@@ -1,4 +1,5 @@
-//! Contact of a solid with the walls of a scene: of one that another program computes, from its records.
+//! Contact of a solid with the walls of a scene, from its records: of one that another program computes, or that strains
+//! and has a friction and a restitution.
 //!
 //! Points of the solid's outline are held against the walls' exact surfaces ([`Surface`]), wherever these are by now.
 //! The law is that between two solids ([`Law`]) with all of K on the points, since a wall has none of its own, and
@@ -81,7 +82,7 @@ pub(super) fn back(placement: &Placement, at: [f64; 2]) -> [f64; 2] {
 impl WallContact {
     /// Of a scene's solid of that index; `None` where it can touch no wall, and in space.
     ///
-    /// Friction and restitution are those of the solid's own `contact`, which rigid ones have, else zero.
+    /// Friction and restitution are those of the solid's own `contact`, else zero.
     pub fn new(scene: &Scene, solid: usize) -> Option<Self> {
         if scene.dimension != 2 || scene.walls_to_touch().next().is_none() {
             return None;
@@ -91,7 +92,7 @@ impl WallContact {
             motion: shape.motion.clone(),
             belt: [shape.velocity[0], shape.velocity[1]],
         };
-        let own = scene.solids[solid].rigid().map(|keys| keys.contact).unwrap_or_default();
+        let own = scene.solids[solid].contact().unwrap_or_default();
         let law = PairContact {
             friction: own.friction,
             restitution: own.restitution,

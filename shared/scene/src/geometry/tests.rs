@@ -37,6 +37,7 @@ fn scene(shapes: Vec<Shape>) -> Scene {
             artificial_viscosity: ArtificialViscosity { linear: 1.0, quadratic: 1.0 },
             model: ModelKeys::Hypoelastic(HypoelasticKeys {
                 artificial_stress: ArtificialStress { strength: 0.3, exponent: 4.0 },
+                contact: None,
             }),
             side_friction: 0.0,
             sub_steps: SubSteps::Auto,

@@ -5,7 +5,7 @@ use super::{Key, Kind, Table, words};
 use crate::SolidModelName;
 use crate::read::{DENSITY, MAX_THREADS};
 use crate::section::Range;
-use crate::solid::{FRICTION, MODEL_KEYS, RESTITUTION};
+use crate::solid::{self, FRICTION, MODEL_KEYS, RESTITUTION};
 
 /// A name of a solid or a process.
 const IDENTIFIER: Kind = Kind::Form("^[a-z][a-z0-9-]{0,23}$");
@@ -56,6 +56,11 @@ pub(super) static SOLID: Table = Table {
             .unit("N/m3")
             .default("0.0")
             .only(STRAINS),
+            Key::new(
+                "contact",
+                Kind::Table(&solid::CONTACT),
+                "How it touches walls; of what strains only in the plane, without cracks.",
+            ),
             Key::new("sub_steps", Kind::IntegerOrAuto(1, 100_000), "Sub-steps a step: 1 or even.")
                 .default("\"auto\""),
         ],

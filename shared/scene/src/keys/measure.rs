@@ -16,6 +16,7 @@ const BODIES: &[&str] = &[
     "body-moment",
     "body-contact-force",
     "body-contact-moment",
+    "body-energy",
 ];
 
 pub(super) static PROBE: Table = Table::new(
@@ -56,7 +57,7 @@ pub(super) static PROBE: Table = Table::new(
         Key::new("within", Kind::Table(&BOX), "Only on particles that are in this box at the start.")
             .only(LOADED),
         Key::new("about", Kind::Vector, "The point that a moment is about.").unit("m").only(&["moment"]),
-        Key::new("body", Kind::Text, "Name of a rigid body.").only(BODIES),
+        Key::new("body", Kind::Text, "Name of a body; but for its energy of a rigid one.").only(BODIES),
         Key::new("solid", Kind::Text, "Name of the solid that it is about, where there are several."),
     ],
 )

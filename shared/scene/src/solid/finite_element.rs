@@ -1,5 +1,6 @@
 //! What a scene says to the finite-element model alone.
 
+use super::ContactKeys;
 use super::models::Rules;
 use super::total_lagrangian::{self, Material, Plane, material, plane};
 use crate::keys::{Key, words};
@@ -18,6 +19,9 @@ pub struct FiniteElementKeys {
     /// How nodes go on in time.
     #[serde(default)]
     pub time_integration: TimeIntegration,
+    /// Friction and restitution at walls; `None`: the model holds it against them, without either.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact: Option<ContactKeys>,
 }
 
 /// How the nodes of finite elements go on in time.
@@ -67,6 +71,11 @@ impl FiniteElementKeys {
         let default = TimeIntegration::default();
         let time_integration =
             section.choice("time_integration", Some(default), &TIME_INTEGRATIONS).unwrap_or(default);
-        Self { material: material(section), plane: plane(section), time_integration }
+        Self {
+            material: material(section),
+            plane: plane(section),
+            time_integration,
+            contact: ContactKeys::read(section),
+        }
     }
 }

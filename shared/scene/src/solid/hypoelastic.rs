@@ -1,5 +1,6 @@
 //! What a scene says to the hypoelastic model alone.
 
+use super::ContactKeys;
 use super::models::Rules;
 use crate::keys::{Key, Kind, Table};
 use crate::preset::Defaults;
@@ -12,6 +13,9 @@ use serde::{Deserialize, Serialize};
 pub struct HypoelasticKeys {
     /// Gray's artificial stress.
     pub artificial_stress: ArtificialStress,
+    /// Friction and restitution at walls; `None`: the model holds it against them, without either.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact: Option<ContactKeys>,
 }
 
 /// Parameters of the artificial stress (Gray 2001).
@@ -60,7 +64,7 @@ impl HypoelasticKeys {
             exponent: exponent(&stress, default.exponent),
         };
         stress.finish();
-        Self { artificial_stress }
+        Self { artificial_stress, contact: ContactKeys::read(section) }
     }
 }
 

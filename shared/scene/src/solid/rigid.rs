@@ -1,9 +1,10 @@
-//! What a scene says to the rigid model alone: contact, bodies and joints.
+//! What a scene says to the rigid model alone: bodies and joints.
 
 mod joint;
 
 pub use joint::{Joint, JointKind};
 
+use super::ContactKeys;
 use super::models::Rules;
 use crate::keys::{Key, Kind, Table};
 use crate::preset::Defaults;
@@ -23,15 +24,6 @@ pub struct RigidKeys {
     /// What holds bodies.
     #[serde(default)]
     pub joints: Vec<Joint>,
-}
-
-/// The law of contact.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct ContactKeys {
-    /// Coulomb's coefficient of friction, sticking and sliding.
-    pub friction: f64,
-    /// Normal speed after an impact over that before it.
-    pub restitution: f64,
 }
 
 /// A rigid body whose mass or motion does not follow from its shapes.
@@ -54,7 +46,6 @@ pub(super) const RULES: Rules = Rules {
     smoothing: SMOOTHING,
     defaults: |defaults| defaults,
     keys: &[
-        ("contact", "only the rigid model has a friction and a restitution"),
         ("bodies", "only the rigid model has a mass for a whole body"),
         ("joints", "only rigid bodies have joints; a `clamp` at a shape holds others"),
     ],
@@ -64,9 +55,6 @@ pub(super) const RULES: Rules = Rules {
     rigid: true,
 };
 
-pub(crate) const FRICTION: Range = Range::at_least(0.0).up_to(100.0).why("it is Coulomb's coefficient");
-pub(crate) const RESTITUTION: Range =
-    Range::at_least(0.0).up_to(1.0).why("it is the speed after an impact over the one before");
 /// Ends beyond any body, within which no formula overflows.
 const MASS: Range = Range::positive().up_to(1e15);
 /// rad/s.
@@ -75,21 +63,9 @@ const SPIN: Range = Range::at_least(-1e6).up_to(1e6);
 const RIGID: &[&str] = &["rigid"];
 
 pub(super) const KEYS: &[Key] = &[
-    Key::new("contact", Kind::Table(&CONTACT), "What happens where a body touches a wall or another body.")
-        .only(RIGID),
     Key::new("bodies", Kind::Tables(&BODY), "What does not follow from the shapes of a body.").only(RIGID),
     Key::new("joints", Kind::Tables(&joint::TABLE), "What holds bodies.").only(RIGID),
 ];
-
-static CONTACT: Table = Table::new(
-    "rigid_contact",
-    "What happens where a body touches a wall or another body.",
-    &[
-        Key::number("friction", FRICTION, "Coulomb's coefficient, sticking and sliding.").default("0.0"),
-        Key::number("restitution", RESTITUTION, "Normal speed after an impact over that before it.")
-            .default("0.0"),
-    ],
-);
 
 static BODY: Table = Table::new(
     "rigid_body",
@@ -108,17 +84,11 @@ static BODY: Table = Table::new(
 impl RigidKeys {
     pub(super) fn read(section: &Section<'_>, defaults: &Defaults) -> Self {
         let dimension = defaults.dimension;
-        let contact = section.section("contact");
-        let keys = Self {
-            contact: ContactKeys {
-                friction: contact.number("friction", Some(0.0)),
-                restitution: contact.number("restitution", Some(0.0)),
-            },
+        Self {
+            contact: ContactKeys::read(section).unwrap_or_default(),
             bodies: section.tables("bodies").into_iter().map(|table| body(table, dimension)).collect(),
             joints: section.tables("joints").into_iter().filter_map(|t| joint::read(t, dimension)).collect(),
-        };
-        contact.finish();
-        keys
+        }
     }
 }
 

@@ -1,8 +1,8 @@
 //! What a scene says to the total-Lagrangian model alone.
 
-use super::Fracture;
 use super::fracture as fracture_keys;
 use super::models::Rules;
+use super::{ContactKeys, Fracture};
 use crate::ArtificialViscosity;
 use crate::document::{Node, Value};
 use crate::keys::{Key, Kind, words};
@@ -27,6 +27,9 @@ pub struct TotalLagrangianKeys {
     /// Strength and fracture energy; `None`: it does not break.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fracture: Option<Fracture>,
+    /// Friction and restitution at walls; `None`: the model holds it against them, without either.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact: Option<ContactKeys>,
 }
 
 /// What two dimensions mean to a solid.
@@ -121,6 +124,7 @@ impl TotalLagrangianKeys {
             prony,
             plane,
             fracture: fracture(section, plane, material),
+            contact: ContactKeys::read(section),
         }
     }
 
@@ -143,6 +147,10 @@ fn fracture(section: &Section<'_>, plane: Plane, material: Material) -> Option<F
             node,
             "cannot stand with `prony`: what damage does to Maxwell arms is not known",
         );
+    }
+    if section.node("contact").is_some() {
+        let why = "the coupler holds a solid with `contact` against walls, and knows its surface at the start alone";
+        section.wrong("fracture", node, format!("cannot stand with `contact`: {why}, not what cracks open"));
     }
     if (plane, material) == (Plane::Stress, Material::NeoHookean) {
         let why = "the strain across the plane would depend on the damage";

@@ -1,0 +1,253 @@
+//! Solids that strain rub on walls and bounce off them as their `contact` says: the coupler holds them.
+
+use halfstep_output::run_json::ContactReport;
+use halfstep_tests::run::{Finished, RunBuilder, scene_at};
+use std::path::PathBuf;
+
+const MODELS: [&str; 3] = ["total-lagrangian", "finite-element", "hypoelastic"];
+const G: f64 = 9.81;
+
+struct Written {
+    _folder: tempfile::TempDir,
+    path: PathBuf,
+}
+
+impl Written {
+    fn new(text: &str) -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("scene.toml");
+        std::fs::write(&path, text).expect("a scene");
+        Self { _folder: folder, path }
+    }
+
+    fn run(&self, model: &str) -> RunBuilder {
+        scene_at(&self.path).set("solid.model", model)
+    }
+}
+
+fn contact(run: &Finished) -> &ContactReport {
+    let contact = run.report.contacts.first().expect("contact");
+    assert_eq!(contact.solids, ["solid", "wall"]);
+    contact
+}
+
+/// What the ledger does not explain over the largest energy exchanged.
+fn unexplained(run: &Finished) -> f64 {
+    run.report.energy.as_ref().expect("ledgers").relative_residual
+}
+
+/// A block of rubber, 5 kg/m, c_P = 37 m/s, on a floor.
+const BLOCK: &str = r#"
+resolution = 0.01
+end_time = 0.5
+
+[solid]
+density = 1000.0
+youngs_modulus = 1e6
+poissons_ratio = 0.3
+contact = { friction = 0.3 }
+
+[[shape]]
+name = "block"
+phase = "solid"
+box = { min = [0.0, 0.0], max = [0.1, 0.05] }
+velocity = [1.0, 0.0]
+
+[[shape]]
+name = "floor"
+phase = "wall"
+box = { min = [-0.1, -0.05], max = [0.6, 0.0] }
+
+[[probe]]
+name = "block"
+kind = "centroid"
+phase = "solid"
+
+[[probe]]
+name = "ledger"
+kind = "energy"
+phase = "solid"
+"#;
+
+/// v² / (2 mu g), and all that the block had goes to friction, less what its own viscosity takes.
+#[test]
+fn a_sliding_block_stops_as_coulomb_says() {
+    let scene = Written::new(BLOCK);
+    for model in MODELS {
+        let run = scene.run(model).in_process().run();
+        let way = run.curve("block.x").at(0.5) - 0.05;
+        let expected = 1.0 / (2.0 * 0.3 * G);
+        let [normal, friction] = [contact(&run).normal, contact(&run).friction];
+        let given = run.curve("ledger.interface-pressure").at(0.5);
+        let viscosity = run.curve("ledger.artificial-viscosity").at(0.5);
+        let lost = unexplained(&run);
+        println!(
+            "{model}: {way:.5} m of {expected:.5}, friction {friction:.4} J/m, viscosity {viscosity:.4}, unexplained \
+             {lost:.1e}, {:?}",
+            contact(&run)
+        );
+        assert!((way / expected - 1.0).abs() < 0.01, "{model}: {way}");
+        assert!((friction / -2.5 - 1.0).abs() < 0.03, "{model}: {friction}");
+        assert!(((normal + friction) / given - 1.0).abs() < 1e-9, "{model}: {given}");
+        assert!(lost < 1e-3, "{model}: {lost}");
+        // The model itself leaves walls alone.
+        assert_eq!(run.curve("ledger.wall-contact").at(0.5), 0.0);
+    }
+}
+
+/// On a slope: gravity is turned instead.
+fn on_a_slope(tangent: f64) -> Written {
+    let angle = f64::atan(tangent);
+    let gravity = format!("gravity = [{}, {}]\n", G * angle.sin(), -G * angle.cos());
+    Written::new(&(gravity + &BLOCK.replace("velocity = [1.0, 0.0]\n", "")))
+}
+
+/// With mu = 0.3: below its angle the block leans over as an elastic block does, and stays; above it goes with
+/// g (sin - mu cos).
+#[test]
+fn a_block_on_a_slope_holds_below_the_angle_of_friction_and_slides_above() {
+    for model in MODELS {
+        let run = on_a_slope(0.27).run(model).in_process().run();
+        let x = run.curve("block.x");
+        let (lean, creep) = (x.at(0.25) - 0.05, x.at(0.5) - x.at(0.25));
+        println!("{model}: leans by {lean:.2e} m, then creeps by {creep:.2e} m");
+        assert!(lean.abs() < 5e-4 && creep.abs() < 2e-5, "{model}: {lean:e}, {creep:e}");
+        let run = on_a_slope(0.4).run(model).in_process().run();
+        // Once it has come to rest on the slope: the second difference of the way over 0.15 s.
+        let x = run.curve("block.x");
+        let rate = (x.at(0.5) - 2.0 * x.at(0.35) + x.at(0.2)) / (0.15 * 0.15);
+        let angle = f64::atan(0.4);
+        let right = G * (angle.sin() - 0.3 * angle.cos());
+        println!("{model}: slides with {rate:.4} m/s² of {right:.4}");
+        assert!((rate / right - 1.0).abs() < 0.02, "{model}: {rate}");
+    }
+}
+
+/// A disc of 40 mm that meets a floor at 1 m/s; c_P = 116 m/s, so that it is stiffer than contact.
+const DISC: &str = r#"
+resolution = 0.002
+end_time = 0.02
+gravity = [0.0, 0.0]
+
+[solid]
+density = 1000.0
+youngs_modulus = 1e7
+poissons_ratio = 0.3
+contact = { restitution = 1.0 }
+
+[[shape]]
+name = "disc"
+phase = "solid"
+disc = { center = [0.0, 0.025], radius = 0.02 }
+velocity = [0.0, -1.0]
+
+[[shape]]
+name = "floor"
+phase = "wall"
+contact = true
+box = { min = [-0.05, -0.02], max = [0.05, 0.0] }
+
+[[probe]]
+name = "disc"
+kind = "centroid"
+phase = "solid"
+
+[[probe]]
+name = "ledger"
+kind = "energy"
+phase = "solid"
+"#;
+
+/// As asked where it is 1. Where it is 1/2, 0.62, where it is 0, 0.50: the force goes over from that of coming to that of leaving within the
+/// speed that a step of the limit changes, and the limit is that of the lightest particle behind the surface, while the
+/// whole disc goes deep.
+#[test]
+fn a_disc_comes_back_with_about_the_restitution_that_is_asked() {
+    let scene = Written::new(DISC);
+    for model in MODELS {
+        for (restitution, measured) in [(1.0, 1.0), (0.5, 0.62), (0.0, 0.5)] {
+            let run = scene.run(model).set("solid.contact.restitution", restitution).in_process().run();
+            let height = run.curve("disc.y");
+            let left = (height.at(0.02) - height.at(0.018)) / 0.002;
+            let scale = run.curve("ledger.kinetic").at(0.0);
+            let (contact, lost) = (contact(&run).normal / scale, unexplained(&run));
+            println!("{model}, {restitution}: e = {left:.3}, contact {contact:.4}, unexplained {lost:.1e}");
+            assert!((left - measured).abs() < 0.02, "{model}, {restitution}: {left}");
+            assert!(lost < 1e-2, "{model}: {lost}");
+        }
+    }
+}
+
+/// A block of rubber that drops on the floor of a tank with a little water.
+const WET: &str = r#"
+resolution = 0.02
+end_time = 0.2
+
+[fluid]
+density = 1000.0
+
+[solid]
+density = 1500.0
+youngs_modulus = 1e6
+poissons_ratio = 0.3
+contact = { friction = 0.4, restitution = 0.3 }
+
+[[shape]]
+name = "tank"
+phase = "wall"
+tank = { min = [0.0, 0.0], max = [0.6, 0.4], open = ["top"] }
+
+[[shape]]
+name = "block"
+phase = "solid"
+box = { min = [0.3, 0.005], max = [0.46, 0.105] }
+velocity = [-0.5, 0.0]
+
+[[shape]]
+name = "water"
+phase = "fluid"
+box = { min = [0.0, 0.0], max = [0.16, 0.1] }
+pressure = "hydrostatic"
+"#;
+
+#[test]
+fn processes_do_not_matter_and_an_interrupted_run_goes_on() {
+    let scene = Written::new(WET);
+    for model in MODELS {
+        let run = || scene.run(model);
+        let whole = run().run();
+        println!("{model}: {:?}", contact(&whole));
+        assert!(contact(&whole).friction < 0.0);
+        for other in [run().in_process(), run().threads(1)] {
+            let other = other.run();
+            assert_eq!(other.state_hash(), whole.state_hash(), "{model}");
+            assert_eq!(other.report.contacts, whole.report.contacts, "{model}");
+        }
+        let folder = tempfile::tempdir().expect("a folder");
+        let dir = folder.path().join("run");
+        run().set("output.checkpoint_interval", 0.03).until(0.1).out(&dir).run();
+        let resumed = scene_at(&scene.path).resume(&dir).until(0.2).run();
+        assert!(resumed.report.resumed[0].step > 0);
+        assert_eq!(resumed.state_hash(), whole.state_hash(), "{model}");
+        assert_eq!(resumed.report.contacts, whole.report.contacts, "{model}");
+        assert!(whole.outcome.log().contains("walls: by the coupler, friction 0.4, restitution 0.3"));
+    }
+}
+
+/// A floor that goes up with 0.2 m/s takes the block along; the effect's row says who holds it.
+#[test]
+fn a_floor_that_goes_up_lifts_the_block() {
+    let floor = "name = \"floor\"\nmotion = { velocity = [0.0, 0.2] }\ncontact = true\n";
+    let text = BLOCK.replace("name = \"floor\"\n", floor).replace("velocity = [1.0, 0.0]\n", "");
+    let run = Written::new(&text).run("total-lagrangian").in_process().until(0.3).run();
+    let rise = run.curve("block.y").at(0.3) - run.curve("block.y").at(0.0);
+    let given = contact(&run).normal / (5.0 * (G * 0.06 + 0.5 * 0.04));
+    let row = run.report.effects.iter().find(|row| row.name == "wall-contact").expect("a row");
+    println!("rises {rise:.5} m of 0.06, gets {given:.4} of m g h + m v² / 2; {}", row.why);
+    assert!((rise - 0.06).abs() < 1e-3, "{rise}");
+    assert!((given - 1.0).abs() < 0.02, "{given}");
+    assert_eq!(
+        (row.on, row.why.as_str()),
+        (true, "a wall has contact = true: in the coupler, friction 0.3, restitution 0")
+    );
+}
