@@ -1,6 +1,7 @@
-"""A rigid block on a spring along x as the solid of a run: `spring_block.py STIFFNESS` (N/m)."""
+"""A rigid block on a spring along x as the solid of a run, or one of several: `spring_block.py STIFFNESS` (N/m)."""
 
 import itertools
+import os
 import sys
 
 import halfstep
@@ -8,8 +9,11 @@ import numpy as np
 
 stiffness = float(sys.argv[1])
 scene = halfstep.description()
-box = next(shape["geometry"]["box"] for shape in scene["shapes"] if shape["phase"] == "solid")
-dx, dimension, density = scene["resolution"], scene["dimension"], scene["solid"]["density"]
+solids = scene["solid"] if isinstance(scene["solid"], list) else [scene["solid"]]
+number = next((k for k, solid in enumerate(solids) if solid.get("name") == os.environ["HALFSTEP_NAME"]), 0)
+own = (shape for shape in scene["shapes"] if shape["phase"] == "solid" and (shape.get("solid") or 0) == number)
+box = next(own)["geometry"]["box"]
+dx, dimension, density = scene["resolution"], scene["dimension"], solids[number]["density"]
 
 # A particle for each cell of the block, which is rigid: all of them have one displacement.
 sides = zip(box["min"], box["max"], range(dimension))

@@ -35,9 +35,20 @@ fn the_wall_breaks_alike_in_processes_and_threads_and_its_ledger_is_closed() {
     let rest = broken.curve("ledger.integration").peak().1;
     let given = broken.curve("ledger.interface-pressure").peak().1;
     assert!(rest.abs() < 0.01 * given, "{rest} of {given}");
+    // Beam theory lets it break under an even pressure of 3 kPa, a jet of 2.4 m/s, which is there 30 ms after the water
+    // (0.12 s); a spacing of 2 mm breaks 3 % later. The first two of three rows take G_f times their length, and
+    // what swings: 1.12 measured.
+    let opened = broken.curve("opened.area");
+    let first = broken.curve("crack.energy").first_above(f64::MIN_POSITIVE).unwrap();
+    let cut = opened.first_above(0.0075).unwrap();
+    let ratio = broken.curve("crack.energy").at(cut) / (3.0 * opened.at(cut));
+    println!("first damage at {first} s, cut through two thirds at {cut} s, {ratio} of G_f");
+    assert!((0.15..0.17).contains(&first) && (0.0..0.012).contains(&(cut - first)), "{first} {cut}");
+    assert!((0.95..1.3).contains(&ratio), "{ratio}");
 }
 
-/// A wall clamped at its foot; a piston makes the water behind it rise from 0.12 m at 10 mm/s and more.
+/// A wall clamped at its foot; a piston makes the water behind it rise from 0.12 m at 10 mm/s and more. Side friction
+/// takes the swing that the start gives the wall, and holds it back by 1 % of the water's moment at most.
 const RISING: &str = r#"
 resolution = 0.005
 end_time = 2.2
@@ -48,6 +59,7 @@ density = 1000.0
 density = 1000.0
 youngs_modulus = 1e8
 poissons_ratio = 0.0
+side_friction = 150.0
 fracture = { strength = 1e5, energy = 0.6 }
 [output]
 probe_interval = 0.002
@@ -106,6 +118,8 @@ fn slowly_rising_water_breaks_a_wall_at_the_depth_of_beam_theory() {
     let at = |time: f64| level.at(time) / depth;
     let first = at(run.curve("crack.energy").first_above(f64::MIN_POSITIVE).unwrap());
     let broken = at(run.curve("opened.area").first_above(0.5 * thickness).unwrap());
+    println!("first damage at {first}, cut through half at {broken} of the depth");
+    // 0.982 and 0.984 measured.
     assert!((first - 1.0).abs() < 0.05, "first damage at {first} of the depth");
     assert!((broken - 1.0).abs() < 0.1, "broken at {broken} of the depth");
 }

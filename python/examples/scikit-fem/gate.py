@@ -1,8 +1,10 @@
-"""An elastic plate by finite elements, with scikit-fem: `gate.py [ELEMENTS ACROSS]`, for scenes/elastic-gate.toml.
+"""An elastic plate by finite elements, with scikit-fem: `gate.py [ELEMENTS ACROSS]`, for scenes/elastic-gate.toml, or
+any other plate that is a box, alone or one of several solids.
 
 Large rotations, St. Venant-Kirchhoff in plane strain: S = lambda tr(E) I + 2 mu E. Explicit, in sub-steps.
 """
 
+import os
 import sys
 
 import halfstep
@@ -38,7 +40,10 @@ B.eliminate_zeros()
 BT = B.T.tocsr()
 weights = basis.dx.ravel()
 
+# One solid, or one of several.
 material = scene["solid"]
+if isinstance(material, list):
+    material = next(solid for solid in material if solid["name"] == os.environ["HALFSTEP_NAME"])
 young, poisson, density = material["youngs_modulus"], material["poissons_ratio"], material["density"]
 lame, shear = young * poisson / ((1 + poisson) * (1 - 2 * poisson)), young / (2 * (1 + poisson))
 inertia = skfem.BilinearForm(lambda u, v, w: density * (u[0] * v[0] + u[1] * v[1])).assemble(basis)
@@ -64,8 +69,8 @@ def internal(u):
 
 
 class Plate:
-    def __init__(self):
-        self.u = self.v = np.zeros(basis.N)
+    def __init__(self, saved):
+        self.u, self.v = (saved[key] if saved else np.zeros(basis.N) for key in "uv")
         self.steps = 1
         # Less than what the shortest wave on the mesh allows, 0.29 of an element.
         speed = np.sqrt((lame + 2 * shear) / density)
@@ -84,6 +89,10 @@ class Plate:
             self.v = v + 0.5 * h * a
 
 
-solid = halfstep.Solid(points.position, points.mass, points.density, clamped=points.clamped)
+plate = Plate(halfstep.saved())
 mapping = halfstep.mapping.Linear.by_component(points.position, basis.probes(points.position.T))
-halfstep.integrate.advance_once(solid, mapping, Plate(), sub_steps=lambda plate: plate.steps)
+solid = halfstep.Solid(
+    mapping.positions(plate.u), points.mass, points.density, velocity=mapping.velocities(plate.v),
+    clamped=points.clamped, save=lambda: {"u": plate.u, "v": plate.v},
+)
+halfstep.integrate.advance_once(solid, mapping, plate, sub_steps=lambda plate: plate.steps)

@@ -112,6 +112,19 @@ pub(crate) fn frames(dir: &Path, count: u32) {
     assert_eq!([fluid, solid].map(|writer| writer.finish().unwrap()), [count; 2]);
 }
 
+/// Writes one frame of the gate alone, intact or with this many cracked particles.
+pub(crate) fn cracked_gate(dir: &Path, cracked: usize) {
+    std::fs::create_dir_all(series::frames_folder(dir)).unwrap();
+    let mut writer = FrameWriter::start(dir, "solid").unwrap();
+    writer
+        .submit(0, |frame| {
+            gate(frame, 0.0);
+            frame.damage = (0..frame.points.len()).map(|k| if k < cracked { 1.0 } else { 0.5 }).collect();
+        })
+        .unwrap();
+    assert_eq!(writer.finish().unwrap(), 1);
+}
+
 fn point(phase: Phase, id: usize, x: f64, y: f64, pressure: f64, bending: f64) -> FramePoint {
     FramePoint {
         position: [x, y, 0.0],

@@ -138,6 +138,21 @@ fn the_contact_sheet_shows_all_phases_in_their_colours() {
     assert!(f64::from(fluid) > 0.1 * f64::from(width * height), "{fluid}");
 }
 
+/// The upper half of a plate is cracked: as many pixels are black as it covers, beside those of labels.
+#[test]
+fn cracked_particles_are_black() {
+    let black = |cracked: usize| {
+        let dir = folder(&format!("contact-cracked-{cracked}"));
+        fixture::cracked_gate(&dir, cracked);
+        let (.., colors) = decode(&draw_contact(&fixture::scene(), &dir).unwrap().unwrap());
+        let dark = usize::from(stamp::DARK) * 3;
+        f64::from(colors.get(&palette()[dark..dark + 3]).copied().unwrap_or(0))
+    };
+    let [none, half, all] = [0, 60, 120].map(black);
+    assert!(half - none > 1000.0, "{none} {half}");
+    assert!(((all - none) / (half - none) / 2.0 - 1.0).abs() < 0.1, "{none} {half} {all}");
+}
+
 #[test]
 fn one_frame_of_one_phase_is_enough_for_a_sheet() {
     let dir = folder("contact-solid");

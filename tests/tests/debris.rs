@@ -1,0 +1,187 @@
+//! Water breaks a wall into debris: the same bits in processes and threads and after an interruption, beside a solid of
+//! another program, and none of it where nothing breaks.
+
+use halfstep_output::checkpoint::{FOLDERS, Manifest};
+use halfstep_tests::process::kill;
+use halfstep_tests::python::python;
+use halfstep_tests::run::{repository, scene, scene_at, whole_machine};
+use halfstep_tests::{Finished, RunBuilder};
+use std::path::Path;
+use std::time::Duration;
+
+/// A dam break on a weak wall, three particles across, and a second solid behind it that does not break. The water is
+/// there at 0.085 s; at 0.14 s there are ten bodies, and at 0.15 s the largest one hits the second wall.
+const SCENE: &str = r#"
+resolution = 0.005
+end_time = 0.18
+gravity = [0.0, -9.81]
+[fluid]
+density = 1000.0
+[[solid]]
+name = "first"
+density = 1100.0
+youngs_modulus = 1e8
+poissons_ratio = 0.0
+fracture = { strength = 3e4, energy = 0.05 }
+[[solid]]
+name = "second"
+density = 1100.0
+youngs_modulus = 1e8
+poissons_ratio = 0.0
+[output]
+probe_interval = 0.002
+frame_interval = 0.03
+[[shape]]
+name = "water"
+phase = "fluid"
+box = { min = [0.0, 0.0], max = [0.1, 0.2] }
+pressure = "hydrostatic"
+[[shape]]
+name = "front"
+phase = "solid"
+solid = "first"
+box = { min = [0.16, -0.02], max = [0.175, 0.08] }
+clamp = { min = [0.15, -0.03], max = [0.185, 0.0] }
+[[shape]]
+name = "back"
+phase = "solid"
+solid = "second"
+box = { min = [0.225, 0.005], max = [0.255, 0.085] }
+clamp = { min = [0.2, 0.0], max = [0.27, 0.015] }
+[[shape]]
+name = "tank"
+phase = "wall"
+tank = { min = [0.0, 0.0], max = [0.5, 0.3], open = ["top"] }
+contact = true
+[[probe]]
+name = "crack"
+kind = "crack-energy"
+solid = "first"
+[[probe]]
+name = "opened"
+kind = "crack-area"
+solid = "first"
+[[probe]]
+name = "pieces"
+kind = "bodies"
+solid = "first"
+[[probe]]
+name = "force"
+kind = "force"
+solid = "second"
+[[probe]]
+name = "back"
+kind = "displacement"
+at = [0.24, 0.08]
+"#;
+
+/// The scene in a file of this folder.
+fn debris(folder: &Path) -> RunBuilder {
+    let path = folder.join("debris.toml");
+    std::fs::write(&path, SCENE).unwrap();
+    scene_at(&path)
+}
+
+/// What cracks and debris did, row by row, bit for bit.
+fn history(run: &Finished) -> Vec<Vec<u64>> {
+    let columns = ["crack.energy", "opened.area", "pieces.bodies", "pieces.loose"];
+    columns.map(|name| run.curve(name).values.iter().map(|value| value.to_bits()).collect()).into()
+}
+
+#[test]
+fn cracks_and_debris_hang_on_no_process_and_no_thread() {
+    let folder = tempfile::tempdir().unwrap();
+    let whole = debris(folder.path()).in_process().threads(1).run();
+    let last = |name: &str| *whole.curve(name).values.last().expect("rows");
+    assert!(last("pieces.bodies") >= 5.0 && last("pieces.loose") >= 5.0, "{:?}", last("pieces.bodies"));
+    for threads in [2, 3] {
+        let run = debris(folder.path()).in_process().threads(threads).run();
+        assert_eq!(run.state_hash(), whole.state_hash(), "{threads} threads");
+        assert_eq!(history(&run), history(&whole), "{threads} threads");
+    }
+    let three = debris(folder.path()).run();
+    let four = debris(folder.path()).set("solid.second.process", "own").threads(2).run();
+    for run in [&three, &four] {
+        assert_eq!(run.state_hash(), whole.state_hash());
+        assert_eq!(history(run), history(&whole));
+    }
+    // The fragments hit the second wall: water alone is not that fast.
+    assert!(whole.report.contacts[0].largest_force > 50.0, "{:?}", whole.report.contacts);
+    // Frames tell where it is cracked; the solid that cannot break says nothing of damage.
+    let frames = three.outcome.frames("first");
+    assert!(frames[0].damage.iter().all(|damage| *damage == 0.0) && !frames[0].damage.is_empty());
+    let end = &frames[frames.len() - 1].damage;
+    let cracked = end.iter().filter(|damage| **damage > 0.95).count();
+    assert!((10..30).contains(&cracked), "{cracked}");
+    assert!(end.iter().all(|damage| (0.0..=1.0).contains(damage)) && end.contains(&0.0));
+    assert!(three.outcome.frames("second").iter().all(|frame| frame.damage.is_empty()));
+}
+
+/// The second solid is a program of somebody else: a block on a spring, in a fourth process.
+#[test]
+fn a_run_that_is_killed_among_debris_goes_on_with_a_solid_of_another_program() {
+    let script = repository().join("tests/python/spring_block.py");
+    let whole = killed_among_debris(&format!("{} {} 2e4", python().display(), script.display()));
+    assert!(whole.curve("back.x").peak().1 > 1e-5, "the block is hit");
+}
+
+/// A plate of scikit-fem.
+#[test]
+#[ignore = "half a minute"]
+fn a_run_that_is_killed_among_debris_goes_on_with_finite_elements() {
+    let script = repository().join("python/examples/scikit-fem/gate.py");
+    let plate = format!("OMP_NUM_THREADS=1 {} {}", python().display(), script.display());
+    let tip = killed_among_debris(&plate).curve("back.x").peak().1;
+    let own = debris(tempfile::tempdir().unwrap().path()).run().curve("back.x").peak().1;
+    println!("the second wall bends by {tip} m, of particles by {own} m");
+    assert!((tip / own - 1.0).abs() < 0.3, "{tip} {own}");
+}
+
+/// A run whose second solid is this command, and one that was killed when there was debris: the same bits.
+fn killed_among_debris(second: &str) -> Finished {
+    let block = format!("second={second}");
+    let folder = tempfile::tempdir().unwrap();
+    let dir = folder.path().join("run");
+    let run = || debris(folder.path()).argument("--solid").argument(&block);
+    let whole = run().run();
+    let killed = {
+        let _machine = whole_machine();
+        let mut running = run().set("output.checkpoint_interval", 0.01).out(&dir).start();
+        let newest = || {
+            let read = |folder: &&str| Manifest::read(&dir.join(folder)).ok().flatten();
+            FOLDERS.iter().filter_map(read).map(|manifest| manifest.time).fold(0.0, f64::max)
+        };
+        while newest() < 0.145 {
+            assert!(running.is_alive(), "{:?}", running.wait());
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        kill(running.pid(), libc::SIGKILL);
+        running.wait();
+        newest()
+    };
+    let bodies = whole.curve("pieces.bodies").between(0.0, killed);
+    assert!(*bodies.values.last().unwrap() > 2.0, "there is debris at {killed} s: {:?}", bodies.values);
+    let resumed = scene_at(&folder.path().join("debris.toml")).resume(&dir);
+    let resumed = resumed.argument("--solid").argument(&block).run();
+    assert!(resumed.report.resumed[0].time > 0.13, "{:?}", resumed.report.resumed);
+    assert_eq!(resumed.state_hash(), whole.state_hash());
+    assert_eq!(history(&resumed), history(&whole));
+    whole
+}
+
+/// A plate that swings freely and a bore on two walls: strong enough, they have the bits of solids that cannot break.
+#[test]
+fn what_holds_has_the_bits_of_what_cannot_break() {
+    let same = |what: &str, run: &dyn Fn() -> RunBuilder, fracture: &str, moved: &str| {
+        let breakable = run().set("solid.fracture", fracture).in_process().run();
+        let whole = run().set("solid.fracture", fracture).set("effects.fracture", "off").in_process().run();
+        assert_eq!(breakable.state_hash(), whole.state_hash(), "{what}");
+        let (moved, still) = (breakable.curve(moved), whole.curve(moved));
+        assert_eq!(moved.values, still.values, "{what}");
+        assert!(moved.values.iter().any(|x| x.abs() > 1e-6), "{what}: {:?}", moved.values);
+    };
+    let plate = || scene("oscillating-plate").until(0.03);
+    same("plate", &plate, "{ strength = 2e5, energy = 60.0 }", "tip.y");
+    let walls = || scene("tsunami-wall").set("resolution", 0.01).until(0.25);
+    same("bore", &walls, "{ strength = 12e6, energy = 2500.0 }", "tip-1.x");
+}
