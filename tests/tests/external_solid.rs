@@ -140,6 +140,43 @@ fn a_block_that_sends_nonsense_is_named() {
     }
 }
 
+/// 8 by 28 particles of 0.2 kg/m, 180 of them within 2 h of the surface; water reaches 20 rows high.
+#[test]
+fn a_block_that_is_not_the_scenes_is_told_of() {
+    for (honest, lie, said) in [
+        (
+            "\nmass =",
+            "\nrest = rest[rest[:, 1] > 0.03]\nmass =",
+            "42 of 180 places near the surface of the solid",
+        ),
+        (
+            "low + dx / 2, high, dx",
+            "low + dx / 4, high, dx / 2",
+            "publishes 896 particles, and its shapes have 224",
+        ),
+        ("\nmass =", "\nrest[:, 0] -= 0.005\nmass =", "20 particles of the fluid begin in the solid"),
+        ("mass = density", "mass = 10 * density", "a mass of 448.0000 kg/m, and its shapes 44.8000 kg/m"),
+    ] {
+        let lying = altered(honest, lie);
+        let outcome = scene("spring-block").until(0.001).argument("--solid").argument(lying.line()).outcome();
+        let said_as_warning =
+            |text: &str| text.lines().any(|line| line.contains("warning: ") && line.contains(said));
+        assert!(said_as_warning(&outcome.stderr), "{lie}: {}", outcome.stderr);
+        let last = outcome.stderr.lines().last().unwrap_or_default();
+        assert!(last.contains(said), "the last line: {last}");
+        let log = outcome.log();
+        assert!(log.contains(said), "{log}");
+        let report = outcome.report();
+        assert_eq!((report.external.len(), report.external[0].scene_particles), (1, 224));
+        assert!(report.warnings.iter().any(|warning| warning.contains(said)), "{:?}", report.warnings);
+    }
+    let honest = scene("spring-block").until(0.001).argument("--solid").argument(command()).run();
+    let first = &honest.report.external[0];
+    assert_eq!((first.particles, first.outer_particles, first.empty, first.misplaced), (224, 180, 0, 0));
+    assert!((first.mass / first.scene_mass - 1.0).abs() < 1e-12, "{first:?}");
+    assert!(!honest.outcome.stderr.contains("warning"), "{}", honest.outcome.stderr);
+}
+
 #[test]
 fn a_block_started_by_hand_moves_as_one_that_the_run_starts() {
     let started = scene("spring-block").until(0.05).argument("--solid").argument(command()).run();

@@ -52,6 +52,11 @@ impl ExternalSolid {
         self.choose_records();
     }
 
+    /// Positions in its reference configuration, m.
+    pub(crate) fn first(&self) -> &[[f64; 3]] {
+        &self.first
+    }
+
     fn choose_records(&mut self) {
         self.chosen = self.kinds.iter().map(|kind| self.choose(kind)).collect();
     }

@@ -6,7 +6,7 @@ use crate::error::RunError;
 use crate::roles::measured_by;
 use crate::say;
 use halfstep_output::probes::Logged;
-use halfstep_output::{OutputError, ProbeLog, RunReport, run_json};
+use halfstep_output::{FirstMessage, OutputError, ProbeLog, RunReport, run_json};
 use halfstep_scene::{Phase, Scene};
 use halfstep_wire::failure::Diverged;
 use halfstep_wire::protocol::{Audit, StateHeader};
@@ -79,6 +79,9 @@ pub struct Recorder {
     removed: u64,
     first_fluid: Option<u64>,
     isolated: bool,
+    dimension: usize,
+    /// What external solids published first.
+    external: Vec<FirstMessage>,
     balance: EnergyBalance,
 }
 
@@ -126,6 +129,8 @@ impl Recorder {
             removed: 0,
             first_fluid: None,
             isolated,
+            dimension: scene.dimension,
+            external: Vec::new(),
             balance: EnergyBalance::new(scene),
             earlier: 0.0,
             logged: Logged::default(),
@@ -200,6 +205,16 @@ impl Recorder {
     pub(crate) fn warn(&self, warning: &str) {
         tracing::warn!("{warning}");
         self.bar.suspend(|| say::warn(format_args!("warning: {warning}")));
+    }
+
+    /// Takes what external solids published first into the report; where `told`, warns of what the scene has otherwise.
+    pub(crate) fn compare_first(&mut self, first: Vec<FirstMessage>, told: bool) {
+        let remarks = first.iter().filter(|_| told).flat_map(|message| message.remarks(self.dimension));
+        remarks.for_each(|remark| self.warn(&remark));
+        if let Some((_, report)) = &mut self.report {
+            report.external.clone_from(&first);
+        }
+        self.external = first;
     }
 
     /// Notes the state at n, as all participants measured it.
@@ -319,6 +334,7 @@ impl Recorder {
             .filter(|&e| self.isolated && self.first_fluid.is_none() && e > 0.0)
             .map(|e| self.energy / e - 1.0);
         report.particles.removed = self.removed;
+        report.external.clone_from(&self.external);
         report.audit.energy_growth = self.balance.growth();
         report.audit.density_error = self.first_fluid.map(|_| self.density_error);
         report.audit.min_gap = self.gap.is_finite().then_some(self.gap);

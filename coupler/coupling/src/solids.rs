@@ -1,16 +1,19 @@
 //! What the coupler holds of the solids: their interfaces with the fluid, the forces on both sides, and the work that
 //! these do.
 
+mod expected;
 mod walls;
 
 use crate::error::RunError;
 use crate::external::ExternalSolid;
+use expected::Expected;
 use halfstep_interface::contact::{Booked, Contact, PairLaw, WallContact};
 use halfstep_interface::cross_viscosity::CrossViscosity;
 use halfstep_interface::{Interface, Parameters};
 use halfstep_link::{FLUID, StateMessage};
+use halfstep_output::FirstMessage;
 use halfstep_role::timeline;
-use halfstep_scene::{Gravity, Scene};
+use halfstep_scene::{Gravity, Scene, geometry};
 use halfstep_sph::lane::Isa;
 use halfstep_wire::half_step::Stage;
 use halfstep_wire::protocol::{ForceRecord, StateRecord};
@@ -77,6 +80,8 @@ struct CoupledSolid<const D: usize> {
     /// Hash of the state that a checkpoint was made of, as the solid published it.
     saved: u64,
     external: Option<ExternalSolid>,
+    /// What the scene has for it, until its first message: of an external solid.
+    expected: Option<Expected<D>>,
     /// The scene has walls that solids may touch.
     touches_walls: bool,
     /// Contact with them, of an external solid that does not evaluate it itself, and of one that leaves it.
@@ -94,6 +99,7 @@ impl<const D: usize> Solids<D> {
     /// Of a scene; `external` has an entry for each.
     pub(crate) fn new(scene: &Scene, external: Vec<Option<ExternalSolid>>, isa: Isa) -> Self {
         let touches_walls = scene.walls_to_touch().next().is_some();
+        let layout = external.iter().any(Option::is_some).then(|| geometry::layout::<D>(scene));
         let side = |(solid, external): (usize, Option<ExternalSolid>)| CoupledSolid {
             interface: Parameters::new(scene, solid, isa).map(Interface::new),
             forces: Vec::new(),
@@ -106,6 +112,7 @@ impl<const D: usize> Solids<D> {
             walls: (external.is_some() || scene.leaves_walls_to_coupler(solid))
                 .then(|| WallContact::new(scene, solid))
                 .flatten(),
+            expected: external.as_ref().and(layout.as_ref()).map(|layout| Expected::of(scene, layout, solid)),
             external,
         };
         Self {
@@ -131,6 +138,16 @@ impl<const D: usize> Solids<D> {
         if let Some(contact) = &mut self.contact {
             contact.begin(states[self.first..].iter().map(StateMessage::records));
         }
+    }
+
+    /// The first message of each external solid beside what the scene has for it: once.
+    pub(crate) fn first_messages(&mut self, states: &[impl StateMessage]) -> Vec<FirstMessage> {
+        let sides = self.solids.iter_mut().zip(&states[self.first..]);
+        let compared = sides.filter_map(|(side, state)| {
+            let (expected, external) = (side.expected.take()?, side.external.as_ref()?);
+            Some(expected.compare(external.first(), state.records()))
+        });
+        compared.collect()
     }
 
     /// Largest time step that contacts are stable with, s; `None` where nothing can touch.

@@ -5,7 +5,7 @@ use crate::advice::advice;
 use crate::checkpoint::Checkpoint;
 use crate::options::SolidSource;
 use crate::participants::{report_outcome, report_participants};
-use crate::{remarks, run};
+use crate::{last_frame, remarks, run};
 use halfstep_coupling::checkpoints::Checkpoints;
 use halfstep_coupling::clock::Clock;
 use halfstep_coupling::couple::Outcome;
@@ -104,6 +104,11 @@ pub(crate) fn end(
     recorder.finish(&mut report);
     let external: Vec<Name> = external.iter().map(|(name, _)| *name).collect();
     let mut error = conclude(result, scene, clock, &external, &mut report);
+    if let Some(folder) = folder
+        && let Err(error) = last_frame::note(scene, folder.path(), &mut report)
+    {
+        tracing::warn!("how the run ended is not known from its last frames: {error}");
+    }
     let remarked = remarks::outcome(scene, &report);
     remarked.iter().for_each(|warning| tracing::warn!("{warning}"));
     report.warnings.extend(remarked);

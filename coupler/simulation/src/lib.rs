@@ -29,6 +29,7 @@ pub mod explain;
 pub mod fake_fluid;
 mod forecast;
 pub mod isa;
+mod last_frame;
 pub mod options;
 mod participants;
 mod particles;

@@ -152,6 +152,7 @@ pub(crate) fn report_participants(
             name: participant.name,
             particles: last[place].particles,
             mass: last[place].audit.mass,
+            outside: 0,
             capacity: config.map(|c| c.participants[place].capacity),
             times,
         });

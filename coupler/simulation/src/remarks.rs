@@ -2,15 +2,18 @@
 //! was asked, on bodies and clamps, on water and on magnitudes. A run says them at its start, `halfstep check` as well,
 //! and `run.json` keeps them.
 
+mod beams;
 mod bodies;
 mod clamp_faces;
 mod contacts;
 mod frame;
 mod loads;
 mod magnitudes;
+mod moving;
 mod outcome;
 mod settings;
 mod shapes;
+mod thickness;
 mod walls;
 mod water;
 
@@ -33,7 +36,9 @@ pub fn remarks(scene: &Scene) -> Vec<String> {
 /// The same with its particles and shapes at hand.
 pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Placed]) -> Vec<String> {
     let mut all = Vec::new();
-    bodies::clamps(scene, &mut all);
+    moving::clamps(scene, &mut all);
+    moving::joints(scene, &mut all);
+    moving::walls(scene, &mut all);
     let bodies = scene.bodies_of(layout);
     bodies::free(scene, &bodies, &mut all);
     bodies::parted(scene, &bodies, &mut all);
@@ -50,8 +55,11 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     shapes::sizes(scene, placed, &mut all);
     shapes::nodal(scene, placed, &mut all);
     shapes::overlaps(placed, &mut all);
+    thickness::thin(scene, placed, &mut all);
     walls::thin(scene, layout, &mut all);
     water::hanging(scene, layout, &mut all);
+    water::outside(scene, layout, &mut all);
+    water::stacked(scene, layout, &mut all);
     water::expected_speed(scene, &mut all);
     water::wave_makers(scene, &mut all);
     water::walls_that_meet(scene, &mut all);
@@ -62,10 +70,15 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     settings::checkpoints(scene, &mut all);
     settings::probes(scene, &mut all);
     magnitudes::materials(scene, &mut all);
+    magnitudes::gravity(scene, &mut all);
+    magnitudes::viscosity(scene, &mut all);
     magnitudes::lengths(scene, &mut all);
+    beams::bent(scene, placed, &mut all);
     magnitudes::parameters(scene, &mut all);
     all
 }
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod trap_tests;

@@ -188,10 +188,13 @@ pub(crate) fn begin_report<const D: usize>(
     isa: Isa,
 ) -> Result<RunReport, RunError> {
     let counts = layout.counts();
+    let placed = remarks::placed(scene, layout);
+    let unwritable = |e: serde_json::Error| RunError::System(e.to_string());
     let mut report = RunReport {
-        scene: serde_json::to_value(scene).map_err(|e| RunError::System(e.to_string()))?,
+        scene: serde_json::to_value(scene).map_err(unwritable)?,
         version: env!("CARGO_PKG_VERSION").into(),
-        warnings: remarks::on(scene, layout, &remarks::placed(scene, layout)),
+        warnings: remarks::on(scene, layout, &placed),
+        shapes: placed.iter().map(serde_json::to_value).collect::<Result<_, _>>().map_err(unwritable)?,
         particles: Particles { fluid: counts.fluid, solid: counts.solid, wall: counts.wall, removed: 0 },
         ..RunReport::default()
     };

@@ -29,6 +29,7 @@
 pub mod atomic;
 mod background;
 pub mod checkpoint;
+mod first_message;
 #[cfg(feature = "pictures")]
 pub mod pictures;
 pub mod probes;
@@ -39,6 +40,7 @@ pub mod timeline;
 pub mod vtkhdf;
 pub mod writer;
 
+pub use first_message::FirstMessage;
 pub use halfstep_wire::frame::{Frame, FramePoint};
 #[cfg(feature = "pictures")]
 pub use pictures::{draw_contact, draw_plot, draw_start, draw_timeline};

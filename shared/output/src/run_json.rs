@@ -1,6 +1,6 @@
 //! `run.json`: what a run was and how it went.
 
-use super::{OutputError, atomic};
+use super::{FirstMessage, OutputError, atomic};
 use halfstep_scene::{EnergyEntry, EnergyPart};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -17,6 +17,8 @@ pub struct RunReport {
     pub warnings: Vec<String>,
     /// The scene as resolved.
     pub scene: serde_json::Value,
+    /// The shapes as asked and as computed, as `halfstep check --json` lists them.
+    pub shapes: Vec<serde_json::Value>,
     /// Version of the program.
     pub version: String,
     /// Where the run went on after interruptions, in their order.
@@ -49,6 +51,8 @@ pub struct RunReport {
     pub energy: Option<EnergyReport>,
     /// Owners of particles: the fluid, then the solids in the scene's order. `particles` and `roles` are their sums.
     pub participants: Vec<ParticipantReport>,
+    /// What solids of other programs published first, beside what the scene has for them; empty where there is none.
+    pub external: Vec<FirstMessage>,
     /// The effects, with the reason for each.
     pub effects: Vec<EffectReport>,
 }
@@ -87,6 +91,8 @@ pub struct ParticipantReport {
     pub particles: u64,
     /// Mass of the particles at the end, kg (2D: kg/m).
     pub mass: f64,
+    /// Particles of a solid outside of the domain at the end.
+    pub outside: u64,
     /// Largest number of its particles in a message; `null` where nothing was exchanged.
     pub capacity: Option<u32>,
     /// Where its time went, s.
@@ -318,6 +324,8 @@ pub struct Audit {
     pub density_error: Option<f64>,
     /// Smallest distance between fluid and solid particles, over the spacing.
     pub min_gap: Option<f64>,
+    /// Part of the fluid under tension at the end, below -0.001 rho c0².
+    pub tension: Option<f64>,
     /// Number of consistency checks passed.
     pub checks: u64,
     /// Hash over every particle's final state in id order, 16 hexadecimal digits.

@@ -5,7 +5,7 @@ use super::error::{Report, listed, nearest};
 use super::*;
 use crate::dispatch;
 use crate::geometry::Plate;
-use crate::geometry::least_thickness;
+use crate::geometry::{joined, least_thickness};
 
 /// Frames, rows and steps that no run can be meant to have.
 const MAX_FRAMES: f64 = 1e5;
@@ -111,9 +111,32 @@ impl Check<'_> {
         }
     }
 
+    /// Notes that no shape is as long as a spacing: one error instead of one for each.
+    fn coarse(&self) -> bool {
+        let (scene, dx) = (self.scene, self.scene.resolution);
+        let longest = |shape: &Shape| {
+            let block = match &shape.geometry {
+                Geometry::Tank { cavity, .. } => *cavity,
+                _ => geometry::bounding_box(shape, scene),
+            };
+            (0..scene.dimension).map(|a| block.max[a] - block.min[a]).fold(0.0, f64::max)
+        };
+        let right = || (0..scene.shapes.len()).all(|index| !self.report.has(&self.shape_key(index)));
+        let largest = scene.shapes.iter().map(longest).fold(0.0, f64::max);
+        let coarse = scene.shapes.len() > 1 && right() && largest < dx;
+        if coarse {
+            let reason = format!(
+                "is more than the largest shape is long, {} m: lengths are in metres",
+                largest as f32
+            );
+            self.report.among(self.root, "resolution", &["preset"], reason);
+        }
+        coarse
+    }
+
     /// Every shape holds at least one particle.
     fn sizes(&self) {
-        if self.report.has_any(&["resolution", "dimension"]) {
+        if self.report.has_any(&["resolution", "dimension"]) || self.coarse() {
             return;
         }
         for (index, shape) in self.scene.shapes.iter().enumerate() {
@@ -132,7 +155,10 @@ impl Check<'_> {
                     at = format!(" at [{}, {}]", x as f32, y as f32);
                     thickness
                 }
-                geometry => spacing::thickness(geometry, self.scene.dimension),
+                geometry => match joined(self.scene, shape, &shape.geometry) {
+                    Some(block) => spacing::thickness(&Geometry::Box(block), self.scene.dimension),
+                    None => spacing::thickness(geometry, self.scene.dimension),
+                },
             };
             let nodal = self.scene.numerics.lattice == Lattice::Nodal && shape.phase != Phase::Wall;
             let model = shape.solid.and_then(|k| self.model(k));

@@ -405,6 +405,14 @@ impl Shape {
     pub fn body(&self) -> &str {
         if self.body.is_empty() { &self.name } else { &self.body }
     }
+
+    /// Its geometry where that is a box along the axes.
+    pub(crate) fn block(&self) -> Option<Block> {
+        match self.geometry {
+            Geometry::Box(block) => Some(block),
+            _ => None,
+        }
+    }
 }
 
 impl Geometry {

@@ -59,6 +59,23 @@ impl Solid {
         }
     }
 
+    /// What two dimensions mean: the hypoelastic model knows plane strain alone.
+    pub fn plane(&self) -> Plane {
+        match &self.model {
+            ModelKeys::TotalLagrangian(keys) => keys.plane,
+            ModelKeys::FiniteElement(keys) => keys.plane,
+            _ => Plane::Strain,
+        }
+    }
+
+    /// Modulus of a plate that bends, Pa: E / (1 - nu²) where nothing strains across the plane, else E.
+    pub fn bending_modulus(&self) -> f64 {
+        match self.plane() {
+            Plane::Strain => self.youngs_modulus / (1.0 - self.poissons_ratio.powi(2)),
+            Plane::Stress => self.youngs_modulus,
+        }
+    }
+
     /// Name of the one that a scene describes by `[solid]`, and of the process that serves all solids by default.
     pub const DEFAULT_NAME: &str = "solid";
 

@@ -6,31 +6,6 @@ use halfstep_scene::{Block, Body, EffectName, Phase, Scene, Shape, SolidModelNam
 /// Most bodies that are listed.
 const MOST_LISTED: usize = 8;
 
-/// Clamps keep their place while a wall around them moves away.
-pub(super) fn clamps(scene: &Scene, all: &mut Vec<String>) {
-    let moves = |wall: &Shape| {
-        let around = geometry::bounding_box(wall, scene);
-        wall.motion.as_ref().is_some_and(|m| m.fastest(&around) > 0.0)
-    };
-    let moving = |wall: &&Shape| wall.phase == Phase::Wall && moves(wall);
-    for shape in &scene.shapes {
-        for wall in scene.shapes.iter().filter(moving) {
-            let around = geometry::bounding_box(wall, scene);
-            let stays =
-                |k: usize| shape.clamp_with.get(k).is_none_or(|with| with.as_ref() != Some(&wall.name));
-            if shape.motion.is_none()
-                && (0..shape.clamp.len()).any(|k| stays(k) && meet(&shape.clamp[k], &around, scene))
-            {
-                all.push(format!(
-                    "the clamp of `{}` stands in `{}`, which moves: the clamp stays where it is (`with = \"{}\"` at the \
-                     clamp takes it along)",
-                    shape.name, wall.name, wall.name
-                ));
-            }
-        }
-    }
-}
-
 fn meet(a: &Block, b: &Block, scene: &Scene) -> bool {
     (0..scene.dimension).all(|d| a.min[d] <= b.max[d] && b.min[d] <= a.max[d])
 }
@@ -138,13 +113,18 @@ pub(super) fn touching<const D: usize>(
 ) {
     for (a, b) in geometry::touching(scene, layout) {
         let (a, b) = (&scene.shapes[a], &scene.shapes[b]);
-        if a.body.is_empty() && b.body.is_empty() {
-            all.push(format!(
-                "`{}` and `{}` touch and are bodies of their own, which repel each other and may part (the same \
-                 `body` at both makes them one piece)",
-                a.name, b.name
-            ));
-        }
+        let said = match [a, b].map(|shape| !shape.body.is_empty()) {
+            // Whoever names both knows.
+            [true, true] => continue,
+            [true, false] => format!(" (`body` stands at `{}` alone)", a.name),
+            [false, true] => format!(" (`body` stands at `{}` alone)", b.name),
+            [false, false] => String::new(),
+        };
+        all.push(format!(
+            "`{}` and `{}` touch and are bodies of their own{said}, which repel each other and may part (the same \
+             `body` at both makes them one piece)",
+            a.name, b.name
+        ));
     }
     let hypoelastic = |body: &&Body| {
         let model = body.shapes.first().and_then(|&k| scene.solids.get(scene.shapes[k].solid?));

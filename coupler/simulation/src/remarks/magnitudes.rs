@@ -3,9 +3,15 @@
 use halfstep_scene::{Block, Geometry, Scene, geometry};
 
 /// Softer than any gel, stiffer than diamond, Pa.
-const STIFFNESS: [f64; 2] = [1e3, 2e12];
+pub(super) const STIFFNESS: [f64; 2] = [1e3, 2e12];
 /// Lighter than aerogel, heavier than osmium, kg/m³.
 const DENSITY: [f64; 2] = [50.0, 25_000.0];
+/// Less than a small moon's, more than that of a giant planet, m/s².
+const GRAVITY: [f64; 2] = [0.1, 50.0];
+/// Of fresh and salt water, kg/m³.
+const WATER: [f64; 2] = [980.0, 1040.0];
+/// A hundred times that of water, Pa s.
+const VISCOUS: f64 = 0.1;
 /// Smaller than a drop, larger than a harbour, m.
 const SIZE: [f64; 2] = [1e-3, 1e3];
 
@@ -26,6 +32,29 @@ pub(super) fn materials(scene: &Scene, all: &mut Vec<String>) {
             continue;
         }
         check(format!("{}.youngs_modulus", solid.name), solid.youngs_modulus, STIFFNESS, "Pa");
+    }
+}
+
+/// Gravity that is none of a planet's.
+pub(super) fn gravity(scene: &Scene, all: &mut Vec<String>) {
+    let size = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+    if size > 0.0 && !(GRAVITY[0]..=GRAVITY[1]).contains(&size) {
+        all.push(format!(
+            "gravity is {} m/s², {} times that of the Earth: are the units metres and seconds?",
+            size as f32,
+            (size / 9.81) as f32
+        ));
+    }
+}
+
+/// Water that flows like oil; fluids alone have the viscosity that a theory asks for.
+pub(super) fn viscosity(scene: &Scene, all: &mut Vec<String>) {
+    let Some(fluid) = scene.fluid.as_ref().filter(|_| !scene.solids.is_empty()) else { return };
+    if (WATER[0]..=WATER[1]).contains(&fluid.density) && fluid.viscosity > VISCOUS {
+        all.push(format!(
+            "fluid.viscosity = {} Pa s in a fluid of the density of water, which has 0.001 Pa s: is the unit right?",
+            fluid.viscosity
+        ));
     }
 }
 

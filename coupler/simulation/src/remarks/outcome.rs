@@ -9,6 +9,9 @@ const DENSITY_ERROR: f64 = 0.03;
 /// Distance of fluid and solid particles that says that one went into the other, over the mean spacing.
 const CLOSEST: f64 = 0.1;
 
+/// Part of the fluid under tension that says that something pulls at it: splashes have less.
+const TENSION: f64 = 0.04;
+
 /// Energy that a contact may give to two solids, over its largest force times its largest penetration.
 const CREATED: f64 = 0.1;
 
@@ -31,6 +34,19 @@ pub fn outcome(scene: &Scene, report: &RunReport) -> Vec<String> {
     if let Some(gap) = report.audit.min_gap.filter(|gap| *gap < CLOSEST) {
         all.push(format!("fluid and solid came as close as {gap:.3} dx"));
     }
+    if let Some(tension) = report.audit.tension.filter(|tension| *tension > TENSION) {
+        all.push(format!(
+            "{:.1} % of the fluid is under tension at the end: it would rather part",
+            100.0 * tension
+        ));
+    }
+    for own in report.participants.iter().filter(|own| own.outside > 0) {
+        all.push(format!(
+            "{} of {} particles of the {} left the domain",
+            own.outside, own.particles, own.name
+        ));
+    }
+    all.extend(report.external.iter().flat_map(|first| first.remarks(scene.dimension)));
     let moving = |shape: &Shape| shape.contact && (shape.motion.is_some() || shape.velocity != [0.0; 3]);
     let driven = scene.shapes.iter().any(moving);
     for contact in &report.contacts {
@@ -85,7 +101,31 @@ fn forces_with_contact(scene: &Scene, report: &RunReport) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use halfstep_output::run_json::{Audit, ParticipantReport};
     use std::path::Path;
+
+    #[test]
+    fn how_a_run_ended() {
+        let text = "resolution = 0.1\nend_time = 1.0\n[fluid]\ndensity = 1000.0\n[[shape]]\nname = \"water\"\n\
+                    phase = \"fluid\"\nbox = { min = [0.0, 0.0], max = [1.0, 0.5] }\n";
+        let scene = halfstep_scene::parse(text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}"));
+        let of = |density_error, min_gap, tension, outside| {
+            let (density_error, min_gap, tension) = (Some(density_error), Some(min_gap), Some(tension));
+            let audit = Audit { density_error, min_gap, tension, ..Audit::default() };
+            let solid =
+                ParticipantReport { name: "flap".into(), particles: 40, outside, ..Default::default() };
+            outcome(&scene, &RunReport { audit, participants: vec![solid], ..RunReport::default() })
+        };
+        assert_eq!(of(0.03, 0.1, 0.04, 0), [""; 0], "at their limits");
+        let density = "density error up to 4 %: the fluid was compressed or torn somewhere";
+        assert_eq!(of(0.04, 0.1, 0.0, 0), [density]);
+        assert_eq!(of(0.0, 0.004, 0.0, 0), ["fluid and solid came as close as 0.004 dx"]);
+        assert_eq!(
+            of(0.0, 1.0, 0.095, 0),
+            ["9.5 % of the fluid is under tension at the end: it would rather part"]
+        );
+        assert_eq!(of(0.0, 1.0, 0.0, 3), ["3 of 40 particles of the flap left the domain"]);
+    }
 
     #[test]
     fn a_force_that_holds_a_contact_is_named() {

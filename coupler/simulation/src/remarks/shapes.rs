@@ -1,5 +1,7 @@
 //! Every shape as asked and as computed.
 
+use super::beams;
+use super::thickness::{self, Thinnest};
 use halfstep_scene::geometry::{Layout, Plate};
 use halfstep_scene::{Geometry, Lattice, Phase, Scene, Shape, SolidModelName};
 use serde::{Serialize, Serializer};
@@ -16,7 +18,7 @@ pub(crate) struct Placed {
     /// Name of the shape.
     pub(crate) name: String,
     #[serde(serialize_with = "phase_name")]
-    phase: Phase,
+    pub(super) phase: Phase,
     /// Sizes along the axes that the scene asks for, m; a disc's diameter, a ring's thickness.
     asked: Vec<f64>,
     /// The same as computed, m.
@@ -31,8 +33,23 @@ pub(crate) struct Placed {
     mass: f64,
     /// Rows across a plate.
     rows: Option<f64>,
-    /// A wall's motion.
+    /// A prescribed motion, of a wall or of clamps.
     moves: bool,
+    /// Walls that its clamps move with.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    with: Vec<String>,
+    /// The body that it is part of: of a solid.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    body: Option<String>,
+    /// Bending stiffness of a plate that can bend, asked and computed, N m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bending: Option<[f64; 2]>,
+    /// Deflection of a clamped plate by beam theory under the fluid at rest, and its free length, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) bends: Option<[f64; 2]>,
+    /// Where it is too thin to hold fluid.
+    #[serde(skip)]
+    pub(super) thinnest: Option<Thinnest>,
     /// Of its sizes.
     unit: &'static str,
 }
@@ -48,6 +65,13 @@ pub(crate) fn placed<const D: usize>(scene: &Scene, layout: &Layout<D>) -> Vec<P
     }
     let mut all: Vec<Placed> =
         counts.into_iter().enumerate().map(|(index, counts)| of_shape::<D>(scene, index, counts)).collect();
+    for (index, thinnest) in thickness::thinnest(scene, layout).into_iter().enumerate() {
+        let shape = &mut all[index];
+        shape.thinnest = thinnest;
+        let rows = thinnest.map(|thin| thin.thickness / scene.spacing(&scene.shapes[index]));
+        // What voids and other shapes leave of a plate.
+        shape.rows = shape.rows.map(|whole| rows.map_or(whole, |rows| rows.min(whole)));
+    }
     give_masses(scene, &mut all);
     all
 }
@@ -108,6 +132,10 @@ fn of_shape<const D: usize>(scene: &Scene, index: usize, [particles, clamped]: [
         Geometry::Polygon(polygon) => (vec![polygon.area()], vec![each as f64 * dx.powi(D as i32)]),
         Geometry::Moved(_) => (Vec::new(), Vec::new()),
     };
+    let plate = Plate::<D>::of(scene, shape);
+    let bending = plate.as_ref().and_then(|plate| bending(scene, shape, plate, &asked, &computed));
+    let mut with: Vec<String> = shape.clamp_with.iter().flatten().cloned().collect();
+    with.dedup();
     Placed {
         name: shape.name.clone(),
         phase: shape.phase,
@@ -117,10 +145,34 @@ fn of_shape<const D: usize>(scene: &Scene, index: usize, [particles, clamped]: [
         lost: whole.saturating_sub(particles),
         clamped,
         mass: density * particles as f64 * dx.powi(D as i32),
-        rows: Plate::<D>::of(scene, shape).map(|plate| plate.rows),
+        rows: plate.map(|plate| plate.rows),
         moves: shape.motion.is_some(),
+        with,
+        body: (shape.phase == Phase::Solid).then(|| shape.body().to_owned()),
+        bending,
+        bends: beams::deflection(scene, shape),
+        thinnest: None,
         unit: if matches!(shape.geometry.unmoved(), Geometry::Polygon(_)) { "m²" } else { "m" },
     }
+}
+
+/// Bending stiffness of a plate per width, asked and computed, N m: E' t³ / 12. `None` of what cannot bend.
+fn bending<const D: usize>(
+    scene: &Scene,
+    shape: &Shape,
+    plate: &Plate<D>,
+    asked: &[f64],
+    computed: &[f64],
+) -> Option<[f64; 2]> {
+    let solid = shape.solid.and_then(|k| scene.solids.get(k)).filter(|solid| solid.rigid().is_none())?;
+    let thin = (0..asked.len()).min_by(|&a, &b| asked[a].total_cmp(&asked[b]))?;
+    let (thickness, factor) = match shape.geometry.unmoved() {
+        // An area is larger where its plate is thicker.
+        Geometry::Polygon(_) => (plate.rows * scene.spacing(shape), computed[thin] / asked[thin]),
+        _ => (asked[thin], computed[thin] / asked[thin]),
+    };
+    let of = |thickness: f64| solid.bending_modulus() * thickness.powi(3) / 12.0;
+    Some([of(thickness), of(factor * thickness)])
 }
 
 /// Radius of the disc or ball that has the measure of so many particles, m.
@@ -156,6 +208,21 @@ impl fmt::Display for Placed {
         }
         if self.clamped > 0 {
             write!(f, ", {} clamped", self.clamped)?;
+        }
+        if let Some([asked, computed]) = self.bending {
+            write!(f, ", bending stiffness {} N m", length(asked))?;
+            if (computed / asked - 1.0).abs() >= 1e-3 {
+                write!(f, " asked, {} computed", length(computed))?;
+            }
+        }
+        if let Some([way, free]) = self.bends {
+            write!(f, ", bends {} of {} m under the fluid at rest", length(way), length(free))?;
+        }
+        if let Some(body) = self.body.as_ref().filter(|body| **body != self.name) {
+            write!(f, ", of body {body}")?;
+        }
+        if !self.with.is_empty() {
+            write!(f, ", moves with {}", self.with.join(" and "))?;
         }
         if self.moves {
             write!(f, ", moves")?;

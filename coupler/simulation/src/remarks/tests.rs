@@ -13,13 +13,13 @@ fn scene(resolution: f64, rest: &str) -> Vec<String> {
     remarks(&parse(&text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}")))
 }
 
-const TANK: &str = "[[shape]]\nname = \"tank\"\nphase = \"wall\"\ntank = { min = [0.0, 0.0], max = [0.4, 0.3], open = [\"top\"] }\n";
-const WATER: &str =
+pub(super) const TANK: &str = "[[shape]]\nname = \"tank\"\nphase = \"wall\"\ntank = { min = [0.0, 0.0], max = [0.4, 0.3], open = [\"top\"] }\n";
+pub(super) const WATER: &str =
     "[[shape]]\nname = \"water\"\nphase = \"fluid\"\nbox = { min = [0.0, 0.0], max = [0.1, 0.1] }\n";
-const PLATE: &str = "[[shape]]\nname = \"plate\"\nphase = \"solid\"\nbox = { min = [0.2, 0.0], max = [0.22, 0.1] }\n\
+pub(super) const PLATE: &str = "[[shape]]\nname = \"plate\"\nphase = \"solid\"\nbox = { min = [0.2, 0.0], max = [0.22, 0.1] }\n\
                      clamp = { min = [0.2, 0.0], max = [0.22, 0.01] }\n";
 
-fn plain(parts: &[&str]) -> Vec<String> {
+pub(super) fn plain(parts: &[&str]) -> Vec<String> {
     scene(0.005, &parts.concat())
 }
 

@@ -1,36 +1,160 @@
 //! Remarks on the fluid: what carries it, how fast it may become.
 
-use halfstep_scene::geometry::{self, Layout};
+use halfstep_scene::geometry::{self, Cells, FluidPoint, Layout};
 use halfstep_scene::{Block, Geometry, Motion, Phase, Scene, expected_speed_of_fluid as fastest};
+use std::collections::HashMap;
 
 /// Mach number above which the density error, about its square, exceeds 3 %.
 const HIGHEST_MACH: f64 = 0.17;
 
-/// Fluid with nothing below it.
+/// Along which axis things fall, and which way; `None` without gravity.
+fn falls<const D: usize>(scene: &Scene) -> Option<(usize, f64)> {
+    let axis = (0..D).max_by(|&a, &b| scene.gravity[a].abs().total_cmp(&scene.gravity[b].abs()))?;
+    (scene.gravity[axis] != 0.0).then(|| (axis, scene.gravity[axis].signum()))
+}
+
+/// Fluid with nothing right below it.
 pub(super) fn hanging<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
-    // Along which axis things fall, and which way.
-    let Some(axis) = (0..D).max_by(|&a, &b| scene.gravity[a].abs().total_cmp(&scene.gravity[b].abs())) else {
-        return;
+    let Some((axis, down)) = falls::<D>(scene) else { return };
+    let shapes = || scene.shapes.iter().enumerate().filter(|(_, shape)| shape.phase == Phase::Fluid);
+    let others = |index: usize| {
+        let fluid = layout.fluid.iter().filter(move |p| p.shape as usize != index).map(|p| &p.position);
+        let solid = layout.solid.iter().map(|p| &p.position);
+        fluid.chain(solid).chain(layout.wall.iter().map(|p| &p.position))
     };
-    if scene.gravity[axis] == 0.0 {
-        return;
-    }
-    let down = scene.gravity[axis].signum();
-    for (index, shape) in scene.shapes.iter().enumerate().filter(|(_, shape)| shape.phase == Phase::Fluid) {
-        let Geometry::Box(block) = &shape.geometry else { continue };
+    let reach = 1.5 * scene.resolution;
+    for (index, shape) in shapes() {
+        let Geometry::Box(block) = &shape.geometry else {
+            if !carried(layout, index, reach, others(index), (axis, down)) {
+                all.push(format!(
+                    "`{}` hangs in the air: nothing is right below it, so it falls",
+                    shape.name
+                ));
+            }
+            continue;
+        };
         let bottom = if down < 0.0 { block.min[axis] } else { block.max[axis] };
-        let reach = 1.5 * scene.resolution;
         let below = |x: &[f64; D]| {
             let depth = (x[axis] - bottom) * down;
             0.0 <= depth + 1e-9 * reach
                 && depth < reach
                 && (0..D).all(|a| a == axis || (block.min[a] <= x[a] && x[a] <= block.max[a]))
         };
-        let others = layout.fluid.iter().filter(|p| p.shape as usize != index).map(|p| &p.position);
-        let solid = layout.solid.iter().map(|p| &p.position);
-        let wall = layout.wall.iter().map(|p| &p.position);
-        if !others.chain(solid).chain(wall).any(below) {
+        if !others(index).any(below) {
             all.push(format!("`{}` hangs in the air: nothing is right below it, so it falls", shape.name));
+        }
+    }
+}
+
+/// Whether one of `others` is near a particle of a shape, and rather below it than beside it. True where it has none.
+fn carried<'l, const D: usize>(
+    layout: &'l Layout<D>,
+    shape: usize,
+    reach: f64,
+    others: impl Iterator<Item = &'l [f64; D]>,
+    (axis, down): (usize, f64),
+) -> bool {
+    let mut own = Cells::new(reach);
+    let of_shape = layout.fluid.iter().filter(|p| p.shape as usize == shape);
+    of_shape.for_each(|p| own.add(&p.position, p.position));
+    let below = |x: &[f64; D], p: &[f64; D]| {
+        let r2: f64 = (0..D).map(|a| (x[a] - p[a]).powi(2)).sum();
+        let depth = (x[axis] - p[axis]) * down;
+        r2 < reach * reach && depth > 0.0 && 2.0 * depth * depth > 1.1 * r2
+    };
+    let mut others = others;
+    !layout.fluid.iter().any(|p| p.shape as usize == shape)
+        || others.any(|x| own.around(x).any(|p| below(x, p)))
+}
+
+/// Fluid below which there is nothing at all, however deep: it is outside of what should hold it.
+pub(super) fn outside<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
+    let Some((axis, down)) = falls::<D>(scene) else { return };
+    let dx = scene.resolution;
+    // Columns of half the width dx, and how deep the lowest wall or solid in each lies.
+    let column = |x: &[f64; D]| -> [i64; D] {
+        std::array::from_fn(|a| if a == axis { 0 } else { (x[a] / (0.5 * dx)).round() as i64 })
+    };
+    let mut floors: HashMap<[i64; D], f64> = HashMap::new();
+    let solid = layout.solid.iter().map(|p| &p.position);
+    // Walls of a large basin that are nowhere below fluid are none of its floors.
+    let Some(fluid) = geometry::around(geometry::fluid_boxes(scene)) else { return };
+    let below =
+        |x: &&[f64; D]| (0..D).all(|a| a == axis || (fluid.min[a] - dx <= x[a] && x[a] <= fluid.max[a] + dx));
+    for x in layout.wall.iter().map(|p| &p.position).chain(solid).filter(below) {
+        let depth = x[axis] * down;
+        let lowest = floors.entry(column(x)).or_insert(depth);
+        *lowest = lowest.max(depth);
+    }
+    let carried = |x: &[f64; D]| {
+        let home = column(x);
+        (0..3_usize.pow(D as u32)).any(|code| {
+            let near: [i64; D] =
+                std::array::from_fn(|a| home[a] + (code / 3_usize.pow(a as u32) % 3) as i64 - 1);
+            floors.get(&near).is_some_and(|floor| *floor > x[axis] * down)
+        })
+    };
+    for (index, shape) in scene.shapes.iter().enumerate().filter(|(_, shape)| shape.phase == Phase::Fluid) {
+        let own = || layout.fluid.iter().filter(|p| p.shape as usize == index);
+        let (count, mut astray) = (own().count(), own().filter(|p| !carried(&p.position)));
+        let Some(first) = astray.next().map(|p| p.position) else { continue };
+        let astray = 1 + astray.count();
+        // What hangs altogether is remarked on as that.
+        if astray < count {
+            let at: Vec<String> = first.iter().map(|x| (*x as f32).to_string()).collect();
+            all.push(format!(
+                "{astray} of {count} particles of `{}` have neither wall nor solid below them, however deep, and fall: \
+                 the first is at [{}]",
+                shape.name,
+                at.join(", ")
+            ));
+        }
+    }
+}
+
+/// Pressure that is missing under other fluid, over that of the own depth, from which on it is remarked.
+const MISSING: f64 = 0.02;
+
+/// Fluid that begins with the pressure of its own depth although other fluid stands on it.
+pub(super) fn stacked<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
+    let (Some((axis, down)), Some(fluid)) = (falls::<D>(scene), &scene.fluid) else { return };
+    let reach = 1.5 * scene.resolution;
+    let size = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+    let mut cells = Cells::new(reach);
+    layout.fluid.iter().for_each(|p| cells.add(&p.position, p));
+    let top = |index: usize| {
+        let around = geometry::bounding_box(&scene.shapes[index], scene);
+        (-down * around.min[axis]).max(-down * around.max[axis])
+    };
+    let height = |index: usize| {
+        let around = geometry::bounding_box(&scene.shapes[index], scene);
+        around.max[axis] - around.min[axis]
+    };
+    for (index, shape) in scene.shapes.iter().enumerate().filter(|(_, shape)| shape.hydrostatic) {
+        let own = layout.fluid.iter().filter(|p| p.shape as usize == index);
+        let above = |p: &FluidPoint<D>| {
+            let stands = |q: &&&FluidPoint<D>| {
+                let r2: f64 = (0..D).map(|a| (q.position[a] - p.position[a]).powi(2)).sum();
+                let up = (p.position[axis] - q.position[axis]) * down;
+                q.shape != p.shape && r2 < reach * reach && up > 0.0 && up * up > 0.9 * r2
+            };
+            cells
+                .around(&p.position)
+                .filter(stands)
+                .map(|q| q.shape as usize)
+                .max_by(|&a, &b| top(a).total_cmp(&top(b)))
+        };
+        let highest = own.filter_map(above).max_by(|&a, &b| top(a).total_cmp(&top(b)));
+        let Some(other) = highest else { continue };
+        let missing = top(other) - top(index);
+        if missing > MISSING * height(index) {
+            all.push(format!(
+                "`{}` begins with the pressure of its own depth, and `{}` stands on it: {:.0} Pa are missing (one \
+                 shape, a polygon for instance, has the pressure of its whole depth)",
+                shape.name,
+                scene.shapes[other].name,
+                fluid.density * size * missing
+            ));
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::polygon::{Edges, Polygon, in_space};
 use super::{Moved, Spacing};
-use crate::{EffectName, Geometry, Phase, Scene, Shape, Switch, Treatment};
+use crate::{Block, EffectName, Geometry, Lattice, Phase, Scene, Shape, Switch, Treatment};
 
 /// A box, ring or polygon that is longer than thick.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,7 +53,8 @@ impl<const D: usize> Plate<D> {
     fn of_geometry(scene: &Scene, shape: &Shape, geometry: &Geometry) -> Option<Self> {
         let spacing = Spacing::of(scene, shape);
         let (kind, rows) = match geometry {
-            Geometry::Box(block) => {
+            Geometry::Box(_) => {
+                let block = joined(scene, shape, geometry)?;
                 let extent = |a: usize| block.max[a] - block.min[a];
                 let across = (0..D).min_by(|&a, &b| extent(a).total_cmp(&extent(b)))?;
                 let longest = (0..D).map(extent).fold(0.0, f64::max);
@@ -135,6 +136,43 @@ impl<const D: usize> Plate<D> {
     }
 }
 
+/// The box that a geometry of a shape is, grown by the boxes of the shape's body that lie beside it across its thin
+/// side and are as long and as wide: together they are one plate. `None` of another geometry.
+pub(crate) fn joined(scene: &Scene, shape: &Shape, geometry: &Geometry) -> Option<Block> {
+    let Geometry::Box(block) = geometry else { return None };
+    let mut block = *block;
+    // In the nodal lattice there is a gap between two boxes.
+    let alone =
+        shape.phase != Phase::Solid || shape.body.is_empty() || scene.numerics.lattice == Lattice::Nodal;
+    if alone || shape.geometry != *geometry {
+        return Some(block);
+    }
+    let axes = || 0..scene.dimension;
+    let extent = |a: usize| block.max[a] - block.min[a];
+    let across = axes().min_by(|&a, &b| extent(a).total_cmp(&extent(b)))?;
+    let close = |a: f64, b: f64| (a - b).abs() < 1e-6 * scene.spacing(shape);
+    let of_body = |other: &&Shape| {
+        let alike = other.phase == Phase::Solid && other.solid == shape.solid && other.body == shape.body;
+        alike && scene.spacing(other) == scene.spacing(shape)
+    };
+    let mut others: Vec<Block> = scene.shapes.iter().filter(of_body).filter_map(Shape::block).collect();
+    others.retain(|b| {
+        let along = |a: usize| close(b.min[a], block.min[a]) && close(b.max[a], block.max[a]);
+        axes().filter(|&a| a != across).all(along)
+    });
+    let mut grown = true;
+    while std::mem::take(&mut grown) {
+        for b in &others {
+            if close(b.min[across], block.max[across]) {
+                (block.max[across], grown) = (b.max[across], true);
+            } else if close(b.max[across], block.min[across]) {
+                (block.min[across], grown) = (b.min[across], true);
+            }
+        }
+    }
+    Some(block)
+}
+
 fn length<const D: usize>(x: &[f64; D]) -> f64 {
     x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
@@ -144,7 +182,7 @@ const TOLERANCE: f64 = 1e-9;
 
 /// Least thickness of a plate as the fluid's moving wall, in spacings of the fluid: a thinner one does not hold water.
 /// `None` where that is not asked for.
-pub(crate) fn least_thickness(scene: &Scene) -> Option<f64> {
+pub fn least_thickness(scene: &Scene) -> Option<f64> {
     let asked = scene.fluid.is_some()
         && !scene.solids.is_empty()
         && scene.interface.treatment == Treatment::MovingWall
@@ -178,6 +216,23 @@ mod tests {
         let floor = plate("box = { min = [0.0, 0.0], max = [0.2, 0.02] }").unwrap();
         assert_eq!((floor.rows, floor.across(&[0.1, 0.005]).0), (2.0, [0.0, 1.0]));
         assert_eq!(plate("box = { min = [0.0, 0.0], max = [0.03, 0.05] }"), None, "a block");
+    }
+
+    /// Half of a plate beside its other half: of a body that both name they are one plate.
+    #[test]
+    fn boxes_of_one_body_side_by_side_are_one_plate() {
+        let beside = |to: f64, body: &str| {
+            plate(&format!(
+                "body = \"b\"\nbox = {{ min = [0.1, 0.0], max = [0.12, 0.2] }}\n[[shape]]\nname = \"t\"\n\
+                 phase = \"solid\"\nbody = \"{body}\"\nbox = {{ min = [0.12, 0.0], max = [0.14, {to}] }}"
+            ))
+        };
+        let whole = beside(0.2, "b").unwrap();
+        assert_eq!(whole.rows, 4.0);
+        let (_, before) = whole.across(&[0.125, 0.1]);
+        assert!((before - 0.005).abs() < 1e-15 && whole.holds(&[0.135, 0.1]), "{before}");
+        // A shorter one, and another body's.
+        assert_eq!([beside(0.15, "b"), beside(0.2, "c")].map(|plate| plate.unwrap().rows), [2.0; 2]);
     }
 
     #[test]

@@ -1,0 +1,121 @@
+//! Remarks on tanks that move: clamps, joints and walls in them that do not go along.
+
+use halfstep_scene::{Block, Geometry, Joint, JointKind, Motion, Phase, Scene, Shape, geometry};
+
+/// Walls that move, with the boxes around them.
+fn moving(scene: &Scene) -> Vec<(&Shape, Block)> {
+    let walls = scene.shapes.iter().filter(|shape| shape.phase == Phase::Wall);
+    let around = walls.map(|wall| (wall, geometry::bounding_box(wall, scene)));
+    around.filter(|(wall, around)| wall.motion.as_ref().is_some_and(|m| m.fastest(around) > 0.0)).collect()
+}
+
+/// Those of them that are around fluid.
+fn tanks(scene: &Scene) -> Vec<(&Shape, Block)> {
+    let fluid = geometry::fluid_boxes(scene);
+    let holds = |around: &Block| {
+        fluid.iter().any(|b| {
+            (0..scene.dimension).all(|a| {
+                let middle = 0.5 * (b.min[a] + b.max[a]);
+                around.min[a] < middle && middle < around.max[a]
+            })
+        })
+    };
+    let hollow = |wall: &Shape| !matches!(wall.geometry.unmoved(), Geometry::Box(_) | Geometry::Disc { .. });
+    moving(scene).into_iter().filter(|(wall, around)| hollow(wall) && holds(around)).collect()
+}
+
+fn meet(a: &Block, b: &Block, scene: &Scene) -> bool {
+    (0..scene.dimension).all(|d| a.min[d] <= b.max[d] && b.min[d] <= a.max[d])
+}
+
+/// More than half a spacing in each other.
+fn overlap(a: &Block, b: &Block, scene: &Scene) -> bool {
+    let common = |k: usize| a.max[k].min(b.max[k]) - a.min[k].max(b.min[k]);
+    (0..scene.dimension).all(|k| common(k) > 0.5 * scene.resolution)
+}
+
+/// How the wall of a name moves.
+fn motion_of<'s>(scene: &'s Scene, wall: &str) -> Option<&'s Motion> {
+    scene.shapes.iter().find(|shape| shape.name == wall)?.motion.as_ref()
+}
+
+/// Clamps that keep their place, or go another way, while a wall around them moves.
+pub(super) fn clamps(scene: &Scene, all: &mut Vec<String>) {
+    let walls = moving(scene);
+    for shape in &scene.shapes {
+        for (wall, around) in &walls {
+            let motion = |k: usize| match shape.clamp_with.get(k).and_then(Option::as_ref) {
+                Some(with) => motion_of(scene, with),
+                None => shape.motion.as_ref(),
+            };
+            let astray = (0..shape.clamp.len())
+                .find(|&k| motion(k) != wall.motion.as_ref() && meet(&shape.clamp[k], around, scene));
+            let Some(clamp) = astray else { continue };
+            let how = match motion(clamp) {
+                None => "the clamp stays where it is",
+                Some(_) => "the clamp moves otherwise",
+            };
+            all.push(format!(
+                "the clamp of `{}` stands in `{}`, which moves: {how} (`with = \"{}\"` at the clamp takes it along)",
+                shape.name, wall.name, wall.name
+            ));
+        }
+    }
+}
+
+/// Joints in tanks that move, tied to what does not go along.
+pub(super) fn joints(scene: &Scene, all: &mut Vec<String>) {
+    let tanks = tanks(scene);
+    if tanks.is_empty() {
+        return;
+    }
+    for (solid, keys) in scene.solids.iter().enumerate().filter_map(|(k, solid)| Some((k, solid.rigid()?))) {
+        let is_body =
+            |name: &str| scene.shapes.iter().any(|shape| shape.solid == Some(solid) && shape.body() == name);
+        for joint in keys.joints.iter().filter(|joint| !is_body(&joint.with)) {
+            let motion = motion_of(scene, &joint.with);
+            let astray = tanks
+                .iter()
+                .find(|(tank, around)| motion != tank.motion.as_ref() && holds(scene, solid, joint, around));
+            let Some((tank, _)) = astray else { continue };
+            let tied = match joint.with.as_str() {
+                "" => "space".to_owned(),
+                wall => format!("`{wall}`"),
+            };
+            all.push(format!(
+                "joint `{}` ties `{}` to {tied} inside of `{}`, which moves: the joint does not go along (`with = \
+                 \"{}\"` takes it along)",
+                joint.name, joint.body, tank.name, tank.name
+            ));
+        }
+    }
+}
+
+/// Whether a joint's point, or one that is fixed altogether, lies in a box.
+fn holds(scene: &Scene, solid: usize, joint: &Joint, around: &Block) -> bool {
+    match joint.kind {
+        JointKind::Hinge { at, .. } | JointKind::Rail { at, .. } | JointKind::Spring { to: at, .. } => {
+            meet(&Block { min: at, max: at }, around, scene)
+        }
+        JointKind::Fixed => {
+            let own = scene.shapes.iter().filter(|s| s.solid == Some(solid) && s.body() == joint.body);
+            own.map(|shape| geometry::bounding_box(shape, scene)).any(|b| meet(&b, around, scene))
+        }
+    }
+}
+
+/// Walls in tanks that move, which stay or go another way.
+pub(super) fn walls(scene: &Scene, all: &mut Vec<String>) {
+    for (tank, around) in tanks(scene) {
+        for wall in scene.shapes.iter().filter(|shape| shape.phase == Phase::Wall) {
+            if wall.motion == tank.motion || !overlap(&geometry::bounding_box(wall, scene), &around, scene) {
+                continue;
+            }
+            let how = if wall.motion.is_some() { "moves otherwise" } else { "stays where it is" };
+            all.push(format!(
+                "`{}` stands in `{}`, which moves, and {how} (the same `motion` at both takes it along)",
+                wall.name, tank.name
+            ));
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! What a solid of another program showed in its first message, beside what the scene has for it.
+
+use serde::{Deserialize, Serialize};
+
+/// Part of the solid's mass by which what it publishes may differ from the scene's.
+const MASS: f64 = 0.02;
+/// Part of its number of particles: its own lattice may be another one, and fill a curved outline with some more.
+const NUMBER: f64 = 0.1;
+/// Part of the scene's places that may have no particle near: corners that a mesh cuts.
+const EMPTY: f64 = 0.02;
+
+/// The first message of a solid of another program and the scene's particles of that solid.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct FirstMessage {
+    /// Name of the solid.
+    pub name: String,
+    /// Particles that it published.
+    pub particles: u64,
+    /// Their mass, kg (2D: kg/m).
+    pub mass: f64,
+    /// Particles that the scene has for it.
+    pub scene_particles: u64,
+    /// Their mass, kg (2D: kg/m).
+    pub scene_mass: f64,
+    /// Those of the scene's particles that the fluid can reach: a solid need not publish the others.
+    pub outer_particles: u64,
+    /// Least and largest mass that is right: of the outer particles alone, and of all, kg (2D: kg/m).
+    pub right_mass: [f64; 2],
+    /// Outer places of the scene's with no particle of the solid near.
+    pub empty: u64,
+    /// The first of them, m.
+    pub first_empty: Option<[f64; 3]>,
+    /// Particles of the solid with no place of the scene's near.
+    pub misplaced: u64,
+    /// How far the one that is farthest is from the nearest place, m.
+    pub farthest: f64,
+    /// Where that one is, m.
+    pub farthest_at: Option<[f64; 3]>,
+    /// Particles of the fluid that begin closer than half a spacing to a particle of the solid.
+    pub in_fluid: u64,
+}
+
+impl FirstMessage {
+    /// What in it is not as the scene has it, most telling first; nothing where the differences are those of meshes.
+    pub fn remarks(&self, dimension: usize) -> Vec<String> {
+        let Self { name, particles, mass, scene_particles, scene_mass, .. } = self;
+        let unit = if dimension == 2 { "kg/m" } else { "kg" };
+        let at = |x: &Option<[f64; 3]>| {
+            let x = x.unwrap_or_default();
+            let place: Vec<String> = x[..dimension].iter().map(|x| (*x as f32).to_string()).collect();
+            format!("[{}]", place.join(", "))
+        };
+        let mut all = Vec::new();
+        let least = self.outer_particles as f64 * (1.0 - NUMBER);
+        let most = *scene_particles as f64 * (1.0 + NUMBER);
+        if !(least..=most).contains(&(*particles as f64)) {
+            all.push(format!(
+                "the {name} publishes {particles} particles, and its shapes have {scene_particles} at the scene's \
+                 spacing: water passes between such as are farther apart, closer ones only cost"
+            ));
+        }
+        let [low, high] = self.right_mass;
+        if !(low * (1.0 - MASS)..=high * (1.0 + MASS)).contains(mass) {
+            all.push(format!(
+                "the particles of the {name} have a mass of {mass:.4} {unit}, and its shapes {scene_mass:.4} {unit}: \
+                 each displaces as much fluid as its mass over the scene's density"
+            ));
+        }
+        if self.empty as f64 > EMPTY * self.outer_particles as f64 {
+            all.push(format!(
+                "{} of {} places near the surface of the {name} have none of its particles near, the first at {}: \
+                 fluid goes there (clamped particles are published, too)",
+                self.empty,
+                self.outer_particles,
+                at(&self.first_empty)
+            ));
+        }
+        if self.misplaced > 0 {
+            all.push(format!(
+                "{} particles of the {name} are not where its shapes are, by up to {:.3e} m: the one at {}",
+                self.misplaced,
+                self.farthest,
+                at(&self.farthest_at)
+            ));
+        }
+        if self.in_fluid > 0 {
+            all.push(format!(
+                "{} particles of the fluid begin in the {name}, closer than half a spacing to its particles",
+                self.in_fluid
+            ));
+        }
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A block of 8 by 28 particles of 0.2 kg/m, of which 180 are near the surface.
+    fn block() -> FirstMessage {
+        FirstMessage {
+            name: "solid".into(),
+            particles: 224,
+            mass: 44.8,
+            scene_particles: 224,
+            scene_mass: 44.8,
+            outer_particles: 180,
+            right_mass: [36.0, 44.8],
+            ..FirstMessage::default()
+        }
+    }
+
+    #[test]
+    fn differences_of_meshes_are_silent() {
+        let as_told = block();
+        let shell = FirstMessage { particles: 180, mass: 36.0, ..block() };
+        let other_lattice = FirstMessage { particles: 240, mass: 45.5, empty: 3, ..block() };
+        for message in [as_told, shell, other_lattice] {
+            assert_eq!(message.remarks(2), [""; 0]);
+        }
+    }
+
+    #[test]
+    fn each_limit_says_its_own() {
+        let one = |message: FirstMessage, said: &str| {
+            let remarks = message.remarks(2);
+            assert!(remarks.len() == 1 && remarks[0].contains(said), "{remarks:?}");
+        };
+        // 1.1 times 224 are 246.4; 0.9 times 180 are 162.
+        one(FirstMessage { particles: 247, ..block() }, "publishes 247 particles, and its shapes have 224");
+        one(FirstMessage { particles: 161, ..block() }, "publishes 161 particles");
+        // 1.02 times 44.8 are 45.7; 0.98 times 36 are 35.28.
+        one(FirstMessage { mass: 45.8, ..block() }, "a mass of 45.8000 kg/m, and its shapes 44.8000 kg/m");
+        one(FirstMessage { mass: 35.2, ..block() }, "a mass of 35.2000 kg/m");
+        // 2 % of 180 are 3.6.
+        let empty = FirstMessage { empty: 4, first_empty: Some([0.5, 0.25, 0.0]), ..block() };
+        one(
+            empty,
+            "4 of 180 places near the surface of the solid have none of its particles near, the first at [0.5, 0.25]",
+        );
+        let away = FirstMessage { misplaced: 1, farthest: 5e-3, farthest_at: Some([0.5; 3]), ..block() };
+        one(
+            away,
+            "1 particles of the solid are not where its shapes are, by up to 5.000e-3 m: the one at [0.5, 0.5]",
+        );
+        one(FirstMessage { in_fluid: 20, ..block() }, "20 particles of the fluid begin in the solid");
+    }
+}
