@@ -155,7 +155,9 @@ class Link:
 
     def receive(self):
         """The next answer: its header and its records, copied."""
-        sample = self._wait(self.inbox.receive, SILENCE_MS, float(self.environment["PATIENCE_SECONDS"]))
+        # Longer than the coupler, which knows who is silent and names it.
+        patience = 1.5 * float(self.environment["PATIENCE_SECONDS"]) + 1.0
+        sample = self._wait(self.inbox.receive, SILENCE_MS, patience)
         header = wire.FORCE_HEADER.view(sample.user_header_ptr)[0].copy()
         # `len` counts bytes in iceoryx2 0.10.
         count = sample.header.number_of_elements

@@ -90,7 +90,7 @@ fn bar(text: &str, model: &str, across: u32) -> Finished {
 }
 
 /// Four across: y 1.5 and 1.4 % short, x 1.2 and 0.8 %, 0.9 and 0.8 % too fast. With eight y is 0.3 and 0.7 % short, x
-/// 0.8 and 0.1 % off, 0.5 and 0.7 % too fast; the straight clamp is worth some of it.
+/// 0.8 and 0.1 % off, 0.5 and 0.7 % too fast; the straight clamp is worth some of it. The amplitude is 63.5 mm.
 #[test]
 fn bars_of_both_models_swing_as_turek_and_hron_say() {
     for model in ["total-lagrangian", "finite-element"] {
@@ -100,17 +100,20 @@ fn bars_of_both_models_swing_as_turek_and_hron_say() {
         assert!((lowest / -0.128767 - 1.0).abs() < 0.02, "{model}: {lowest}");
         assert!((inmost / -0.02861 - 1.0).abs() < 0.02, "{model}: {inmost}");
         assert!((frequency / 1.0995 - 1.0).abs() < 0.01, "{model}: {frequency}");
-        assert!(top.abs() < 2.0, "{model}: {top}");
-        assert!((swing.amplitude() / 0.06516 - 1.0).abs() < 0.04, "{model}: {}", swing.amplitude());
+        // Released at rest it comes back to where it was, undamped; the reference's +1.55 mm is beyond that.
+        assert!(top.abs() < 1e-4, "{model}: {top}");
+        assert!((swing.amplitude() / 0.06516 - 1.0).abs() < 0.03, "{model}: {}", swing.amplitude());
     }
 }
 
+/// Shown, not held to the reference: four across it is about as soft as its plates are elsewhere, 1.6 times, with A = 0.1
+/// (without any viscosity it blows up).
 #[test]
-fn a_bar_of_the_hypoelastic_model_is_shown() {
-    let text = SCENE.replace("material = \"st-venant-kirchhoff\"\n", "");
-    let damped = text.replace("artificial_viscosity = { linear = 0.0, quadratic = 0.0 }\n", "");
-    for (what, text) in [("undamped", &text), ("damped", &damped)] {
-        let swing = Swing::of(&bar(text, "hypoelastic", 4));
-        swing.say(what);
-    }
+fn a_bar_of_the_hypoelastic_model_hangs_too_low() {
+    let text =
+        SCENE.replace("material = \"st-venant-kirchhoff\"\n", "").replace("linear = 0.0", "linear = 0.1");
+    let y = bar(&text, "hypoelastic", 4).curve("tip.y");
+    let lowest = y.values.into_iter().fold(f64::INFINITY, f64::min);
+    println!("y down to {:.2} mm, {:.2} times the reference's", 1e3 * lowest, lowest / -0.128767);
+    assert!((1.5..1.75).contains(&(lowest / -0.128767)), "{lowest}");
 }
