@@ -1,5 +1,5 @@
-//! Contact of a solid with the walls of a scene, from its records: of one that another program computes, or that strains
-//! and has a friction and a restitution.
+//! Contact of a solid with the walls of a scene, from its records: of one that another program computes, or that
+//! strains and has a friction and a restitution.
 //!
 //! Points of the solid's outline are held against the walls' exact surfaces ([`Surface`]), wherever these are by now.
 //! The law is that between two solids ([`Law`]) with all of K on the points, since a wall has none of its own, and
