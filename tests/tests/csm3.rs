@@ -106,8 +106,8 @@ fn bars_of_both_models_swing_as_turek_and_hron_say() {
     }
 }
 
-/// Shown, not held to the reference: four across it is about as soft as its plates are elsewhere, 1.6 times, with A = 0.1
-/// (without any viscosity it blows up).
+/// Shown, not held to the reference: four across it is about as soft as its plates are elsewhere, 1.6 times, with A =
+/// 0.1 (without any viscosity it blows up).
 #[test]
 fn a_bar_of_the_hypoelastic_model_hangs_too_low() {
     let text =
