@@ -159,7 +159,7 @@ phase = "solid"
 "#;
 
 /// As asked where it is 1. Where it is 1/2, 0.62, where it is 0, 0.50: the force goes over from that of coming to that
-/// of leaving within the speed that a step of the limit changes, and the limit is that of the lightest particle behind the
+/// of leaving within the speed that a step of the limit changes; the limit is that of the lightest particle behind the
 /// surface, while the whole disc goes deep.
 #[test]
 fn a_disc_comes_back_with_about_the_restitution_that_is_asked() {
