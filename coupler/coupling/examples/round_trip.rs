@@ -1,8 +1,5 @@
 //! How long a half step's exchange takes: from the fluid's publishing its state to its having the coupler's answer,
 //! with nothing computed in between. `cargo run --release -p halfstep-coupling --example round_trip`
-//!
-//! With the path of a Python that has the package `halfstep` (`tests/python/setup.sh` prints one) a solid in Python
-//! takes part, too: `... --example round_trip -- python PYTHON`.
 
 use halfstep_coupling::supervise::Children;
 use halfstep_link::{
@@ -10,14 +7,12 @@ use halfstep_link::{
     Transport,
 };
 use halfstep_wire::Name;
-use halfstep_wire::half_step::{HalfStep, Stage};
+use halfstep_wire::half_step::HalfStep;
 use halfstep_wire::protocol::{ForceHeader, ForceRecord, StateHeader, StateRecord, order};
 use std::error::Error;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-/// Place of the solid among the participants.
-const SOLID: usize = 1;
 const STEPS: u64 = 10_000;
 const WARM_UP: usize = 1_000;
 const DT: f64 = 1e-5;
@@ -26,16 +21,6 @@ type Outcome<T> = Result<T, Box<dyn Error>>;
 
 fn main() -> Outcome<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    if let [word, python] = arguments.as_slice()
-        && word == "python"
-    {
-        println!("{:<10} {:>8} {:>10} {:>10}", "solid in", "records", "p50 [us]", "p99 [us]");
-        for records in [100, 1_000, 10_000] {
-            report("Rust", records, with_processes(records, None)?);
-            report("Python", records, with_processes(records, Some(python))?);
-        }
-        return Ok(());
-    }
     if let [role] = arguments.as_slice() {
         let config = LinkConfig::from_env()?;
         return match role.as_str() {
@@ -46,7 +31,7 @@ fn main() -> Outcome<()> {
     }
     println!("{:<10} {:>8} {:>10} {:>10}", "roles", "records", "p50 [us]", "p99 [us]");
     for records in [100, 1_000, 10_000] {
-        report("processes", records, with_processes(records, None)?);
+        report("processes", records, with_processes(records)?);
     }
     for records in [100, 1_000, 10_000] {
         report("threads", records, with_threads(records)?);
@@ -61,22 +46,12 @@ fn report(roles: &str, records: u32, mut times: Vec<Duration>) {
     println!("{roles:<10} {records:>8} {:>10.1} {:>10.1}", quantile(0.5), quantile(0.99));
 }
 
-/// `python`: the solid is a script on the package.
-fn with_processes(records: u32, python: Option<&String>) -> Outcome<Vec<Duration>> {
+fn with_processes(records: u32) -> Outcome<Vec<Duration>> {
     let config = LinkConfig::of_two(records, records);
     let _claim = Claim::new(&config)?;
     let log = std::env::temp_dir().join(format!("{}round_trip.txt", config.prefix));
     let mut children = Children::new(&log);
-    let own = match python {
-        None => vec![Name::SOLID, Name::COUPLER],
-        Some(python) => {
-            let script = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/round_trip.py");
-            let line = format!("'{python}' '{script}' {records}");
-            children.spawn_shell(&config.participants[SOLID], &line, &config, &[])?;
-            vec![Name::COUPLER]
-        }
-    };
-    for role in own {
+    for role in [Name::SOLID, Name::COUPLER] {
         let mut command = Command::new(std::env::current_exe()?);
         command.arg(role.to_string()).envs(config.to_env());
         children.spawn(role, command)?;
@@ -132,10 +107,7 @@ fn coupler<S: Transport>(config: &LinkConfig) -> Outcome<()> {
         for (force, (a, b)) in forces.iter_mut().zip(fluid.records().iter().zip(solid.records())) {
             force.cross_viscosity = [a.position[0] - b.position[0], a.position[1] - b.position[1], 0.0];
         }
-        // A solid in Python ends with the last one.
-        let ends = half_step.step == STEPS - 1 && half_step.stage == Stage::Second;
-        let header =
-            ForceHeader { order: if ends { order::STOP } else { order::GO }, ..half_step.force_header() };
+        let header = ForceHeader { order: order::GO, ..half_step.force_header() };
         link.send_forces(0, &header, &forces)?;
         link.send_forces(1, &header, &forces)?;
     }
