@@ -47,6 +47,7 @@ fn a_bar_that_spins_fast_turns_evenly() {
     let state = &model.states[0];
     let energy = state.kinetic_energy / before - 1.0;
     println!("{:.2e} rad off 400 rad, energy changed by {energy:.1e}", state.angle[2] - 400.0);
-    assert!((state.angle[2] - 400.0).abs() < 1e-11, "{}", state.angle[2]);
+    // 2000 sums, each rounded by at most half of 5.7e-14.
+    assert!((state.angle[2] - 400.0).abs() < 6e-11, "{}", state.angle[2]);
     assert!(energy.abs() < 1e-13 && (state.center[0] - 0.2).abs() < 1e-12, "{state:?}");
 }
