@@ -1,6 +1,6 @@
 //! Rigid bodies by hand.
 
-mod hard;
+mod hard_tests;
 
 use super::Rigid;
 use crate::model::{Load, SolidModel};

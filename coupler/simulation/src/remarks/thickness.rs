@@ -22,9 +22,12 @@ pub(crate) struct Thinnest {
     pub(crate) at: [f64; 2],
 }
 
+/// Outlines lie in a plane.
+const PLANE: usize = 2;
+
 /// What fluid cannot pass: particles of solids and walls with their spacings, m.
 struct Matter {
-    cells: Cells<([f64; 2], f64), 2>,
+    cells: Cells<([f64; PLANE], f64), PLANE>,
 }
 
 fn apart(a: &[f64; 2], b: &[f64; 2]) -> [f64; 2] {
