@@ -11,9 +11,10 @@
 //! friction.
 //!
 //! So short a reach has to stop a particle within a few steps: at a rate k with k dt > 2, which the midpoint rule
-//! cannot take. The guard divides it by 1 + k dt at the first stage and by 1 + k dt / 2 at the second. Then a pair whose
-//! partner keeps its velocity approaches after the step 1 / (1 + k dt) times as fast as before: as by the implicit
-//! Euler rule, whatever k. A wall that mirrors doubles the rate, and 1 - 2 k dt / ((1 + k dt) (1 + k dt / 2)) is left.
+//! cannot take. The guard divides it by 1 + k dt at the first stage and by 1 + k dt / 2 at the second. Then a pair
+//! whose partner keeps its velocity approaches after the step 1 / (1 + k dt) times as fast as before: as by the
+//! implicit Euler rule, whatever k. A wall that mirrors doubles the rate: 1 - 2 k dt / ((1 + k dt) (1 + k dt / 2)) of
+//! the approach is left.
 
 use super::artificial_viscosity::ArtificialViscosity;
 use super::{FluidEffect, Listed, Neighbourhood};
