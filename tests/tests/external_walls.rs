@@ -73,7 +73,7 @@ impl Block {
     }
 
     /// The same with a model that strains in the scene.
-    fn as_elastic(self) -> Self {
+    fn straining(self) -> Self {
         let text = std::fs::read_to_string(&self.path).expect("a scene");
         let elastic = "model = \"hypoelastic\"\nyoungs_modulus = 1e7\npoissons_ratio = 0.3";
         std::fs::write(&self.path, text.replace("model = \"rigid\"", elastic)).expect("a scene");
@@ -163,7 +163,7 @@ fn a_sliding_block_stops_as_coulomb_says_and_as_the_built_in_one_does() {
 /// A program has the friction that the scene gives its solid, whatever the model beside it.
 #[test]
 fn a_block_whose_scene_names_an_elastic_model_slides_as_coulomb_says() {
-    let elastic = Block::new(0.0, 1.0, 0.3).as_elastic();
+    let elastic = Block::new(0.0, 1.0, 0.3).straining();
     let run = elastic.external("").run();
     let (way, expected) = (run.curve("block.x").at(0.5), 1.0 / (2.0 * 0.3 * 9.81));
     println!("way {way} m of {expected}; {:?}", contact(&run));

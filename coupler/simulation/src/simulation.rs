@@ -24,12 +24,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Looks at a run after each of its steps, and may end it.
 type Observer<const D: usize> = Box<dyn FnMut(&Running<D>) -> ControlFlow<()>>;
 
+/// Makes the owner of a scene's fluid; `None` without one.
+type MakeFluid = Box<dyn FnOnce(&Scene, Isa) -> Option<Box<dyn Role>>>;
+
 /// An effect on the fluid that halfstep does not have itself.
 struct OwnEffect {
     name: &'static str,
     decide: fn(&Scene) -> Decision,
     /// The fluid with it. Here and not in [`Simulation`], so that only who brings an effect compiles the fluid anew.
-    fluid: Box<dyn FnOnce(&Scene, Isa) -> Option<Box<dyn Role>>>,
+    fluid: MakeFluid,
 }
 
 /// A simulation of a scene that has not begun, in `D` dimensions.
