@@ -247,7 +247,7 @@ impl Cantilever {
         let mut run = Run::<2>::of(&self.text());
         let (t, dx) = (Self::THICKNESS, self.dx());
         // Whole cells carry the load: in a turned lattice more or less of them than the box is long.
-        let places = run.model.particles().position;
+        let places = run.model.particles().position.to_vec();
         let loaded: Vec<f64> = places.iter().map(|x| x[0]).filter(|x| *x > self.length - dx).collect();
         let arm = loaded.iter().sum::<f64>() / loaded.len() as f64;
         let share = loaded.len() as f64 * dx * arm / (t * (self.length - 0.5 * dx));
@@ -255,7 +255,7 @@ impl Cantilever {
         if self.glides {
             // w = V x² (3 a - x) / (6 E I) with V a = f_t t² / 6.
             let force = rate * 1e6 * t * t / (6.0 * arm) / (6.0 * 1e9 * t.powi(3) / 12.0);
-            for (p, [x, y]) in places.to_vec().into_iter().enumerate() {
+            for (p, [x, y]) in places.into_iter().enumerate() {
                 let (slot, x) = (run.model.slot_of[p] as usize, x.clamp(0.0, self.length));
                 run.model.now.velocity[0][slot] = -(y - 0.5 * t) * force * 3.0 * x * (2.0 * arm - x);
                 run.model.now.velocity[1][slot] = force * x * x * (3.0 * arm - x);
