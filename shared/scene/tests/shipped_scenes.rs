@@ -141,6 +141,20 @@ fn the_sound_speed_is_ten_times_that_of_a_fall_through_the_water() {
     assert_eq!(fast.sound_speed, 50.0);
 }
 
+/// A box without extent beside another one of its body is refused, and nobody waits for the plate that both are.
+#[test]
+fn a_box_without_extent_beside_another_one_of_its_body_is_refused() {
+    for end in ["0.12", "0.1200000001"] {
+        let text = format!(
+            "resolution = 0.01\nend_time = 1.0\n[solid]\ndensity = 800.0\nyoungs_modulus = 1e7\n\
+             poissons_ratio = 0.3\n[[shape]]\nname = \"a\"\nphase = \"solid\"\nbody = \"b\"\n\
+             box = {{ min = [0.1, 0.0], max = [0.12, 0.2] }}\n[[shape]]\nname = \"c\"\nphase = \"solid\"\n\
+             body = \"b\"\nbox = {{ min = [0.12, 0.0], max = [{end}, 0.2] }}\n"
+        );
+        assert!(parse(&text, Path::new("thin.toml"), &[]).is_err(), "{end}");
+    }
+}
+
 /// Water that falls on a solid, and a body that falls into water: each is as fast as its fall makes it.
 #[test]
 fn the_sound_speed_knows_what_falls() {

@@ -150,6 +150,11 @@ pub(crate) fn joined(scene: &Scene, shape: &Shape, geometry: &Geometry) -> Optio
     let axes = || 0..scene.dimension;
     let extent = |a: usize| block.max[a] - block.min[a];
     let across = axes().min_by(|&a, &b| extent(a).total_cmp(&extent(b)))?;
+    // One without room for a particle adds none: it is refused as it is.
+    let has_room = |b: &Block| b.max[across] - b.min[across] >= scene.spacing(shape) * (1.0 - 1e-9);
+    if !has_room(&block) {
+        return Some(block);
+    }
     let close = |a: f64, b: f64| (a - b).abs() < 1e-6 * scene.spacing(shape);
     let of_body = |other: &&Shape| {
         let alike = other.phase == Phase::Solid && other.solid == shape.solid && other.body == shape.body;
@@ -158,7 +163,7 @@ pub(crate) fn joined(scene: &Scene, shape: &Shape, geometry: &Geometry) -> Optio
     let mut others: Vec<Block> = scene.shapes.iter().filter(of_body).filter_map(Shape::block).collect();
     others.retain(|b| {
         let along = |a: usize| close(b.min[a], block.min[a]) && close(b.max[a], block.max[a]);
-        axes().filter(|&a| a != across).all(along)
+        has_room(b) && axes().filter(|&a| a != across).all(along)
     });
     let mut grown = true;
     while std::mem::take(&mut grown) {
