@@ -14,13 +14,14 @@ use crate::time_step::StepLimits;
 use crate::walls::Walls;
 use crate::walls::moving::motions;
 use halfstep_interface::Parameters;
+use halfstep_role::impulse::Impulse;
 use halfstep_role::ledger::Ledger;
 use halfstep_role::role::{Costs, CoverageError, Peer, Role};
 use halfstep_role::timeline;
 use halfstep_scene::bounds::Bounds;
 use halfstep_scene::geometry;
 use halfstep_scene::{Gravity, KernelName, Phase, Scene};
-use halfstep_sph::lane::{Isa, LANES};
+use halfstep_sph::lane::Isa;
 use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_sph::state_equation::StateEquation;
 use halfstep_sph::with_kernel;
@@ -307,13 +308,10 @@ impl<const D: usize, X: FluidEffect<D>> Role for Fluid<D, X> {
     }
 
     fn advance(&mut self, half_step: &HalfStep, forces: &[ForceRecord]) -> Result<(), Diverged> {
-        if let Some(coupling) = &self.coupling {
-            for (&slot, force) in coupling.slots().iter().zip(forces) {
-                self.sums[slot as usize / LANES].add(
-                    slot as usize % LANES,
-                    std::array::from_fn(|d| force.cross_viscosity[d]),
-                    0.0,
-                );
+        if let Some(coupling) = &mut self.coupling {
+            coupling.add_answers(&mut self.sums, self.columns.now.mass, forces);
+            if half_step.stage == Stage::Second {
+                coupling.book(half_step.dt);
             }
         }
         if half_step.stage == Stage::Second {
@@ -346,6 +344,10 @@ impl<const D: usize, X: FluidEffect<D>> Role for Fluid<D, X> {
 
     fn ledger(&self) -> Option<&Ledger> {
         self.ledger.as_ref().map(|own| &own.ledger)
+    }
+
+    fn impulse(&self) -> Option<Impulse> {
+        self.coupling.as_ref().map(|coupling| coupling.impulse)
     }
 
     fn fill_frame(&self, time: f64, frame: &mut Frame) {

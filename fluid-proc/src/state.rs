@@ -132,6 +132,7 @@ impl<const D: usize> State for Coupling<D> {
         fields.points("chosen_at", &mut self.chosen_at)?;
         fields.count("epoch", &mut self.epoch)?;
         fields.real("gap", &mut self.gap)?;
+        fields.part("impulse", &mut self.impulse)?;
         let mut interfaces = self.interfaces.iter_mut().enumerate();
         interfaces.try_for_each(|(k, interface)| fields.part(&format!("interface_{k}"), interface))
     }

@@ -41,7 +41,9 @@ pub(crate) fn takes_part(scene: &Scene, solid: usize, effect: EffectName) -> boo
 
 /// The model of the scene's solid of that index evaluates contact with walls.
 pub(crate) fn touches_walls(scene: &Scene, solid: usize) -> bool {
-    !scene.leaves_walls_to_coupler(solid) && takes_part(scene, solid, EffectName::WallContact)
+    !scene.leaves_walls_to_coupler(solid)
+        && !takes_part(scene, solid, EffectName::WallParticles)
+        && takes_part(scene, solid, EffectName::WallContact)
 }
 
 fn derive(scene: &Scene, k: usize, effect: EffectName) -> Derived {
@@ -90,6 +92,9 @@ fn derive(scene: &Scene, k: usize, effect: EffectName) -> Derived {
             100.0 * TOLERANCE,
             TOLERANCE * scene.solid_spacing(k)
         )),
+        EffectName::WallContact if takes_part(scene, k, EffectName::WallParticles) => {
+            Derived::Impossible("walls act by their particles".into())
+        }
         _ if scene.shapes.iter().any(|s| s.contact) && scene.leaves_walls_to_coupler(k) => {
             let ContactKeys { friction, restitution } = solid.contact().unwrap_or_default();
             let how = format!("friction {friction}, restitution {restitution}");

@@ -5,7 +5,7 @@
 //! that is as linear as the datasheet's E peak early and low; the total-Lagrangian solid is one of them. The
 //! hypoelastic solid is softer than its E says and comes nearer to the experiment by that.
 
-use halfstep_tests::{Curve, Finished, scene};
+use halfstep_tests::{Curve, Finished, RunBuilder, scene};
 use halfstep_wire::frame::FLUID;
 use nalgebra::{DMatrix, DVector};
 
@@ -47,6 +47,7 @@ fn state(what: &str, run: &Finished) -> (f64, f64) {
 fn sound(run: &Finished) {
     let audit = &run.report.audit;
     assert!(audit.action_reaction.unwrap() <= 1e-12, "{audit:?}");
+    assert!(audit.impulse.unwrap() <= 1e-12, "{audit:?}");
     assert!(audit.min_gap.unwrap() > 0.3, "no particle may pass through the plate: {audit:?}");
     let roles = &run.report.roles;
     assert!(roles.fluid.is_some() && roles.solid.is_some() && roles.coupler.is_some());
@@ -197,6 +198,45 @@ fn the_hypoelastic_gate_hangs_on_the_number_of_its_rows() {
         let (_, peak) = state(&format!("hypoelastic gate, {across} across"), &run);
         assert!((peak - expected).abs() < 0.5, "{across} across: {peak} mm");
     }
+}
+
+/// The paper's scheme: its preset, its plate of 6 mm, dt in proportion to the spacing.
+fn paper_gate(resolution: f64) -> RunBuilder {
+    let gate = scene("elastic-gate").set("preset", "kayaki").set("resolution", resolution);
+    gate.set("time_step", 1e-5 * resolution / 1e-3).set("shape.plate.box.max", "[0.106, 0.099]")
+}
+
+/// Two rows; they are too soft, 55.7 mm @ 0.16 s. While it opens it is beside the experiment.
+#[test]
+fn a_coarse_gate_with_the_papers_scheme() {
+    let run = paper_gate(0.002).until(0.08).run();
+    sound(&run);
+    assert_eq!(run.report.steps, 4000);
+    opens_as_in_the_experiment(&run, [0.35, 4.3]);
+}
+
+/// The paper's peak is between the experiment's 46.4 and Antoci's 50.1 mm, and less after it; ours 45.1 mm @ 0.1215 s.
+/// Its plate of five rows is luck: one of 5 mm has four and goes 53.5 mm.
+#[test]
+#[ignore = "minutes: the paper's scheme at full resolution"]
+fn the_gate_with_the_papers_scheme_at_full_resolution() {
+    let run = paper_gate(0.001).until(0.16).run();
+    sound(&run);
+    let (time, peak) = state("paper's gate, 6 mm", &run);
+    assert!((peak - 45.1).abs() < 0.5 && (0.115..0.13).contains(&time), "{peak} mm at {time} s");
+    let run = paper_gate(0.001).set("shape.plate.box.max", "[0.105, 0.099]").until(0.16).run();
+    let (time, peak) = state("paper's gate, 5 mm", &run);
+    assert!((peak - 53.5).abs() < 0.5 && (0.14..0.155).contains(&time), "{peak} mm at {time} s");
+}
+
+/// Walls that hold values toward the solid (the paper's section 4.1) hold on to the plate's end: 0.19 mm at 1.25 mm.
+#[test]
+fn the_papers_wall_particles_keep_the_gate_shut() {
+    let run = paper_gate(0.002).set("effects.wall-particles", "on").until(0.04).run();
+    let x = tip(&run, "x");
+    let farthest = x.values.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    println!("with wall particles the end moves {farthest:.3} mm by 0.04 s, 12.9 mm without them");
+    assert!(farthest < 0.5, "{farthest} mm");
 }
 
 #[test]

@@ -51,6 +51,7 @@ fn a_block_on_a_spring_in_python_swings_as_the_formula_says() {
         Series::of_run(run.dir(), "fluid").unwrap().len()
     );
     assert!(run.report.audit.action_reaction.unwrap() <= 1e-12);
+    assert!(run.report.audit.impulse.unwrap() <= 1e-12);
 }
 
 #[test]

@@ -148,6 +148,7 @@ fn a_box_floats_in_a_shaken_tank_as_seen_from_space() {
     let [within, space] = [true, false].map(|from_within| tank(folder.path(), from_within, true).run());
     let audit = &within.report.audit;
     assert!(audit.action_reaction.unwrap() <= 1e-12, "{audit:?}");
+    assert!(audit.impulse.unwrap() <= 1e-12, "{audit:?}");
     let [water, body] = ["water.x", "box.x"].map(|name| difference(&within, &space, name));
     // 4e-4 and 2.4e-3 measured.
     assert!(water < 0.01 && body < 0.01, "{water} {body}");

@@ -76,6 +76,7 @@ fn of_slot(dx: f64) -> [f64; 2] {
     let folder = tempfile::tempdir().expect("a folder");
     let run = slot(folder.path(), "").set("resolution", dx).in_process().run();
     assert!(run.report.audit.action_reaction.is_some_and(|rest| rest < 1e-13), "{:?}", run.report.audit);
+    assert!(run.report.audit.impulse.is_some_and(|rest| rest < 1e-12), "{:?}", run.report.audit);
     let unit = MU * SPEED / HEIGHT * MIDDLE;
     let found = ["floor.x", "belt.x"].map(|name| -run.curve(name).between(0.5, 2.0).mean() / unit);
     println!("{dx} m: {found:?}, {:.0} s", run.report.wall_seconds);

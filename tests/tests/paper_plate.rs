@@ -245,6 +245,9 @@ fn the_accurate_plate_goes_as_far_as_a_beam_under_the_same_forces() {
     assert!(soft.ratio() > 1.25, "{}", soft.ratio());
 }
 
+/// Kayaki's section 4.1 for the tank's walls and for the clamp.
+const WALLS: &[&str] = &["effects.wall-particles=on", "effects.wall-clamp=on"];
+
 /// The suspects one by one, three resolutions, both treatments, both solids.
 fn suspects(modulus: f64, title: &str) {
     let paper = |dx| Case::paper(modulus, dx);
@@ -256,6 +259,8 @@ fn suspects(modulus: f64, title: &str) {
         paper(0.002).with("A = B = 0.1", &["fluid.artificial_viscosity={linear=0.1,quadratic=0.1}"]),
         paper(0.002).with("A = B = 0.3", &["fluid.artificial_viscosity={linear=0.3,quadratic=0.3}"]),
         paper(0.002).with("clamp as wall particles", &["effects.wall-clamp=on"]),
+        paper(0.002).with("walls hold values", &["effects.wall-particles=on"]),
+        paper(0.002).with("walls hold values, clamp too", WALLS),
         paper(0.002).with("moving wall instead", &["interface.treatment=moving-wall"]),
         paper(0.002).with(
             "moving wall, accurate solid",

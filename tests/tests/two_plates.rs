@@ -25,6 +25,7 @@ fn one_process_two_processes_and_threads_give_the_same_bits() {
     }
     assert_eq!(report.particles.solid, 144);
     assert!(report.audit.action_reaction.is_some_and(|mismatch| mismatch < 1e-12), "{:?}", report.audit);
+    assert!(report.audit.impulse.is_some_and(|mismatch| mismatch < 1e-12), "{:?}", report.audit);
     let tip = together.curve("soft-tip.x");
     assert!(tip.at(UNTIL) > 2e-3, "the jet bends the first plate: {} m", tip.at(UNTIL));
     assert_eq!(together.outcome.frames("soft").len(), together.outcome.frames("stiff").len());

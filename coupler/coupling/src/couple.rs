@@ -10,6 +10,7 @@ pub use crate::solids::ContactSummary;
 use crate::solids::{Jump, Solids, Work};
 use halfstep_link::{CouplerPort, Expect, StateMessage};
 use halfstep_output::run_json::RoleSeconds;
+use halfstep_role::impulse::Impulse;
 use halfstep_role::timeline::{self, Kind, Watch};
 use halfstep_scene::Scene;
 use halfstep_sph::Phase;
@@ -36,6 +37,8 @@ pub struct Outcome {
     pub seconds: RoleSeconds,
     /// Largest relative mismatch of the forces on both sides.
     pub action_reaction: f64,
+    /// Of the fluid's forces on all solids, as they were sent.
+    pub impulse: Impulse,
     /// Consistency checks passed.
     pub checks: u64,
     /// Pairs listed in the coupler's sums.
@@ -213,6 +216,7 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
         self.receive(&course.progress, &Expect::of(&self.half_step))?;
         self.complete_checkpoint(course)?;
         self.answer(&tick, None)?;
+        self.solids.book(self.half_step.dt);
         self.states.clear();
         course.clock.advance(&tick);
         timeline::end(Name::COUPLER, began);
@@ -420,6 +424,7 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
                 output: 0.0,
             },
             action_reaction: self.action_reaction,
+            impulse: self.solids.impulse,
             checks: self.checks,
             pair_evaluations: self.pair_evaluations,
             contacts: self.solids.contacts(),

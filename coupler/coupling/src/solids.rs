@@ -12,6 +12,7 @@ use halfstep_interface::cross_viscosity::CrossViscosity;
 use halfstep_interface::{Interface, Parameters};
 use halfstep_link::{FLUID, StateMessage};
 use halfstep_output::FirstMessage;
+use halfstep_role::impulse::{Impulse, add_force};
 use halfstep_role::timeline;
 use halfstep_scene::{Gravity, Scene, geometry};
 use halfstep_sph::lane::Isa;
@@ -61,6 +62,10 @@ pub(crate) struct Solids<const D: usize> {
     cross: CrossViscosity<D>,
     fluid_forces: Vec<ForceRecord>,
     gravity: Gravity,
+    /// Sum of the fluid's forces on all solids at the states' instant, and of their magnitudes, N (2D: N/m).
+    by_fluid: ([f64; 3], f64),
+    /// Of them over whole steps.
+    pub(crate) impulse: Impulse,
     /// What solids do to each other; `None` where there is one.
     contact: Option<Contact>,
 }
@@ -121,6 +126,8 @@ impl<const D: usize> Solids<D> {
             cross: CrossViscosity::default(),
             fluid_forces: Vec::new(),
             gravity: Gravity::of(scene),
+            by_fluid: ([0.0; 3], 0.0),
+            impulse: Impulse::default(),
             contact: Contact::new(scene),
         }
     }
@@ -281,6 +288,7 @@ impl<const D: usize> Solids<D> {
         let blank = |id| ForceRecord { id, ..ForceRecord::default() };
         let mut pairs = 0;
         self.fluid_forces.clear();
+        self.by_fluid = ([0.0; 3], 0.0);
         if self.first > 0 {
             self.fluid_forces.extend(states[FLUID].records().iter().map(|r| blank(r.id)));
         }
@@ -308,11 +316,19 @@ impl<const D: usize> Solids<D> {
                 }
             });
             interface.drag_on_fluid(|record, a| more(&mut forces[record], a));
+            for (slot, record) in interface.solid.slots() {
+                add_force(&mut self.by_fluid, side.forces[record].force(interface.solid.own_mass[slot]));
+            }
         }
         if touching {
             self.touch(states, time);
         }
         pairs
+    }
+
+    /// Books the fluid's forces as last evaluated as those of a whole step of this length, s.
+    pub(crate) fn book(&mut self, dt: f64) {
+        self.impulse.add(dt, self.by_fluid);
     }
 
     /// Adds the forces of contacts at the states' instant, s, to those of the fluid.
@@ -375,6 +391,7 @@ impl<const D: usize> State for Solids<D> {
     fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
         let mut solids = self.solids.iter_mut().enumerate();
         solids.try_for_each(|(solid, side)| fields.part(&format!("solid_{solid}"), side))?;
+        fields.part("impulse", &mut self.impulse)?;
         self.contact.as_mut().map_or(Ok(()), |contact| fields.part("contact", contact))
     }
 

@@ -97,6 +97,12 @@ pub(crate) fn report_outcome(scene: &Scene, outcome: &Outcome, report: &mut RunR
     }
 }
 
+/// Puts into the report how far what the fluid took from the solids is from what the coupler sent to them.
+pub(crate) fn report_impulse(outcome: &Outcome, reports: &[Option<Report>], report: &mut RunReport) {
+    let taken = reports.iter().flatten().find_map(|own| own.impulse);
+    report.audit.impulse = taken.and_then(|taken| taken.mismatch(&outcome.impulse));
+}
+
 /// Puts what the participants said at their ends into the report: sums by phase, and a row for each of them.
 pub(crate) fn report_participants(
     scene: &Scene,

@@ -4,7 +4,7 @@ use crate::cause::Cause;
 use crate::checkpoint::Checkpoint;
 use crate::isa::{self, ISA_VARIABLE};
 use crate::options::{Launcher, RunOptions, SolidSource};
-use crate::participants::{participants, report_outcome, report_participants};
+use crate::participants::{participants, report_impulse, report_outcome, report_participants};
 use crate::particles::{self, PARTICLES_VARIABLE};
 use crate::silence::{Ended, Silence, TICK, TOLD};
 use crate::timeline;
@@ -134,6 +134,7 @@ impl<'a, const D: usize> Session<'a, D> {
             let [p50, p99] = fluid.round_trip_us;
             Percentiles { p50, p99 }
         });
+        report_impulse(&outcome, &own, report);
         report_participants(
             self.scene,
             &self.options.external,

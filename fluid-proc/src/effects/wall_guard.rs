@@ -77,6 +77,15 @@ impl<const D: usize> Listed<D> for WallGuard<D> {
     }
 }
 
+impl<const D: usize> WallGuard<D> {
+    /// Sets the divisor of a stage.
+    fn divide<K: Kernel<D>>(&mut self, stage: Stage, kernel: &K) {
+        let slope = -kernel.gradient_over_r::<Unfused, Lane>(Lane::splat(self.near)).0[0];
+        let part = if stage == Stage::First { 1.0 } else { 0.5 };
+        self.divisor = part * self.rate * slope;
+    }
+}
+
 impl<const D: usize> FluidEffect<D> for WallGuard<D> {
     const NAME: &'static str = EffectName::WallGuard.name();
     type Pair<'a> = NoShare;
@@ -102,9 +111,7 @@ impl<const D: usize> FluidEffect<D> for WallGuard<D> {
         }
     }
     fn prepare<K: Kernel<D>>(&mut self, stage: Stage, around: &Neighbourhood<'_, K, D>) -> u64 {
-        let slope = -around.kernel.gradient_over_r::<Unfused, Lane>(Lane::splat(self.near)).0[0];
-        let part = if stage == Stage::First { 1.0 } else { 0.5 };
-        self.divisor = part * self.rate * slope;
+        self.divide(stage, &around.kernel);
         0
     }
     fn at_wall(&self) -> Option<GuardedViscosity<'_>> {
@@ -155,5 +162,99 @@ impl<const D: usize> PairEffect<D> for GuardedViscosity<'_> {
     }
     fn labels(labels: &mut Vec<&'static str>) {
         labels.push("guarded artificial viscosity");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use halfstep_scene as scene;
+    use halfstep_sph::kernel::CubicSpline;
+    use halfstep_sph::lane::Fused;
+    use std::path::Path;
+
+    const DX: f64 = 0.01;
+    /// Of the scene's kernel: h / dx = 2 where water is alone.
+    const H: f64 = 2.0 * DX;
+    const RHO: f64 = 1000.0;
+
+    fn guard() -> WallGuard<2> {
+        let text = r#"
+            resolution = 0.01
+            end_time = 1.0
+            effects.artificial-viscosity = "off"
+            [fluid]
+            density = 1000.0
+            sound_speed = 20.0
+            [[shape]]
+            name = "water"
+            phase = "fluid"
+            box = { min = [0.0, 0.0], max = [0.2, 0.1] }
+            [[shape]]
+            name = "tank"
+            phase = "wall"
+            tank = { min = [0.0, 0.0], max = [0.2, 0.2], open = ["top"] }
+        "#;
+        let scene = scene::parse(text, Path::new("tank.toml"), &[]).expect("a right scene");
+        let mut guard = WallGuard::of(&scene).expect("a fluid");
+        guard.added = vec![guard.guard];
+        guard
+    }
+
+    /// Deceleration over the speed, 1/s, of a particle that comes straight at a wall particle from a distance, m.
+    fn rate(guard: &WallGuard<2>, r: f64) -> f64 {
+        let [zero, one] = [0.0, 1.0].map(Lane::splat);
+        let pair = FluidPair {
+            dx: [Lane::splat(r), zero],
+            r2: Lane::splat(r * r),
+            dv: [-one, zero],
+            approach: Lane::splat(-r),
+            density_i: Lane::splat(RHO),
+            density_j: Lane::splat(RHO),
+            pressure_term_i: zero,
+            pressure_term_j: zero,
+        };
+        let mut rates = PairRates { bracket: zero, density: zero, vector: [zero; 2] };
+        guard.at_wall().expect("it always acts").add::<Fused, Lane>(&(), 0, &pair, &mut rates);
+        let f = CubicSpline::<2>::new(H).gradient_over_r::<Unfused, Lane>(Lane::splat(r)).0[0];
+        RHO * DX * DX * f * rates.bracket.0[0] * r
+    }
+
+    /// k = A c0 h V |F| r / (r² + 0.01 h²) times r, with A = 32, c0 = 20 m/s: that of Monaghan's Pi_ij on one side.
+    fn undivided(r: f64) -> f64 {
+        let f = CubicSpline::<2>::new(H).gradient_over_r::<Unfused, Lane>(Lane::splat(r)).0[0];
+        32.0 * 20.0 * H * DX * DX * -f * r * r / (r * r + 0.01 * H * H)
+    }
+
+    #[test]
+    fn it_is_whole_below_06_dx_half_at_07_and_gone_at_08() {
+        let mut guard = guard();
+        guard.divisor = 0.0;
+        for (r, part) in [(0.3, 1.0), (0.6, 1.0), (0.7, 0.5), (0.8, 0.0), (1.0, 0.0)] {
+            let (found, expected) = (rate(&guard, r * DX), part * undivided(r * DX));
+            assert!((found - expected).abs() <= 1e-9 * undivided(r * DX), "{r}: {found} {expected}");
+        }
+    }
+
+    /// A midpoint step of the Courant number's length: as by the implicit Euler rule beside a partner that keeps its
+    /// velocity; beside a wall that mirrors, which doubles the rate, by what the head of this file says.
+    #[test]
+    fn a_step_leaves_what_the_implicit_rule_leaves() {
+        let kernel = CubicSpline::<2>::new(H);
+        // The distance at which the divisors are exact.
+        let r = NEAR * DX;
+        let k_dt = undivided(r) * 0.4 * H / 20.0;
+        assert!(k_dt > 2.0, "{k_dt}: the midpoint rule alone would bear it");
+        for (mirrored, expected) in
+            [(1.0, 1.0 / (1.0 + k_dt)), (2.0, 1.0 - 2.0 * k_dt / ((1.0 + k_dt) * (1.0 + 0.5 * k_dt)))]
+        {
+            let mut guard = guard();
+            let dt = 0.4 * H / 20.0;
+            guard.divide(Stage::First, &kernel);
+            let half = 1.0 - 0.5 * dt * mirrored * rate(&guard, r);
+            guard.divide(Stage::Second, &kernel);
+            let left = 1.0 - dt * mirrored * rate(&guard, r) * half;
+            assert!((left - expected).abs() < 1e-9, "{mirrored}: {left} {expected}");
+        }
     }
 }

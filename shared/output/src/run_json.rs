@@ -320,6 +320,8 @@ pub struct Audit {
     pub energy_growth: EnergyGrowth,
     /// Largest relative mismatch of the forces that both phases exert on each other.
     pub action_reaction: Option<f64>,
+    /// Relative mismatch of the impulses that the fluid took from the solids and the coupler sent to them.
+    pub impulse: Option<f64>,
     /// Largest relative deviation of the fluid's density.
     pub density_error: Option<f64>,
     /// Smallest distance between fluid and solid particles, over the spacing.
@@ -401,7 +403,7 @@ mod tests {
             "/error /warnings /scene /version /steps /time /wall_seconds /particles/fluid /particles/solid /particles/wall",
             "/particle_steps_per_second /dt/min /dt/mean /dt/max /sub_steps /roles/fluid/compute /roles/fluid/wait",
             "/roles/fluid/exchange /roles/fluid/output /roles/solid /roles/coupler /round_trip_us/p50",
-            "/round_trip_us/p99 /audit/momentum_drift /audit/energy_drift /audit/action_reaction",
+            "/round_trip_us/p99 /audit/momentum_drift /audit/energy_drift /audit/action_reaction /audit/impulse",
             "/audit/energy_growth/fluid /audit/energy_growth/solid /audit/density_error /audit/min_gap /audit/checks /audit/isa",
             "/work/pair_evaluations/fluid /work/pair_evaluations/solid /work/pair_evaluations/coupler",
             "/effects/0/name /effects/0/on /effects/0/why /effects/0/share",

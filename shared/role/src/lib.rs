@@ -11,6 +11,7 @@
 //! ```
 
 mod error;
+pub mod impulse;
 mod latency;
 pub mod ledger;
 pub mod lockstep;

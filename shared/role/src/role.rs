@@ -1,5 +1,6 @@
 //! What a process that owns particles does, seen from the lock-step: the seam between physics and co-simulation.
 
+use crate::impulse::Impulse;
 use crate::ledger::Ledger;
 use halfstep_scene::EffectName;
 use halfstep_sph::Phase;
@@ -102,6 +103,10 @@ pub trait Role: Send {
     fn audit(&self) -> Audit;
     /// Its energy ledger, where the scene asks for one.
     fn ledger(&self) -> Option<&Ledger> {
+        None
+    }
+    /// Impulse that the solids gave it since the start, as it was added to its particles.
+    fn impulse(&self) -> Option<Impulse> {
         None
     }
     /// Copies the particles for output.

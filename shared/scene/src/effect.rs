@@ -18,7 +18,7 @@ macro_rules! fluid_effects {
             Viscosity "viscosity" viscosity,
             /// The renormalised density gradient of delta-SPH is computed once a step.
             FrozenDiffusion "frozen-diffusion" frozen_diffusion,
-            /// Artificial viscosity of at least A = 1 between fluid and free-slip walls.
+            /// Strong artificial viscosity between fluid and free-slip walls that are close.
             WallGuard "wall-guard" wall_guard,
             /// Pressure shown by walls, and by the solid as moving wall, is never negative.
             NonNegativeWallPressure "non-negative-wall-pressure" non_negative_wall_pressure,
@@ -48,6 +48,8 @@ macro_rules! effect_names {
             ClampFace "clamp-face",
             /// Clamps act on the hypoelastic solid as walls do.
             WallClamp "wall-clamp",
+            /// Walls hold values toward the hypoelastic solid and take part in its sums.
+            WallParticles "wall-particles",
             /// Rigid walls toward the solid.
             WallContact "wall-contact",
             /// A solid that rests is not computed until fluid comes near.

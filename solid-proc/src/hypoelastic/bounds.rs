@@ -17,7 +17,7 @@ impl<const D: usize> Hypoelastic<D> {
             let found = self.bounds.excess(self.now.density[s], v2.sqrt());
             Some((p, s, found.or((!stress.is_finite()).then_some(no_number))?))
         };
-        let all = self.slot_of.iter().enumerate().filter_map(excess);
+        let all = self.slot_of[..self.own].iter().enumerate().filter_map(excess);
         let Some((p, s, worst)) = all.max_by(|a, b| a.2.ratio.total_cmp(&b.2.ratio)) else { return Ok(()) };
         let position = wide::<D>(std::array::from_fn(|d| self.now.position[d][s]));
         Err(OutOfBounds { particle: p as u32, quantity: worst.quantity, value: worst.value, position })

@@ -105,7 +105,7 @@ impl<const D: usize> Hypoelastic<D> {
 
     /// Parts of an evaluation's time, each effect's measured by leaving it out.
     pub(super) fn costs_of_effects(&mut self) -> Costs {
-        let load = Load::none(self.points.len());
+        let load = Load::none(self.own);
         let before = self.pair_evaluations;
         let evaluation = |model: &mut Self| {
             fastest(|| {
@@ -126,9 +126,10 @@ impl<const D: usize> Hypoelastic<D> {
             note(EffectName::RenormalisedGradient, evaluation(self));
             self.renormalised = true;
         }
-        if let Some(clamp) = self.wall_clamp.take() {
-            note(EffectName::WallClamp, evaluation(self));
-            self.wall_clamp = Some(clamp);
+        if let Some(states) = self.wall_states.take() {
+            let effect = if states.clamps { EffectName::WallClamp } else { EffectName::WallParticles };
+            note(effect, evaluation(self));
+            self.wall_states = Some(states);
         }
         if let Some(walls) = self.walls.take() {
             note(EffectName::WallContact, evaluation(self));
@@ -145,7 +146,7 @@ impl<const D: usize> Hypoelastic<D> {
             self.sort();
             self.apply_state_equation();
         }
-        self.show_clamps_as_walls();
+        self.show_walls();
         with_kernel!(self.kernel, self.smoothing_length, D, |kernel| self.sums(kernel));
         self.touch_walls();
         let g = self.material.shear_modulus();
@@ -168,8 +169,10 @@ impl<const D: usize> Hypoelastic<D> {
             }
             if id != PADDING {
                 let p = id as usize;
-                for d in 0..D {
-                    acceleration[d] += load.force[p][d] / self.mass;
+                if let Some(force) = load.force.get(p) {
+                    for d in 0..D {
+                        acceleration[d] += force[d] / self.mass;
+                    }
                 }
                 if let Some(outer) = self.outer.get(p) {
                     density_rate += outer.density;

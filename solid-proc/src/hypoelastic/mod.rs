@@ -14,7 +14,7 @@ mod state;
 mod stress_rate;
 #[cfg(test)]
 mod tests;
-mod wall_clamp;
+mod wall_states;
 
 pub(crate) use decide::EFFECTS;
 pub use model::Hypoelastic;

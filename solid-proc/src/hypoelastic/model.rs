@@ -3,7 +3,7 @@
 use super::account::Account;
 use super::columns::{Rates, Source, State};
 use super::rates::SolidSum;
-use super::wall_clamp::WallClamp;
+use super::wall_states::{WallStates, wall_particles};
 use crate::columns::{ParticleColumns, vector};
 use crate::effects::{takes_part, touches_walls};
 use crate::model::{Load, OutOfBounds, OuterRates, Particles, SolidModel};
@@ -42,10 +42,13 @@ pub struct Hypoelastic<const D: usize> {
     pub(super) gravity: [f64; D],
     domain: ([f64; D], [f64; D]),
     pub(super) renormalised: bool,
-    pub(super) wall_clamp: Option<WallClamp<D>>,
+    pub(super) wall_states: Option<WallStates<D>>,
     pub(super) artificial_stress: Option<ArtificialStress>,
     pub(super) mass: f64,
+    /// The solid's particles, then those of walls that hold values toward it.
     pub(super) points: Vec<SolidPoint<D>>,
+    /// Number of the solid's own.
+    pub(super) own: usize,
     shown: ParticleColumns<D>,
     /// What the fluid adds to strain rates (phase-blind), by particle number; else empty.
     pub(super) outer: Vec<OuterRates<D>>,
@@ -85,7 +88,7 @@ impl<const D: usize> Hypoelastic<D> {
         let dx = scene.solid_spacing(solid);
         let h = material.smoothing_ratio * dx;
         let wall_spacing = scene.interface_spacing(solid);
-        let n = layout.solid.len();
+        let own = layout.solid.len();
         let ModelKeys::Hypoelastic(keys) = &material.model else { return None };
         let artificial_stress =
             takes_part(scene, solid, EffectName::ArtificialStress).then_some(keys.artificial_stress);
@@ -96,7 +99,14 @@ impl<const D: usize> Hypoelastic<D> {
             .then(|| material.side_friction / material.density);
         let domain = geometry::domain(scene);
         let mass = material.density * dx.powi(D as i32);
-        let now = State::new(&layout.solid, material.density);
+        let [clamps, walls_hold] =
+            [EffectName::WallClamp, EffectName::WallParticles].map(|effect| takes_part(scene, solid, effect));
+        let mut points = layout.solid.clone();
+        if walls_hold {
+            points.extend(wall_particles(&layout.solid, &layout.wall, 2.0 * h + SKIN * h));
+        }
+        let n = points.len();
+        let now = State::new(&points, material.density);
         let mut model = Self {
             bounds: Bounds::of_solid(scene, solid)?,
             kernel: scene.numerics.kernel,
@@ -108,7 +118,7 @@ impl<const D: usize> Hypoelastic<D> {
             gravity: std::array::from_fn(|d| scene.gravity[d]),
             domain: (std::array::from_fn(|d| domain.min[d]), std::array::from_fn(|d| domain.max[d])),
             renormalised: takes_part(scene, solid, EffectName::RenormalisedGradient),
-            wall_clamp: takes_part(scene, solid, EffectName::WallClamp).then(WallClamp::default),
+            wall_states: (clamps || walls_hold).then(|| WallStates::new(clamps)),
             artificial_stress,
             shown: ParticleColumns::new(&layout.solid, mass),
             outer: Vec::new(),
@@ -119,7 +129,8 @@ impl<const D: usize> Hypoelastic<D> {
                 surface_set(&layout.solid, &body, 2.0 * scene.smoothing_ratio * scene.resolution, dx)
             },
             shown_velocity: ShownVelocity::new(layout.solid.iter().map(|p| p.velocity)),
-            points: layout.solid,
+            points,
+            own,
             id: (0..n as u32).collect(),
             slot_of: vec![0; n],
             at_n: now.clone(),
@@ -260,7 +271,7 @@ impl<const D: usize> Hypoelastic<D> {
 
     /// Copies the present state to the columns by particle number.
     pub(super) fn show_particles(&mut self) {
-        for (p, &slot) in self.slot_of.iter().enumerate() {
+        for (p, &slot) in self.slot_of[..self.own].iter().enumerate() {
             let s = slot as usize;
             self.shown.position[p] = std::array::from_fn(|d| self.now.position[d][s]);
             self.shown.velocity[p] = std::array::from_fn(|d| self.now.velocity[d][s]);
@@ -367,7 +378,7 @@ impl<const D: usize> SolidModel<D> for Hypoelastic<D> {
 
     fn strain_energy(&self) -> f64 {
         let (k, g) = (self.material.bulk_modulus(), self.material.shear_modulus());
-        self.slot_of.iter().map(|&slot| self.stored_at(slot as usize, k, g)).sum()
+        self.slot_of[..self.own].iter().map(|&slot| self.stored_at(slot as usize, k, g)).sum()
     }
 
     fn energy_of(&self, particles: &[u32]) -> f64 {

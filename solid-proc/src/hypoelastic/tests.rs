@@ -9,8 +9,7 @@ use halfstep_wire::half_step::HalfStep;
 use proptest::prelude::*;
 use std::path::Path;
 
-fn block(overrides: &[&str]) -> Scene {
-    let text = r#"
+const BLOCK: &str = r#"
         resolution = 0.01
         end_time = 1.0
         gravity = [0.0, 0.0]
@@ -24,6 +23,19 @@ fn block(overrides: &[&str]) -> Scene {
         phase = "solid"
         box = { min = [0.0, 0.0], max = [0.2, 0.15] }
     "#;
+
+const FLOOR: &str = r#"
+        [[shape]]
+        name = "floor"
+        phase = "wall"
+        box = { min = [-0.1, -0.04], max = [0.3, 0.0] }
+    "#;
+
+fn block(overrides: &[&str]) -> Scene {
+    read(BLOCK, overrides)
+}
+
+fn read(text: &str, overrides: &[&str]) -> Scene {
     let overrides: Vec<String> = overrides.iter().map(|&o| o.into()).collect();
     scene::parse(text, Path::new("block.toml"), &overrides).expect("a right scene")
 }
@@ -109,6 +121,48 @@ fn a_clamp_as_wall_shows_what_is_around_it_and_no_shear() {
         }
         assert!((record.density - 1000.0 * (1.0 + record.pressure / (1e6 / 1.2))).abs() < 1e-9);
     }
+}
+
+/// Walls that hold values: pressed 1 % denser the block is pushed off the floor, stretched by 1 % drawn to it, by the
+/// pressure that its own lowest rows have; the floor's particles are nobody's to see.
+#[test]
+fn a_wall_that_holds_values_pushes_and_pulls() {
+    let on_a_floor = format!("{BLOCK}{FLOOR}");
+    let scene = read(&on_a_floor, &["effects.wall-particles=\"on\""]);
+    for (density, direction) in [(1010.0, 1.0), (990.0, -1.0)] {
+        let mut solid = Hypoelastic::<2>::new(&scene, 0, Isa::detect()).unwrap();
+        let own = solid.particles().len();
+        assert_eq!((own, solid.points.len() - own), (20 * 15, 40 * 4), "the block, and all of the floor");
+        for slot in 0..solid.id.len() {
+            solid.now.density[slot] = density;
+        }
+        solid.apply_state_equation();
+        solid.compute_rates(&Load::none(own));
+        let uniform = 1e6 / 1.2 * (density / 1000.0 - 1.0);
+        for p in own..solid.points.len() {
+            let slot = solid.slot_of[p] as usize;
+            let (x, shown) = (solid.points[p].position, solid.pressure[slot]);
+            let near = x[1] > -0.02 && (0.0..0.2).contains(&x[0]);
+            let expected = if near || shown != 0.0 { uniform } else { 0.0 };
+            assert!((shown - expected).abs() < 1e-9 * uniform.abs(), "{x:?}: {shown} {expected}");
+            assert!((solid.now.density[slot] - 1000.0 * (1.0 + shown / (1e6 / 1.2))).abs() < 1e-9);
+            assert_eq!([0, 1].map(|d| solid.rates.acceleration[d][slot]), [0.0; 2]);
+        }
+        // Upright in the middle of the lowest row: what the rows above and below do cancels but for the artificial
+        // stress; without a floor the row is pushed out of the block, or drawn into it.
+        let middle = solid.slot_of[10] as usize;
+        let held = solid.rates.acceleration[1][middle];
+        let mut free = Hypoelastic::<2>::new(&block(&[]), 0, Isa::detect()).unwrap();
+        free.now.density.fill(density);
+        free.apply_state_equation();
+        free.compute_rates(&Load::none(own));
+        let push = held - free.rates.acceleration[1][free.slot_of[10] as usize];
+        // Order of 2 p / rho² m sum F x over the rows below: p / (rho dx).
+        assert!(direction * push > 0.5 * uniform.abs() / (1000.0 * 0.01), "{push}");
+    }
+    let with_a_spring = read(&on_a_floor, &[]);
+    assert!(!crate::effects::takes_part(&with_a_spring, 0, halfstep_scene::EffectName::WallParticles));
+    assert!(!crate::effects::touches_walls(&scene, 0), "the spring would push a second time");
 }
 
 proptest! {
