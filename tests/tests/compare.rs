@@ -120,7 +120,10 @@ fn models_and_programs_are_compared_without_water() {
     let [own, squares, nine] = told["solids"].as_array().unwrap().as_slice() else { panic!("{told}") };
     let number = |value: &serde_json::Value| value.as_f64().unwrap();
     for other in [squares, nine] {
-        println!("{}: {} of {} m, apart by {}", other["name"], other["peak"], own["peak"], other["distance"][0]);
+        println!(
+            "{}: {} of {} m, apart by {}",
+            other["name"], other["peak"], own["peak"], other["distance"][0]
+        );
         assert!(number(&other["distance"][0]) < 0.03, "{told}");
         assert_eq!(other["status"], "finished");
     }

@@ -103,7 +103,11 @@ fn trial(scene: &Scene, arguments: FakeFluidArguments) -> Result<Trial, String> 
     Ok(Trial {
         solid,
         command,
-        load: Load { force: arguments.force.unwrap_or_default(), within: arguments.within, ramp: arguments.ramp.unwrap_or(0.0) },
+        load: Load {
+            force: arguments.force.unwrap_or_default(),
+            within: arguments.within,
+            ramp: arguments.ramp.unwrap_or(0.0),
+        },
         time_step: time_step,
         out: arguments.out.unwrap_or(out),
         stop: StopFlags::of_signals().map_err(|e| format!("cannot watch for signals: {e}"))?,

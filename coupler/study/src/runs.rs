@@ -106,7 +106,11 @@ impl Job {
 
     fn command(&self) -> std::io::Result<Command> {
         let mut command = Command::new(own_path()?);
-        command.arg(if self.alone { "fake-fluid" } else { "run" }).arg(&self.scene).arg("--out").arg(&self.dir);
+        command
+            .arg(if self.alone { "fake-fluid" } else { "run" })
+            .arg(&self.scene)
+            .arg("--out")
+            .arg(&self.dir);
         if !self.alone {
             command.args(["--quiet", "--force"]);
         }

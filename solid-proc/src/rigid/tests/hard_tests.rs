@@ -44,7 +44,8 @@ fn a_heavy_box_between_two_light_ones_stays() {
 #[test]
 fn a_tower_tips_beyond_its_width_over_its_height() {
     let [b, h] = [0.04, 0.2];
-    let one = "[[shape]]\nname = \"tower\"\nphase = \"solid\"\nbox = { min = [0.0, 0.0], max = [0.04, 0.2] }\n";
+    let one =
+        "[[shape]]\nname = \"tower\"\nphase = \"solid\"\nbox = { min = [0.0, 0.0], max = [0.04, 0.2] }\n";
     let loose: String = (0..5)
         .map(|k| {
             let (low, high) = (0.04 * f64::from(k), 0.04 * f64::from(k + 1));
