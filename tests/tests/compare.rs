@@ -104,23 +104,54 @@ fn a_rigid_plate_stands_beside_an_elastic_one() {
     assert!(table.contains("stable step [s]") && table.contains("rigid: without `"), "{table}");
 }
 
-/// Without water models can be compared, and programs cannot: they meet the water alone.
+/// Without water a stand-in for the fluid runs the program: two element codes on the plate that swings.
 #[test]
-fn models_are_compared_without_water_and_programs_refused() {
+fn models_and_programs_are_compared_without_water() {
+    let _machine = whole_machine();
     let folder = tempfile::tempdir().unwrap();
     let dry =
         ["--until", "0.01", "--set", "resolution=0.004", "--out", folder.path().to_str().unwrap(), "--json"];
-    let models = ["--solid", "total-lagrangian", "--solid", "finite-element"];
-    let output = compare_in("oscillating-plate", &[&dry[..], &models].concat());
+    let script = repository().join("python/examples/scikit-fem/gate.py");
+    let elements = format!("elements={} {}", python().display(), script.display());
+    let solids = ["--solid", "total-lagrangian", "--solid", "finite-element", "--solid", &elements];
+    let output = compare_in("oscillating-plate", &[&dry[..], &solids].concat());
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert!(told["solids"][1]["distance"][0].as_f64().unwrap() < 0.03, "{told}");
-    let refused = compare_in("oscillating-plate", &[&dry[..], &models, &["--solid", "mine=true 1"]].concat());
-    let said = String::from_utf8_lossy(&refused.stderr).into_owned();
-    assert!(
-        refused.status.code() == Some(1) && said.contains("has no [fluid]: mine cannot join it"),
-        "{said}"
-    );
+    let [own, squares, nine] = told["solids"].as_array().unwrap().as_slice() else { panic!("{told}") };
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    for other in [squares, nine] {
+        println!(
+            "{}: {} of {} m, apart by {}",
+            other["name"], other["peak"], own["peak"], other["distance"][0]
+        );
+        assert!(number(&other["distance"][0]) < 0.03, "{told}");
+        assert_eq!(other["status"], "finished");
+    }
+    // It begins with the velocities of the scene's particles, as far as its own shape functions have them.
+    assert!((number(&nine["peak"]) / number(&own["peak"]) - 1.0).abs() < 0.03, "{told}");
+    assert!(number(&nine["steps"]) > 100.0 && number(&nine["wall_seconds"]) > 0.0, "{told}");
+}
+
+/// The stand-in knows one solid.
+#[test]
+fn a_program_does_not_join_others_without_water() {
+    let folder = tempfile::tempdir().unwrap();
+    let one = |name: &str, x: f64| {
+        format!(
+            "[[solid]]\nname = \"{name}\"\nmodel = \"rigid\"\ndensity = 1000.0\n[[shape]]\nname = \"{name}\"\n\
+             phase = \"solid\"\nsolid = \"{name}\"\nbox = {{ min = [{x}, 0.0], max = [{}, 0.1] }}\n[[probe]]\n\
+             name = \"of-{name}\"\nkind = \"body-position\"\nbody = \"{name}\"\nsolid = \"{name}\"\n",
+            x + 0.1
+        )
+    };
+    let text = format!("resolution = 0.01\nend_time = 0.1\n{}{}", one("a", 0.0), one("b", 0.3));
+    let path = folder.path().join("two.toml");
+    std::fs::write(&path, text).unwrap();
+    let arguments = ["--of", "a", "--solid", "rigid", "--solid", "mine=true 1", "--quiet"];
+    let output = Command::new(program()).arg("compare").arg(&path).args(arguments).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("two has several solids and no [fluid]: mine cannot join it"), "{said}");
 }
 
 /// The gate by NGSolve, to beyond its peak: within 3 % of the built-in plate. NGSolve comes with its own environment.

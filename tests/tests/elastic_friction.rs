@@ -158,14 +158,14 @@ kind = "energy"
 phase = "solid"
 "#;
 
-/// As asked where it is 1. Where it is 1/2, 0.62, where it is 0, 0.50: the force goes over from that of coming to that
-/// of leaving within the speed that a step of the limit changes, and the limit is that of the lightest particle behind
-/// the surface, while the whole disc goes deep.
+/// The disc's own steps are a tenth of what contact allows, so the force goes over from that of coming to that of leaving
+/// within a small part of the disc's speed. A stiff body whose vibrations are much faster than the impact keeps what a
+/// point mass keeps; here the three models are apart by their vibrations, up to 0.03 where nothing is kept.
 #[test]
 fn a_disc_comes_back_with_about_the_restitution_that_is_asked() {
     let scene = Written::new(DISC);
     for model in MODELS {
-        for (restitution, measured) in [(1.0, 1.0), (0.5, 0.62), (0.0, 0.5)] {
+        for (restitution, measured) in [(1.0, 1.0), (0.5, 0.507), (0.2, 0.2), (0.0, 0.12)] {
             let run = scene.run(model).set("solid.contact.restitution", restitution).in_process().run();
             let height = run.curve("disc.y");
             let left = (height.at(0.02) - height.at(0.018)) / 0.002;

@@ -1,6 +1,7 @@
 //! `halfstep fake-fluid`: a solid alone under a known load.
 
-use halfstep_output::read_probes;
+use halfstep_output::run_json::RunStatus;
+use halfstep_output::{RunReport, read_probes};
 use halfstep_tests::Curve;
 use halfstep_tests::process::leftovers;
 use halfstep_tests::python::python;
@@ -36,6 +37,10 @@ fn a_block_on_a_spring_swings_as_its_formula_says() {
     let (said, error) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
     assert!(output.status.success(), "{error}");
     assert!(said.starts_with("1000 steps to t = 0.2 s; the load is on 224 of 224 particles"), "{said}");
+    let report = RunReport::read(&folder.path().join("run.json")).unwrap();
+    assert_eq!((report.status, report.steps, report.time), (Some(RunStatus::Finished), 1000, 0.2));
+    let [median, slow] = report.round_trip_us.map(|us| [us.p50, us.p99]).expect("half-steps");
+    assert!(median > 0.0 && slow >= median && said.contains("a half-step of the solid takes"), "{said}");
     let omega = (STIFFNESS / (8000.0 * 0.04 * 0.14)).sqrt();
     let table = read_probes(&folder.path().join("probes.csv")).unwrap();
     let curve = Curve { times: table.times(), values: table.column("block.x").unwrap() };

@@ -36,3 +36,31 @@ fn the_package_can_be_installed() {
     assert!(said.starts_with(&target.display().to_string()), "{said}");
     assert!(!ended.status.success() && error.contains("halfstep run SCENE --solid"), "{error}");
 }
+
+/// The wheel that would be published: pure Python, with its licences and what it needs.
+#[test]
+fn a_wheel_has_what_an_index_asks_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let (source, wheels) = (folder.path().join("python"), folder.path().join("wheels"));
+    output(Command::new("cp").arg("-r").arg(repository().join("python")).arg(&source));
+    let pip = ["-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation", "--wheel-dir"];
+    output(
+        Command::new(python()).args(pip).arg(&wheels).arg(&source).env("PIP_DISABLE_PIP_VERSION_CHECK", "1"),
+    );
+    let made: Vec<_> = std::fs::read_dir(&wheels).unwrap().flatten().map(|file| file.path()).collect();
+    let [wheel] = made.as_slice() else { panic!("{made:?}") };
+    assert!(wheel.to_string_lossy().ends_with("-py3-none-any.whl"), "{wheel:?}");
+    let list = "import sys, zipfile; wheel = zipfile.ZipFile(sys.argv[1]); names = wheel.namelist(); \
+        print(*names); print(wheel.read(next(n for n in names if n.endswith('METADATA'))).decode())";
+    let told = output(Command::new(python()).args(["-c", list]).arg(wheel));
+    for part in [
+        "halfstep/solid.py",
+        "licenses/LICENSE-MIT",
+        "licenses/LICENSE-APACHE",
+        "License-Expression: MIT OR Apache-2.0",
+        "Requires-Dist: iceoryx2==",
+        "Requires-Python: >=3.10",
+    ] {
+        assert!(told.contains(part), "{part}: {told}");
+    }
+}

@@ -17,16 +17,17 @@ pub(crate) struct FakeFluidArguments {
     /// The solid: a command that speaks the protocol; with several solids NAME=COMMAND
     #[arg(long, value_name = "[NAME=]COMMAND")]
     solid: String,
-    /// The whole force, N (2D: N/m): FX,FY or FX,FY,FZ
+    /// The whole force, N (2D: N/m): FX,FY or FX,FY,FZ (default: none, so what the scene does to the solid without water)
     #[arg(long, value_name = "N,N", value_parser = vector, allow_hyphen_values = true)]
-    force: [f64; 3],
+    force: Option<[f64; 3]>,
     /// Only on the particles that begin in this box, m: XMIN,YMIN,XMAX,YMAX (default: on all)
     #[arg(long, value_name = "M,M,M,M", value_parser = block, allow_hyphen_values = true)]
     within: Option<Block>,
     /// Time in which the force grows from zero, s
     #[arg(long, value_name = "SECONDS", value_parser = crate::arguments::seconds)]
     ramp: Option<f64>,
-    /// Time step, s (default: what sound in the scene's water takes for a fifth of a particle); the solid may take less
+    /// Time step, s (default: what sound in the scene's water takes for a fifth of a particle, without water what
+    /// is stable for the model that the scene names); the solid may take less
     #[arg(long, value_name = "SECONDS", value_parser = crate::arguments::seconds)]
     time_step: Option<f64>,
     /// Folder of the trial (default: out/fake-fluid-SCENE)
@@ -94,26 +95,45 @@ fn trial(scene: &Scene, arguments: FakeFluidArguments) -> Result<Trial, String> 
     let Some((solid, SolidSource::Command(command))) = external.pop() else {
         return Err("--solid needs a command".into());
     };
-    let Some(fluid) = &scene.fluid else {
-        return Err("the scene needs [fluid]: the solid is one of a coupled run".into());
+    let time_step = match arguments.time_step.or(of_sound(scene)) {
+        Some(dt) => dt,
+        None => of_model(scene, solid.as_str())?,
     };
     let out = PathBuf::from("out").join(format!("fake-fluid-{}", scene.name));
     Ok(Trial {
         solid,
         command,
-        load: Load { force: arguments.force, within: arguments.within, ramp: arguments.ramp.unwrap_or(0.0) },
-        time_step: arguments.time_step.unwrap_or(0.2 * scene.resolution / fluid.sound_speed),
+        load: Load {
+            force: arguments.force.unwrap_or_default(),
+            within: arguments.within,
+            ramp: arguments.ramp.unwrap_or(0.0),
+        },
+        time_step: time_step,
         out: arguments.out.unwrap_or(out),
         stop: StopFlags::of_signals().map_err(|e| format!("cannot watch for signals: {e}"))?,
     })
+}
+
+/// What sound takes in the scene's water for a fifth of a particle, s; `None` without water.
+fn of_sound(scene: &Scene) -> Option<f64> {
+    scene.fluid.as_ref().map(|fluid| 0.2 * scene.resolution / fluid.sound_speed)
+}
+
+/// The stable step of the model that the scene names for a solid, s.
+fn of_model(scene: &Scene, solid: &str) -> Result<f64, String> {
+    let isa = halfstep::isa::of_environment().map_err(|e| e.to_string())?;
+    let index = scene.solids.iter().position(|own| own.name == solid).unwrap_or_default();
+    let known = halfstep::check::check(scene, isa).and_then(|check| check.stable_step(index));
+    known.ok_or_else(|| "a scene without [fluid] needs --time-step".into())
 }
 
 /// What the solid did: of each probe component its ends and its range.
 fn text(tried: &Tried, trial: &Trial) -> String {
     let [all, pushed] = tried.particles;
     let mut text = format!(
-        "{} steps to t = {} s; the load is on {pushed} of {all} particles\n",
-        tried.steps, tried.time
+        "{} steps to t = {} s; the load is on {pushed} of {all} particles\n\
+         a half-step of the solid takes {:.0} µs (median; one in a hundred more than {:.0})\n",
+        tried.steps, tried.time, tried.half_step_us.p50, tried.half_step_us.p99
     );
     for header in &tried.probes.columns[1..] {
         let Some(values) = tried.probes.column(header) else { continue };
@@ -123,7 +143,7 @@ fn text(tried: &Tried, trial: &Trial) -> String {
             text += &format!("{header:24} {low:12.5e} to {high:12.5e}, at the end {last:12.5e}\n");
         }
     }
-    text + &format!("probes.csv and log.txt are in {}", trial.out.display())
+    text + &format!("probes.csv, run.json and log.txt are in {}", trial.out.display())
 }
 
 #[cfg(test)]

@@ -393,7 +393,9 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
             header.frame = self.frame;
             self.frame += 1;
         }
-        self.pair_evaluations += self.solids.evaluate(&self.states, self.half_step.before());
+        // The last state has no step: contacts then take that of their limit.
+        let dt = tick.dt.unwrap_or(f64::INFINITY);
+        self.pair_evaluations += self.solids.evaluate(&self.states, [self.half_step.before(), dt]);
         self.compute += watch.stop();
         for (place, forces) in self.solids.answers() {
             let epoch = self.states[place].header().epoch;

@@ -276,8 +276,9 @@ impl<const D: usize> Solids<D> {
         work
     }
 
-    /// Evaluates the forces on both sides at the states' instant, s; returns the pairs listed for it.
-    pub(crate) fn evaluate(&mut self, states: &[impl StateMessage], time: f64) -> u64 {
+    /// Evaluates the forces on both sides at the states' instant, s, in a time step `dt`, s; returns the pairs listed for
+    /// it.
+    pub(crate) fn evaluate(&mut self, states: &[impl StateMessage], [time, dt]: [f64; 2]) -> u64 {
         let touching = self.contact.is_some() || self.solids.iter().any(|side| side.walls.is_some());
         if self.solids.is_empty() || (self.first == 0 && !touching) {
             return 0;
@@ -321,7 +322,7 @@ impl<const D: usize> Solids<D> {
             }
         }
         if touching {
-            self.touch(states, time);
+            self.touch(states, [time, dt]);
         }
         pairs
     }
@@ -331,20 +332,20 @@ impl<const D: usize> Solids<D> {
         self.impulse.add(dt, self.by_fluid);
     }
 
-    /// Adds the forces of contacts at the states' instant, s, to those of the fluid.
-    fn touch(&mut self, states: &[impl StateMessage], time: f64) {
+    /// Adds the forces of contacts at the states' instant, s, in a time step `dt`, s, to those of the fluid.
+    fn touch(&mut self, states: &[impl StateMessage], [time, dt]: [f64; 2]) {
         let _phase = timeline::phase("contact");
         let whole = states[self.first].header().stage == Stage::First.number();
         for (side, state) in self.solids.iter_mut().zip(&states[self.first..]) {
             let Some(walls) = &mut side.walls else { continue };
-            walls.evaluate(state.records(), time, whole);
+            walls.evaluate(state.records(), [time, dt], whole);
             for (record, force) in side.forces.iter_mut().enumerate() {
                 let on = walls.on(record);
                 (0..2).for_each(|d| force.stress_force[d] += on[d]);
             }
         }
         let Some(contact) = &mut self.contact else { return };
-        contact.evaluate(|solid| states[solid + self.first].records(), whole);
+        contact.evaluate(|solid| states[solid + self.first].records(), whole, dt);
         contact.forces(|solid, record, force| {
             let sum = &mut self.solids[solid].forces[record].stress_force;
             (0..2).for_each(|d| sum[d] += force[d]);

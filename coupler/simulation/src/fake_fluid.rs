@@ -14,7 +14,8 @@ use halfstep_link::{
     ProcessLink, Processes, StateMessage,
 };
 use halfstep_output::probes::ProbeLog;
-use halfstep_output::{Table, atomic, read_probes};
+use halfstep_output::run_json::{Percentiles, RunStatus, TimeSteps};
+use halfstep_output::{RunReport, Table, atomic, read_probes};
 use halfstep_role::serve::{FOLDER_VARIABLE, SCENE_VARIABLE};
 use halfstep_scene::geometry::{self, holds};
 use halfstep_scene::{Block, Scene, dispatch};
@@ -26,7 +27,7 @@ use halfstep_wire::protocol::{
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Place of the solid among the participants.
 const SOLID: usize = 1;
@@ -70,9 +71,12 @@ pub struct Tried {
     pub particles: [usize; 2],
     /// The solid's probes against time, as in probes.csv.
     pub probes: Table,
+    /// From sending the solid its forces to having its next state.
+    pub half_step_us: Percentiles,
 }
 
-/// Runs a trial to the scene's end. The folder has scene.json, the table of particles, probes.csv and log.txt then.
+/// Runs a trial to the scene's end. The folder has scene.json, the table of particles, probes.csv, log.txt and a short
+/// run.json then.
 ///
 /// # Errors
 /// The solid did not come, ended early, or sent what a run would refuse; the folder cannot be written.
@@ -114,7 +118,9 @@ pub fn run(scene: &Scene, trial: &Trial) -> Result<Tried, RunError> {
         log: ProbeLog::create(&path, &columns)?,
         clock: (0, 0.0),
         pushed: Vec::new(),
+        half_steps: Vec::new(),
     };
+    let started = Instant::now();
     let (abort, connected, done) =
         (Arc::new(AtomicBool::new(false)), AtomicBool::new(false), AtomicBool::new(false));
     let (ended, early) = std::thread::scope(|threads| {
@@ -136,25 +142,56 @@ pub fn run(scene: &Scene, trial: &Trial) -> Result<Tried, RunError> {
     });
     let (steps, time) = pusher.clock;
     let particles = [pusher.pushed.len(), pusher.pushed.iter().filter(|share| **share > 0.0).count()];
+    let half_step_us = percentiles(std::mem::take(&mut pusher.half_steps));
     pusher.solid.finish()?;
     drop(pusher);
+    let mean = (steps > 0).then(|| time / steps as f64);
+    let mut report = RunReport {
+        scene: serde_json::to_value(scene).map_err(|e| RunError::System(e.to_string()))?,
+        version: env!("CARGO_PKG_VERSION").into(),
+        steps,
+        time,
+        wall_seconds: started.elapsed().as_secs_f64(),
+        dt: TimeSteps { mean, ..TimeSteps::default() },
+        round_trip_us: Some(half_step_us),
+        ..RunReport::default()
+    };
+    let ended = ended.map_err(|error| {
+        children.wait(Duration::from_millis(300));
+        let missed = match error {
+            RunError::Link(LinkError::PeerDied { peer }) => Some(peer),
+            _ => None,
+        };
+        let cause = early.or_else(|| children.culprit(missed));
+        children.stop(Duration::from_secs(1));
+        let at = connected.load(Ordering::Relaxed).then_some((steps, time));
+        Cause { log: &log, external: &[trial.solid], at }.of(error, cause)
+    });
+    let stopped = trial.stop.stop.load(Ordering::Relaxed);
+    report.status = Some(match &ended {
+        Ok(()) if stopped => RunStatus::Stopped,
+        Ok(()) => RunStatus::Finished,
+        Err(_) => RunStatus::Failed,
+    });
+    report.error = ended.as_ref().err().map(ToString::to_string);
+    report.write(&file("run.json"))?;
     match ended {
         Ok(()) => {
             children.wait(Duration::from_secs(5));
-            Ok(Tried { steps, time, particles, probes: read_probes(&path)? })
+            Ok(Tried { steps, time, particles, probes: read_probes(&path)?, half_step_us })
         }
-        Err(error) => {
-            children.wait(Duration::from_millis(300));
-            let missed = match error {
-                RunError::Link(LinkError::PeerDied { peer }) => Some(peer),
-                _ => None,
-            };
-            let cause = early.or_else(|| children.culprit(missed));
-            children.stop(Duration::from_secs(1));
-            let at = connected.load(Ordering::Relaxed).then_some((steps, time));
-            Err(Cause { log: &log, external: &[trial.solid], at }.of(error, cause))
-        }
+        Err(error) => Err(error),
     }
+}
+
+/// Median, and what one in a hundred exceeds; zeros of nothing.
+fn percentiles(mut durations: Vec<f32>) -> Percentiles {
+    durations.sort_unstable_by(f32::total_cmp);
+    let of = |share: f64| {
+        let place = (durations.len() as f64 * share) as usize;
+        durations.get(place).or(durations.last()).map_or(0.0, |us| f64::from(*us))
+    };
+    Percentiles { p50: of(0.5), p99: of(0.99) }
 }
 
 /// A fluid that says nothing of interest, on time.
@@ -191,10 +228,13 @@ struct Pusher<'a> {
     clock: (u64, f64),
     /// Share of the load of each particle.
     pushed: Vec<f64>,
+    /// Duration of each of the solid's half-steps, µs.
+    half_steps: Vec<f32>,
 }
 
 impl Pusher<'_> {
     fn run(&mut self, mut link: CouplerLink<Processes>) -> Result<(), RunError> {
+        let mut sent: Option<Instant> = None;
         loop {
             let (step, time) = self.clock;
             let stops = time >= self.scene.end_time || self.trial.stop.stop.load(Ordering::Relaxed);
@@ -204,6 +244,7 @@ impl Pusher<'_> {
                 let expect = Expect::of(&half_step).dt(half_step.state_header().dt);
                 // The solid first: one that fails says so, and then the stand-in for the fluid ends, too.
                 let state = link.receive_state(SOLID, &expect)?;
+                self.half_steps.extend(sent.map(|sent| sent.elapsed().as_secs_f32() * 1e6));
                 if state.header().status != status::OK {
                     return Err(RunError::RoleFailed { role: self.trial.solid, step, said: None });
                 }
@@ -221,13 +262,14 @@ impl Pusher<'_> {
                     dt = self.trial.time_step.min(state.header().dt_limit).min(contact).min(left);
                     next_time = if dt < left { time + dt } else { self.scene.end_time };
                 }
-                let forces = self.forces(half_step.before(), records, stage == 0);
+                let forces = self.forces([half_step.before(), dt], records, stage == 0);
                 if stage == 0 {
                     self.log.row(time, self.solid.measure(records, &forces))?;
                 }
                 let order = if stops { order::STOP } else { order::GO };
                 let header = ForceHeader { order, ..half_step.with_step(dt, next_time).force_header() };
                 link.send_forces(SOLID, &header, if stops { &[] } else { &forces })?;
+                sent = Some(Instant::now());
                 drop(state);
                 link.send_forces(FLUID, &header, &[])?;
                 if stops {
@@ -262,11 +304,11 @@ impl Pusher<'_> {
         Ok(())
     }
 
-    /// Load and contact with walls at a time, s. `whole`: of a state at n.
-    fn forces(&mut self, time: f64, records: &[StateRecord], whole: bool) -> Vec<ForceRecord> {
+    /// Load and contact with walls at a time, s, in a time step `dt`, s. `whole`: of a state at n.
+    fn forces(&mut self, [time, dt]: [f64; 2], records: &[StateRecord], whole: bool) -> Vec<ForceRecord> {
         let load = self.trial.load;
         if let Some(walls) = &mut self.walls {
-            walls.evaluate(records, time, whole);
+            walls.evaluate(records, [time, dt], whole);
         }
         let grown = if load.ramp > 0.0 { (time / load.ramp).min(1.0) } else { 1.0 };
         let on = |(k, (record, share)): (usize, (&StateRecord, &f64))| {

@@ -66,11 +66,11 @@ fn run(arguments: CompareArguments) -> Result<ExitCode, StudyError> {
     base.extend(arguments.until.map(|t| format!("end_time={t}")));
     let scene = halfstep_scene::load(&arguments.scene, &base)?;
     let exchanged = exchanged(&scene, arguments.of.as_deref()).map_err(StudyError::Usage)?;
-    // Without water there is nothing that a program could exchange its state with.
+    // Without water a program has nobody to exchange its state with but a stand-in, which knows no other solid.
     let program = candidates.iter().find(|candidate| matches!(candidate, Candidate::Program { .. }));
-    if let (None, Some(program)) = (&scene.fluid, program) {
+    if let (None, Some(program), true) = (&scene.fluid, program, scene.solids.len() > 1) {
         return Err(StudyError::Usage(format!(
-            "{} has no [fluid]: {} cannot join it",
+            "{} has several solids and no [fluid]: {} cannot join it",
             scene.name,
             program.name()
         )));
@@ -117,6 +117,7 @@ fn run(arguments: CompareArguments) -> Result<ExitCode, StudyError> {
             scene: arguments.scene.clone(),
             overrides,
             more,
+            alone: scene.fluid.is_none() && matches!(candidate, Candidate::Program { .. }),
             end_time: scene.end_time,
             cost: 1.0,
         });

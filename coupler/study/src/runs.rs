@@ -78,6 +78,8 @@ pub struct Job {
     pub overrides: Vec<String>,
     /// Further arguments of `halfstep run`.
     pub more: Vec<String>,
+    /// Of a scene without water with a solid of another program: `halfstep fake-fluid` runs it, without a load.
+    pub alone: bool,
     /// End time, s.
     pub end_time: f64,
     /// Expected cost, in any unit.
@@ -95,6 +97,7 @@ impl Job {
             scene: scene.path.clone(),
             overrides: setting.overrides.clone(),
             more: solids.iter().flat_map(|command| ["--solid".into(), command.clone()]).collect(),
+            alone: false,
             end_time: scene.end_time,
             // Steps go with end over spacing.
             cost: particles * scene.end_time / (scene.resolution * scene.numerics.cfl),
@@ -103,7 +106,14 @@ impl Job {
 
     fn command(&self) -> std::io::Result<Command> {
         let mut command = Command::new(own_path()?);
-        command.arg("run").arg(&self.scene).arg("--quiet").arg("--force").arg("--out").arg(&self.dir);
+        command
+            .arg(if self.alone { "fake-fluid" } else { "run" })
+            .arg(&self.scene)
+            .arg("--out")
+            .arg(&self.dir);
+        if !self.alone {
+            command.args(["--quiet", "--force"]);
+        }
         command.args(self.overrides.iter().flat_map(|o| ["--set", o]));
         command.args(&self.more);
         let said = File::create(self.dir.join("messages.txt"))?;

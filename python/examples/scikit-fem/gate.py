@@ -11,6 +11,7 @@ import halfstep
 import numpy as np
 import scipy.sparse as sparse
 import skfem
+from scipy.interpolate import RBFInterpolator
 
 scene, points = halfstep.description(), halfstep.particles()
 across = int(sys.argv[1]) if len(sys.argv) > 1 else 2
@@ -39,7 +40,6 @@ B = sparse.csr_matrix(
 B.eliminate_zeros()
 BT = B.T.tocsr()
 weights = basis.dx.ravel()
-
 # One solid, or one of several.
 material = scene["solid"]
 if isinstance(material, list):
@@ -70,7 +70,9 @@ def internal(u):
 
 class Plate:
     def __init__(self, saved):
-        self.u, self.v = (saved[key] if saved else np.zeros(basis.N) for key in "uv")
+        start = RBFInterpolator(points.position, points.velocity)(basis.doflocs.T)
+        start = np.where(held, 0.0, np.where(vertical > 0.0, start[:, 1], start[:, 0]))
+        self.u, self.v = (saved[key] for key in "uv") if saved else (np.zeros(basis.N), start)
         self.steps = 1
         # Less than what the shortest wave on the mesh allows, 0.29 of an element.
         speed = np.sqrt((lame + 2 * shear) / density)

@@ -11,7 +11,7 @@
 //!                                                         is e times that before it, whatever the masses
 //! F_t = -(k x + k tau u), at most mu F_n                  k = K w/2; x: way along the surface from where it sticks,
 //!                                                         u: its rate; beyond mu F_n it slips
-//! v_s = min(theta omega g (1 - e²) / 2, max(v_max / 100, v_g))
+//! v_s = max(omega² dt g (1 - e²) / 2, v_max / 100, v_g)
 //!         v_max: largest approach of this contact, v_g: what gravity gives in four steps
 //! ```
 //! omega² = K (1/m_a + 1/m_b) with the least mass behind a length of both outlines; steps of theta / omega resolve an
@@ -158,9 +158,9 @@ impl Contact {
         self.pairs.iter().map(|pair| pair.law.limit).fold(f64::INFINITY, f64::min)
     }
 
-    /// Evaluates all contacts from the solids' records, in the scene's order. `whole`: of a state at n, from which the
-    /// contacts go on; else it is one at n + 1/2.
-    pub fn evaluate<'a>(&mut self, records: impl Fn(usize) -> &'a [StateRecord], whole: bool) {
+    /// Evaluates all contacts from the solids' records, in the scene's order, in a time step, s. `whole`: of a state at
+    /// n, from which the contacts go on; else it is one at n + 1/2.
+    pub fn evaluate<'a>(&mut self, records: impl Fn(usize) -> &'a [StateRecord], whole: bool, dt: f64) {
         if self.outlines.is_empty() {
             return;
         }
@@ -186,8 +186,8 @@ impl Contact {
             let view = |solid: usize| (&self.outlines[solid], &self.placed[solid]);
             let found = &mut self.halfway;
             let mut deepest =
-                pair.law.pass(0, [view(a), view(b)], [&mut *first, &mut *second], &pair.touches, found);
-            let other = pair.law.pass(1, [view(b), view(a)], [second, first], &pair.touches, found);
+                pair.law.pass(0, [view(a), view(b)], [&mut *first, &mut *second], (&pair.touches, dt), found);
+            let other = pair.law.pass(1, [view(b), view(a)], [second, first], (&pair.touches, dt), found);
             deepest = deepest.max(other);
             if whole {
                 std::mem::swap(&mut pair.touches, &mut self.halfway);

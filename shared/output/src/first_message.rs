@@ -8,6 +8,9 @@ const MASS: f64 = 0.02;
 const NUMBER: f64 = 0.1;
 /// Part of the scene's places that may have no particle near: corners that a mesh cuts.
 const EMPTY: f64 = 0.02;
+/// Distance in spacings below which a particle of the fluid is in the solid: the scene's own are half a spacing apart
+/// at least.
+pub const IN_FLUID: f64 = 0.45;
 
 /// The first message of a solid of another program and the scene's particles of that solid.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -37,7 +40,7 @@ pub struct FirstMessage {
     pub farthest: f64,
     /// Where that one is, m.
     pub farthest_at: Option<[f64; 3]>,
-    /// Particles of the fluid that begin closer than half a spacing to a particle of the solid.
+    /// Particles of the fluid that begin closer than [`IN_FLUID`] spacings to a particle of the solid.
     pub in_fluid: u64,
 }
 
@@ -86,7 +89,7 @@ impl FirstMessage {
         }
         if self.in_fluid > 0 {
             all.push(format!(
-                "{} particles of the fluid begin in the {name}, closer than half a spacing to its particles",
+                "{} particles of the fluid begin in the {name}, closer than {IN_FLUID} of the spacing to its particles",
                 self.in_fluid
             ));
         }

@@ -40,7 +40,7 @@ pub mod timeline;
 pub mod vtkhdf;
 pub mod writer;
 
-pub use first_message::FirstMessage;
+pub use first_message::{FirstMessage, IN_FLUID};
 pub use halfstep_wire::frame::{Frame, FramePoint};
 #[cfg(feature = "pictures")]
 pub use pictures::{draw_contact, draw_plot, draw_start, draw_timeline};

@@ -93,6 +93,17 @@ impl<const D: usize> Hypoelastic<D> {
         }
     }
 
+    /// The largest that walls add to the square of a particle's frequency in the state that was evaluated last, 1/s².
+    pub(super) fn springs_of_walls(&self) -> f64 {
+        let Some(walls) = &self.walls else { return 0.0 };
+        let free = |slot: &usize| {
+            let id = self.id[*slot];
+            id != PADDING && !self.points[id as usize].clamped
+        };
+        let of = |slot: usize| walls.stiffness(self.touching(), slot).0;
+        (0..self.id.len()).filter(free).map(of).fold(0.0, f64::max)
+    }
+
     /// The particles as walls see them.
     pub(super) fn touching(&self) -> Touching<'_, D> {
         Touching {

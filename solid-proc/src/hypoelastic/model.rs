@@ -26,6 +26,8 @@ use halfstep_wire::state::StateError;
 use halfstep_wire::wire_component;
 
 const SKIN: f64 = 0.3;
+/// Largest stable sub-step over dx / c_P, measured: unstable from 1.15.
+const STABLE: f64 = 1.1;
 
 /// The hypoelastic solid.
 pub struct Hypoelastic<const D: usize> {
@@ -75,6 +77,8 @@ pub struct Hypoelastic<const D: usize> {
     pub(super) neighbours: ClusterList,
     pub(super) sums: Vec<SolidSum<D>>,
     pub(super) walls: Option<Walls<D>>,
+    /// What walls add to the square of a particle's highest frequency, the largest of any particle, 1/s².
+    pub(super) wall_springs: f64,
     pub(super) pair_evaluations: u64,
     /// Where account is kept of what effects give.
     pub(super) account: Option<Account>,
@@ -147,6 +151,7 @@ impl<const D: usize> Hypoelastic<D> {
             neighbours: ClusterList::narrow(),
             sums: Vec::new(),
             walls,
+            wall_springs: 0.0,
             pair_evaluations: 0,
             account: None,
         };
@@ -327,8 +332,13 @@ impl<const D: usize> SolidModel<D> for Hypoelastic<D> {
     }
 
     fn sub_step_limit(&self) -> f64 {
-        // Measured on this scheme: stable to 1.1 dx / c_P, unstable from 1.15; the scene's solid_cfl keeps clear of it.
-        self.courant * self.spacing / self.material.pressure_wave_speed()
+        // The scene's solid_cfl keeps clear of what is stable.
+        let limit = self.courant * self.spacing / self.material.pressure_wave_speed();
+        if self.wall_springs == 0.0 {
+            return limit;
+        }
+        let waves = (2.0 * self.material.pressure_wave_speed() / (STABLE * self.spacing)).powi(2);
+        limit / (1.0 + self.wall_springs / waves).sqrt()
     }
 
     fn advance(&mut self, half_step: &HalfStep, sub_steps: u32, load: &Load<D>) -> Result<(), OutOfBounds> {
@@ -358,6 +368,7 @@ impl<const D: usize> SolidModel<D> for Hypoelastic<D> {
         self.keep_rates(false);
         if !first {
             self.close_account();
+            self.wall_springs = self.springs_of_walls();
         }
         let (slot_of, now) = (&self.slot_of, &self.now);
         let place = |p: usize| vector(&now.position, slot_of[p]);

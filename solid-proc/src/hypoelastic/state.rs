@@ -19,6 +19,9 @@ impl<const D: usize> State for Hypoelastic<D> {
         if let Some(time) = self.walls.as_mut().and_then(Walls::listed_at) {
             fields.real("walls_listed_at", time)?;
         }
+        if self.walls.is_some() {
+            fields.real("wall_springs", &mut self.wall_springs)?;
+        }
         let slots = self.id.len();
         fields.length("particles/density", slots, self.now.density.len())?;
         let columns = [&self.now.position, &self.now.velocity, &self.reference];

@@ -165,6 +165,27 @@ fn a_wall_that_holds_values_pushes_and_pulls() {
     assert!(!crate::effects::touches_walls(&scene, 0), "the spring would push a second time");
 }
 
+/// A quarter of a spacing in the floor each particle of the lowest row touches the one wall particle below it, whose spring
+/// is (c_P / dx)² / 2 beside the (2 c_P / (1.1 dx))² of the shortest wave.
+#[test]
+fn springs_of_walls_shorten_the_sub_step() {
+    let floor = "shape=[{name=\"block\",phase=\"solid\",box={min=[0.0,0.0],max=[0.2,0.15]}},\
+                 {name=\"floor\",phase=\"wall\",box={min=[-0.1,-0.05],max=[0.3,0.0]}}]";
+    let mut solid = moving(&[floor], |_| [0.0, 0.0]);
+    let load = Load::none(solid.particles().len());
+    let step = |solid: &mut Hypoelastic<2>| {
+        for half_step in HalfStep::begin(0, 0.0).lasting(1e-9).both() {
+            solid.advance(&half_step, 1, &load).unwrap();
+        }
+        solid.sub_step_limit()
+    };
+    let alone = moving(&[], |_| [0.0, 0.0]).sub_step_limit();
+    assert_eq!(step(&mut solid), alone, "it lies on the floor and touches nothing");
+    solid.now.position[1].iter_mut().for_each(|y| *y -= 0.0025);
+    let shorter = step(&mut solid) / alone;
+    assert!((shorter - (1.0 + 0.5 / (2.0_f64 / 1.1).powi(2)).powf(-0.5)).abs() < 1e-12, "{shorter}");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
     #[test]

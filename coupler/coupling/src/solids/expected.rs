@@ -1,6 +1,6 @@
 //! What the scene has for a solid that another program computes, to compare its first message with.
 
-use halfstep_output::FirstMessage;
+use halfstep_output::{FirstMessage, IN_FLUID};
 use halfstep_scene::geometry::{Cells, Layout, SolidPoint};
 use halfstep_scene::{RigidBody, Scene};
 use halfstep_wire::protocol::StateRecord;
@@ -106,8 +106,7 @@ impl<const D: usize> Expected<D> {
         let outer =
             || self.places.iter().zip(&self.outer).filter(|(_, outer)| **outer).map(|(place, _)| place);
         let empty: Vec<&[f64; D]> = outer().filter(|place| !is_near(&filled, place, reach)).collect();
-        // The scene's own are half a spacing apart at least.
-        let close = 0.45 * self.between;
+        let close = IN_FLUID * self.between;
         let solid = in_cells(&published, close);
         FirstMessage {
             name: self.name.clone(),

@@ -95,13 +95,13 @@ impl Law {
         self.rest = REST * gravity * self.limit;
     }
 
-    /// Points of the first solid inside of the second; returns the largest penetration, m.
+    /// Points of the first solid inside of the second, in a time step, s; returns the largest penetration, m.
     pub(super) fn pass(
         &self,
         pass: u32,
         [own, other]: [(&Outline, &Placed); 2],
         [on_own, on_other]: [&mut Side; 2],
-        touches: &[Touch],
+        (touches, dt): (&[Touch], f64),
         found: &mut Vec<Touch>,
     ) -> f64 {
         let (outline, placed) = own;
@@ -121,7 +121,7 @@ impl Law {
                     let key = [pass, point, k as u32];
                     let before =
                         touches.binary_search_by(|touch| touch.key.cmp(&key)).ok().map(|k| touches[k]);
-                    let (forces, touch) = self.force([own, other], key, &foot, before);
+                    let (forces, touch) = self.force([own, other], key, &foot, (before, dt));
                     found.push(touch);
                     let part = &other.0.parts[foot.part as usize];
                     for (kind, force) in forces.into_iter().enumerate() {
@@ -146,7 +146,7 @@ impl Law {
         [(outline, placed), (other, surface)]: [(&Outline, &Placed); 2],
         key: [u32; 3],
         foot: &Foot,
-        before: Option<Touch>,
+        (before, dt): (Option<Touch>, f64),
     ) -> ([[f64; 2]; 2], Touch) {
         let point = key[1] as usize;
         let on = |part: u32, share: f64, of: &[[f64; 2]]| {
@@ -161,7 +161,7 @@ impl Law {
         let mut touch = before.unwrap_or(fresh);
         touch.approach = touch.approach.max(approach);
         let spring = 0.5 * self.stiffness * outline.points[point].length;
-        let push = self.push(spring, foot.depth, approach, touch.approach);
+        let push = self.push(spring, foot.depth, [approach, touch.approach], dt);
         let stuck = on(touch.part, touch.share, &surface.position);
         let from = less(placed.position[point], stuck);
         let (along, slipped) = self.along(spring, push, dot(from, tangent), dot(slip, tangent));
@@ -175,12 +175,13 @@ impl Law {
     }
 
     /// Force along the normal, N (2D: N/m), on a point with a spring (N/m; 2D: N/m²) that is so deep (m) and comes so
-    /// fast (m/s), `fastest` at most in this contact.
-    pub(super) fn push(&self, spring: f64, depth: f64, approach: f64, fastest: f64) -> f64 {
+    /// fast (m/s), `fastest` at most in this contact; in a time step, s.
+    pub(super) fn push(&self, spring: f64, depth: f64, [approach, fastest]: [f64; 2], dt: f64) -> f64 {
         let kept = self.restitution * self.restitution;
-        // No less than what a step of the limit changes at this depth: else the half-step sees the force of leaving
-        // before the step has turned the motion round, and bodies sink into each other.
-        let change = 0.5 * THETA * THETA / self.limit * depth * (1.0 - kept);
+        // No less than what the step changes at this depth: else the half-step sees the force of leaving before the
+        // step has turned the motion round, and bodies sink into each other.
+        let omega = THETA / self.limit;
+        let change = 0.5 * omega * omega * dt.min(self.limit) * depth * (1.0 - kept);
         let slow = change.max(SLOW * fastest).max(self.rest);
         let way = if slow > 0.0 { libm::tanh(approach / slow) } else { sign(approach) };
         spring * depth * 0.5 * (1.0 + kept + (1.0 - kept) * way)

@@ -82,7 +82,7 @@ impl Run {
 
     fn accelerations(&mut self, whole: bool) -> Vec<[f64; 2]> {
         let blocks = &self.blocks;
-        self.contact.evaluate(|solid| &blocks[solid].records, whole);
+        self.contact.evaluate(|solid| &blocks[solid].records, whole, self.dt);
         let mut all: Vec<[f64; 2]> = blocks.iter().map(|_| [0.0; 2]).collect();
         self.contact.forces(|solid, _, force| {
             (0..2).for_each(|d| all[solid][d] += force[d] / blocks[solid].mass);

@@ -197,9 +197,9 @@ impl WallContact {
         }
     }
 
-    /// Evaluates contact with the walls at the records' instant, s. `whole`: of a state at n, from which the contacts
-    /// go on; else it is one at n + 1/2.
-    pub fn evaluate(&mut self, records: &[StateRecord], time: f64, whole: bool) {
+    /// Evaluates contact with the walls at the records' instant, s, in a time step `dt`, s. `whole`: of a state at n,
+    /// from which the contacts go on; else it is one at n + 1/2.
+    pub fn evaluate(&mut self, records: &[StateRecord], [time, dt]: [f64; 2], whole: bool) {
         self.side.forces.iter_mut().for_each(Vec::clear);
         self.halfway.clear();
         let mut deepest = 0.0_f64;
@@ -209,7 +209,7 @@ impl WallContact {
             let placements = self.placements(time);
             self.find(&placements);
             for k in 0..self.near.len() {
-                deepest = deepest.max(self.touch(self.near[k], &placements, time, records.len()));
+                deepest = deepest.max(self.touch(self.near[k], &placements, [time, dt], records.len()));
             }
             self.halfway.sort_unstable_by_key(|touch| touch.key);
         }
@@ -220,7 +220,7 @@ impl WallContact {
     }
 
     /// Adds the force on a point inside of a wall; returns how deep it is in it, m.
-    fn touch(&mut self, near: Near, placements: &[Placement], time: f64, records: usize) -> f64 {
+    fn touch(&mut self, near: Near, placements: &[Placement], [time, dt]: [f64; 2], records: usize) -> f64 {
         let Near { key, depth, normal } = near;
         let let_in = self.let_in.binary_search_by_key(&key, |(key, _)| *key);
         let depth = depth - let_in.map_or(0.0, |k| self.let_in[k].1);
@@ -239,7 +239,7 @@ impl WallContact {
         let mut touch = before.map_or(fresh, |k| self.touches[k]);
         touch.approach = touch.approach.max(approach);
         let spring = self.law.stiffness * self.outline.points[key[1] as usize].length;
-        let push = self.law.push(spring, depth, approach, touch.approach);
+        let push = self.law.push(spring, depth, [approach, touch.approach], dt);
         let stuck = placement.position_of(touch.place);
         let from = [0, 1].map(|d| at[d] - stuck[d] - wall.belt[d] * (time - touch.time));
         let (along, slipped) = self.law.along(spring, push, dot(from, tangent), dot(slip, tangent));
