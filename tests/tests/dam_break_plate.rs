@@ -3,8 +3,8 @@
 //! Beam theory: a jet of 2 m/s over the whole height of the 12 mm plate (4 kPa) moves its tip by q L^4 / (8 D), which
 //! is 0.6 mm for E = 0.22 GPa, 1.0 mm for a plate of 10 mm, and 10 mm for E = 12 MPa. The plate with E = 1 MPa of the
 //! literature goes 41-49 mm at 0.23-0.26 s (`validation/dam-break-plate/reference`). The total-Lagrangian plate does,
-//! too: 47.0, 47.3 and 45.5 mm @ 0.217-0.226 s with three, four and six particles across. The hypoelastic plate is too
-//! soft: 85 mm @ 0.28 s with six.
+//! too: 41.5, 43.0 and 42.7 mm @ 0.226-0.241 s with three, four and six particles across. The hypoelastic plate is too
+//! soft: 83 mm @ 0.28 s with six.
 //!
 //! The paper's scheme (`preset = "kayaki"`) has a plate of five rows, 10 mm. Its time step of 1e-5 s is 1.77 dx / c_P
 //! for E = 0.22 GPa, where the plate blows up (`tests/tests/divergence.rs`): 5e-6 s there.
@@ -65,7 +65,8 @@ fn the_accurate_plate_goes_as_far_as_the_published_ones() {
     let plate = plate(0.004, 1e6).set("solid.poissons_ratio", 0.0).set("solid.model", "total-lagrangian");
     let (_, (time, peak)) = tip("total-Lagrangian, E 1 MPa, 4 mm", &plate.until(0.3).run());
     assert!((41.4..49.1).contains(&peak), "{peak} mm");
-    assert!((0.2..0.26).contains(&time), "{time} s");
+    // 0.226 s measured; published 0.23 to 0.26 s, and finer 0.241 s.
+    assert!((0.22..0.26).contains(&time), "{time} s");
 }
 
 /// The plate sleeps until the water arrives; nobody sees that in the results, but in the work.
@@ -142,5 +143,5 @@ fn plates_at_full_resolution() {
     let (first, most) = (curve.between(0.17, 1.0).first_peak(0.5), published.peak().1);
     println!("E 1 MPa, 2 mm: first peak (s, mm) {first:.3?}; published {least}-{most} mm at 0.23-0.26 s");
     let (time, peak) = first.expect("a peak");
-    assert!((least..=most).contains(&peak) && (0.2..0.26).contains(&time), "{peak} mm @ {time} s");
+    assert!((least..=most).contains(&peak) && (0.23..0.26).contains(&time), "{peak} mm @ {time} s");
 }

@@ -23,6 +23,7 @@
 
 mod law;
 mod outline;
+mod placed;
 mod state;
 #[cfg(test)]
 mod tests;
@@ -33,7 +34,8 @@ mod walls_tests;
 use halfstep_scene::{PairContact, Scene};
 use halfstep_wire::protocol::StateRecord;
 use law::{Law, Touch};
-use outline::{Outline, Placed};
+use outline::Outline;
+use placed::Placed;
 
 /// Part of the inverse of the fastest frequency of contact that a step may take.
 const THETA: f64 = 0.3;

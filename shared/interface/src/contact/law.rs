@@ -1,6 +1,7 @@
 //! The law of contact, and the search for points of one outline inside of another.
 
-use super::outline::{Outline, Placed};
+use super::outline::Outline;
+use super::placed::Placed;
 use super::{Side, THETA};
 use halfstep_scene::{PairContact, Scene};
 
@@ -113,7 +114,7 @@ impl Law {
                 }
                 for &point in points {
                     let at = placed.position[point as usize];
-                    if !target.holds(at) {
+                    if placed.is_torn(point) || !target.holds(at) {
                         continue;
                     }
                     let Some(foot) = nearest(other, k, at) else { continue };
@@ -229,7 +230,8 @@ pub(super) fn give(outline: &Outline, point: u32, force: [f64; 2], forces: &mut 
 fn nearest((outline, placed): (&Outline, &Placed), piece: usize, at: [f64; 2]) -> Option<Foot> {
     let ends = |part: u32| outline.parts[part as usize].ends.map(|end| placed.position[end as usize]);
     let mut best: Option<(f64, u32, f64)> = None;
-    for part in outline.pieces[piece].parts.clone() {
+    let is_torn = |part: u32| outline.parts[part as usize].ends.iter().any(|end| placed.is_torn(*end));
+    for part in outline.pieces[piece].parts.clone().filter(|part| !is_torn(*part)) {
         let [from, to] = ends(part);
         let (line, way) = (less(to, from), less(at, from));
         let share = (dot(way, line) / dot(line, line)).clamp(0.0, 1.0);
@@ -258,7 +260,7 @@ fn nearest((outline, placed): (&Outline, &Placed), piece: usize, at: [f64; 2]) -
     };
     let depth = square.sqrt();
     let outside = dot(away, side[0]) + dot(away, side[1]) >= 0.0;
-    if outside {
+    if outside || depth > placed.deepest(outline) {
         return None;
     }
     let normal = if share > 0.0 && share < 1.0 { side[0] } else { away.map(|x| -x / depth) };

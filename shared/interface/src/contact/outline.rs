@@ -2,7 +2,6 @@
 
 use halfstep_scene::geometry::{self, Cells, Layout, Surface};
 use halfstep_scene::{Phase, Scene};
-use halfstep_wire::protocol::StateRecord;
 use nalgebra::{Matrix2, Vector2};
 use std::collections::BTreeMap;
 
@@ -10,7 +9,7 @@ use std::collections::BTreeMap;
 const POINTS: f64 = 2.0;
 
 /// How far particles that carry a point lie from it, in spacings.
-const REACH: f64 = 2.3;
+pub(super) const REACH: f64 = 2.3;
 
 /// A moment matrix with less than this part of its trace squared as determinant belongs to a row of particles.
 const FLAT: f64 = 1e-6;
@@ -27,7 +26,7 @@ pub(super) struct Point {
     /// Records and weights.
     pub(super) weights: Weights,
     /// What one row of particles cannot say of its place, m.
-    offset: [f64; 2],
+    pub(super) offset: [f64; 2],
     /// Share of the outline, m.
     pub(super) length: f64,
 }
@@ -60,6 +59,8 @@ pub(super) struct Outline {
     pub(super) pieces: Vec<Piece>,
     /// Spacing of the solid's particles, m.
     pub(super) spacing: f64,
+    /// The solid can break.
+    pub(super) breaks: bool,
 }
 
 /// Particles of a solid as the scene places them, and which record each is.
@@ -71,7 +72,7 @@ struct Particles {
     spacing: f64,
 }
 
-fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+pub(super) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     libm::hypot(a[0] - b[0], a[1] - b[1])
 }
 
@@ -192,7 +193,8 @@ impl Outline {
                 }
             });
         }
-        let mut outline = Self { spacing, ..Self::default() };
+        let breaks = scene.solids[solid].fracture().is_some();
+        let mut outline = Self { spacing, breaks, ..Self::default() };
         for (piece, parts) in parts {
             outline.add(&particles, piece, &parts);
         }
@@ -270,105 +272,5 @@ impl Outline {
     /// Least mass behind a length of it, kg/m (2D: kg/m²).
     pub(super) fn least_mass(&self) -> f64 {
         self.pieces.iter().map(|piece| piece.mass).fold(f64::INFINITY, f64::min)
-    }
-}
-
-/// An axis-parallel box.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Around {
-    low: [f64; 2],
-    high: [f64; 2],
-}
-
-impl Around {
-    const NOTHING: Self = Self { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
-
-    fn add(&mut self, x: [f64; 2]) {
-        for d in 0..2 {
-            self.low[d] = self.low[d].min(x[d]);
-            self.high[d] = self.high[d].max(x[d]);
-        }
-    }
-
-    fn of(all: impl Iterator<Item = [f64; 2]>) -> Self {
-        all.fold(Self::NOTHING, |mut around, x| {
-            around.add(x);
-            around
-        })
-    }
-
-    fn meets(&self, other: &Self, margin: f64) -> bool {
-        (0..2).all(|d| self.low[d] <= other.high[d] + margin && other.low[d] <= self.high[d] + margin)
-    }
-
-    pub(super) fn touches(&self, other: &Self) -> bool {
-        self.meets(other, 0.0)
-    }
-
-    pub(super) fn holds(&self, x: [f64; 2]) -> bool {
-        (0..2).all(|d| x[d] >= self.low[d] && x[d] <= self.high[d])
-    }
-}
-
-/// Where an outline is.
-#[derive(Clone, Debug)]
-pub(super) struct Placed {
-    around: Around,
-    margin: f64,
-    /// Positions and velocities are those of the present state.
-    fresh: bool,
-    /// Of each point, m.
-    pub(super) position: Vec<[f64; 2]>,
-    /// Of each point, m/s.
-    pub(super) velocity: Vec<[f64; 2]>,
-    /// Around each piece.
-    pub(super) pieces: Vec<Around>,
-}
-
-impl Default for Placed {
-    fn default() -> Self {
-        Self {
-            around: Around::NOTHING,
-            margin: 0.0,
-            fresh: false,
-            position: Vec::new(),
-            velocity: Vec::new(),
-            pieces: Vec::new(),
-        }
-    }
-}
-
-impl Placed {
-    /// Takes the records of a state.
-    pub(super) fn bound(&mut self, outline: &Outline, records: &[StateRecord]) {
-        self.around = Around::of(records.iter().map(|r| [r.position[0], r.position[1]]));
-        // The surface lies up to a spacing before the particles.
-        self.margin = 1.5 * outline.spacing;
-        self.fresh = false;
-    }
-
-    /// The two may touch.
-    pub(super) fn meets(&self, other: &Self) -> bool {
-        self.around.meets(&other.around, self.margin + other.margin)
-    }
-
-    /// Places all points.
-    pub(super) fn place(&mut self, outline: &Outline, records: &[StateRecord]) {
-        if std::mem::replace(&mut self.fresh, true) {
-            return;
-        }
-        let sum = |point: &Point, of: &dyn Fn(&StateRecord) -> [f64; 3], start: [f64; 2]| {
-            point.weights.iter().fold(start, |sum, (record, w)| {
-                let x = of(&records[*record as usize]);
-                [sum[0] + w * x[0], sum[1] + w * x[1]]
-            })
-        };
-        self.position.clear();
-        self.velocity.clear();
-        self.position.extend(outline.points.iter().map(|p| sum(p, &|r| r.position, p.offset)));
-        self.velocity.extend(outline.points.iter().map(|p| sum(p, &|r| r.velocity, [0.0; 2])));
-        self.pieces.clear();
-        let around = |piece: &Piece| Around::of(piece.points.iter().map(|&p| self.position[p as usize]));
-        self.pieces.extend(outline.pieces.iter().map(around));
     }
 }

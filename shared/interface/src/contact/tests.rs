@@ -309,3 +309,49 @@ fn solids_that_shall_not_touch_do_not() {
     let scene = halfstep_scene::parse(&text, Path::new("x.toml"), &[]).expect("a right scene");
     assert!(Contact::new(&scene).is_none());
 }
+
+/// A block that can break, in two halves 0.1 m apart, and a small one: in the gap nothing holds it, where the block's
+/// outline still is a closed line; a quarter of a spacing inside of a half it is pushed out.
+#[test]
+fn what_lies_between_fragments_is_pushed_by_none() {
+    let text = "resolution = 0.01\nend_time = 1.0\ngravity = [0.0, 0.0]\n[[solid]]\nname = \"a\"\ndensity = 1000.0\n\
+                youngs_modulus = 1e7\npoissons_ratio = 0.2\nfracture = { strength = 1e5, energy = 20.0 }\n\
+                [[solid]]\nname = \"b\"\nmodel = \"rigid\"\ndensity = 1000.0\n";
+    let shapes = [boxed("a", [0.0, 0.0], [0.1, 0.1]), boxed("b", [0.12, 0.03], [0.16, 0.07])];
+    let scene = halfstep_scene::parse(&(text.to_owned() + &shapes.concat()), Path::new("x.toml"), &[]);
+    let scene = scene.expect("a right scene");
+    let mut contact = Contact::new(&scene).expect("two solids");
+    let of = |solid: usize| {
+        let points = geometry::layout::<2>(&scene).with_solid(&scene, solid).solid;
+        let record = |(k, p): (usize, &geometry::SolidPoint<2>)| StateRecord {
+            id: k as u32,
+            mass: 0.1,
+            position: [p.position[0], p.position[1], 0.0],
+            ..StateRecord::default()
+        };
+        points.iter().enumerate().map(record).collect::<Vec<_>>()
+    };
+    let [mut broken, small] = [of(0), of(1)];
+    contact.begin([broken.as_slice(), small.as_slice()].into_iter());
+    let dt = contact.limit();
+    let mut pushed = |broken: &[StateRecord], x: f64| {
+        let mut there = small.clone();
+        there.iter_mut().for_each(|record| record.position[0] += x - 0.12);
+        let records = [broken, there.as_slice()];
+        contact.evaluate(|solid| records[solid], true, dt);
+        let mut sum = [0.0; 2];
+        contact.forces(|solid, _, force| (0..2).for_each(|d| sum[d] += force[d] * f64::from(solid as u8)));
+        sum
+    };
+    assert!(
+        pushed(&broken, 0.03)[1].abs() + pushed(&broken, 0.08)[0].abs() > 1.0,
+        "inside of the whole block"
+    );
+    for record in broken.iter_mut().filter(|record| record.position[0] > 0.05) {
+        record.position[0] += 0.1;
+    }
+    assert_eq!(pushed(&broken, 0.08), [0.0; 2], "in the gap from 0.05 to 0.15 m");
+    assert_eq!(pushed(&broken, 0.03)[0], 0.0, "too deep in a half to have come there through its surface");
+    let out = pushed(&broken, 0.1975);
+    assert!(out[0] > 1.0 && out[1].abs() < 1e-9 * out[0], "{out:?}");
+}

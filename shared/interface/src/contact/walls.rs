@@ -7,7 +7,8 @@
 //! not thrown out of it.
 
 use super::law::{Law, dot, give, less};
-use super::outline::{Outline, Placed};
+use super::outline::Outline;
+use super::placed::Placed;
 use super::{Booked, Side};
 use halfstep_scene::geometry::{self, Surface};
 use halfstep_scene::{Motion, PairContact, Placement, Scene, Shape};
@@ -180,7 +181,8 @@ impl WallContact {
     /// Finds the points inside of walls.
     fn find(&mut self, placements: &[Placement]) {
         self.near.clear();
-        let points = || self.outline.pieces.iter().flat_map(|piece| &piece.points);
+        let whole = |p: &&u32| !self.placed.is_torn(**p);
+        let points = || self.outline.pieces.iter().flat_map(|piece| &piece.points).filter(whole);
         for ((k, wall), placement) in self.walls.iter().enumerate().zip(placements) {
             for &point in points() {
                 let at = back(placement, self.placed.position[point as usize]);

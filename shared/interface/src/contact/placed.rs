@@ -1,0 +1,146 @@
+//! Where an outline is, and which of its points belong together no longer.
+
+use super::outline::{Outline, Piece, Point, REACH, distance};
+use halfstep_wire::protocol::StateRecord;
+
+/// A point is torn whose particles lie farther from it than this, over [`REACH`]: they belong to different fragments.
+const TORN: f64 = 1.5;
+
+/// Beside torn parts nothing is deeper in a solid than this, in spacings: what seems to be lies between fragments.
+const DEEPEST: f64 = 1.5;
+/// An axis-parallel box.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Around {
+    low: [f64; 2],
+    high: [f64; 2],
+}
+
+impl Around {
+    const NOTHING: Self = Self { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
+
+    fn add(&mut self, x: [f64; 2]) {
+        for d in 0..2 {
+            self.low[d] = self.low[d].min(x[d]);
+            self.high[d] = self.high[d].max(x[d]);
+        }
+    }
+
+    fn of(all: impl Iterator<Item = [f64; 2]>) -> Self {
+        all.fold(Self::NOTHING, |mut around, x| {
+            around.add(x);
+            around
+        })
+    }
+
+    fn meets(&self, other: &Self, margin: f64) -> bool {
+        (0..2).all(|d| self.low[d] <= other.high[d] + margin && other.low[d] <= self.high[d] + margin)
+    }
+
+    pub(super) fn touches(&self, other: &Self) -> bool {
+        self.meets(other, 0.0)
+    }
+
+    pub(super) fn holds(&self, x: [f64; 2]) -> bool {
+        (0..2).all(|d| x[d] >= self.low[d] && x[d] <= self.high[d])
+    }
+}
+
+/// Where an outline is.
+#[derive(Clone, Debug)]
+pub(super) struct Placed {
+    around: Around,
+    margin: f64,
+    /// Positions and velocities are those of the present state.
+    fresh: bool,
+    /// Of each point, m.
+    pub(super) position: Vec<[f64; 2]>,
+    /// Of each point, m/s.
+    pub(super) velocity: Vec<[f64; 2]>,
+    /// Around each piece.
+    pub(super) pieces: Vec<Around>,
+    /// Points whose particles are no longer together; empty where there are none.
+    torn: Vec<bool>,
+}
+
+impl Default for Placed {
+    fn default() -> Self {
+        Self {
+            around: Around::NOTHING,
+            margin: 0.0,
+            fresh: false,
+            position: Vec::new(),
+            velocity: Vec::new(),
+            pieces: Vec::new(),
+            torn: Vec::new(),
+        }
+    }
+}
+
+impl Placed {
+    /// A point's particles belong to different fragments.
+    pub(super) fn is_torn(&self, point: u32) -> bool {
+        self.torn.get(point as usize).is_some_and(|torn| *torn)
+    }
+
+    /// Greatest depth in the solid that is believed, m.
+    pub(super) fn deepest(&self, outline: &Outline) -> f64 {
+        if self.torn.is_empty() { f64::INFINITY } else { DEEPEST * outline.spacing }
+    }
+
+    /// Finds the points whose particles are no longer together.
+    fn tear(&mut self, outline: &Outline, records: &[StateRecord]) {
+        self.torn.clear();
+        if !outline.breaks {
+            return;
+        }
+        let most = TORN * REACH * outline.spacing;
+        let torn = |(point, at): (&Point, &[f64; 2])| {
+            let place = |record: u32| {
+                let x = records[record as usize].position;
+                [x[0], x[1]]
+            };
+            point.weights.iter().any(|(record, _)| distance(place(*record), *at) > most)
+        };
+        self.torn.extend(outline.points.iter().zip(&self.position).map(torn));
+        if !self.torn.contains(&true) {
+            self.torn.clear();
+        }
+    }
+
+    /// Takes the records of a state.
+    pub(super) fn bound(&mut self, outline: &Outline, records: &[StateRecord]) {
+        self.around = Around::of(records.iter().map(|r| [r.position[0], r.position[1]]));
+        // The surface lies up to a spacing before the particles.
+        self.margin = 1.5 * outline.spacing;
+        self.fresh = false;
+    }
+
+    /// The two may touch.
+    pub(super) fn meets(&self, other: &Self) -> bool {
+        self.around.meets(&other.around, self.margin + other.margin)
+    }
+
+    /// Places all points.
+    pub(super) fn place(&mut self, outline: &Outline, records: &[StateRecord]) {
+        if std::mem::replace(&mut self.fresh, true) {
+            return;
+        }
+        let sum = |point: &Point, of: &dyn Fn(&StateRecord) -> [f64; 3], start: [f64; 2]| {
+            point.weights.iter().fold(start, |sum, (record, w)| {
+                let x = of(&records[*record as usize]);
+                [sum[0] + w * x[0], sum[1] + w * x[1]]
+            })
+        };
+        self.position.clear();
+        self.velocity.clear();
+        self.position.extend(outline.points.iter().map(|p| sum(p, &|r| r.position, p.offset)));
+        self.velocity.extend(outline.points.iter().map(|p| sum(p, &|r| r.velocity, [0.0; 2])));
+        self.tear(outline, records);
+        self.pieces.clear();
+        let (torn, position) = (&self.torn, &self.position);
+        let whole = |p: &&u32| torn.is_empty() || !torn[**p as usize];
+        let around =
+            |piece: &Piece| Around::of(piece.points.iter().filter(whole).map(|&p| position[p as usize]));
+        self.pieces.extend(outline.pieces.iter().map(around));
+    }
+}
