@@ -316,7 +316,8 @@ fn solids_that_shall_not_touch_do_not() {
 fn what_lies_between_fragments_is_pushed_by_none() {
     let text = "resolution = 0.01\nend_time = 1.0\ngravity = [0.0, 0.0]\n[[solid]]\nname = \"a\"\ndensity = 1000.0\n\
                 youngs_modulus = 1e7\npoissons_ratio = 0.2\nfracture = { strength = 1e5, energy = 20.0 }\n\
-                [[solid]]\nname = \"b\"\nmodel = \"rigid\"\ndensity = 1000.0\n";
+                [[solid]]\nname = \"b\"\nmodel = \"rigid\"\ndensity = 1000.0\n[[contact]]\n\
+                solids = [\"b\", \"a\"]\nstiffness = 1e9\n";
     let shapes = [boxed("a", [0.0, 0.0], [0.1, 0.1]), boxed("b", [0.12, 0.03], [0.16, 0.07])];
     let scene = halfstep_scene::parse(&(text.to_owned() + &shapes.concat()), Path::new("x.toml"), &[]);
     let scene = scene.expect("a right scene");
