@@ -7,7 +7,7 @@ use halfstep_wire::protocol::StateRecord;
 const TORN: f64 = 1.5;
 
 /// Beside torn parts nothing is deeper in a solid than this, in spacings: what seems to be lies between fragments.
-const DEEPEST: f64 = 1.5;
+const DEEPEST: f64 = 2.0;
 /// An axis-parallel box.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Around {
