@@ -111,8 +111,8 @@ fn a_clamp_as_wall_shows_what_is_around_it_and_no_shear() {
     }
 }
 
-/// A quarter of a spacing in the floor each particle of the lowest row touches the one wall particle below it, whose spring
-/// is (c_P / dx)² / 2 beside the (2 c_P / (1.1 dx))² of the shortest wave.
+/// A quarter of a spacing in the floor each particle of the lowest row touches the one wall particle below it, whose
+/// spring is (c_P / dx)² / 2 beside the (2 c_P / (1.1 dx))² of the shortest wave.
 #[test]
 fn springs_of_walls_shorten_the_sub_step() {
     let floor = "shape=[{name=\"block\",phase=\"solid\",box={min=[0.0,0.0],max=[0.2,0.15]}},\
