@@ -109,7 +109,7 @@ fn trial(scene: &Scene, arguments: FakeFluidArguments) -> Result<Trial, String> 
             within: arguments.within,
             ramp: arguments.ramp.unwrap_or(0.0),
         },
-        time_step: time_step,
+        time_step,
         out: arguments.out.unwrap_or(out),
         stop: StopFlags::of_signals().map_err(|e| format!("cannot watch for signals: {e}"))?,
     })
