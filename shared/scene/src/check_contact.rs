@@ -34,7 +34,10 @@ impl Check<'_> {
 
     /// What the coupler holds against walls has a speed that says how hard.
     fn wall_contacts(&self) {
-        let walls = self.scene.shapes.iter().any(|shape| shape.phase == Phase::Wall);
+        let of = |phase: Phase| self.scene.shapes.iter().filter(move |shape| shape.phase == phase);
+        // Walls that say nothing may be touched where a body is free.
+        let free = of(Phase::Solid).any(|shape| shape.clamp.is_empty());
+        let walls = of(Phase::Wall).any(|shape| shape.contact || free);
         if !walls || flow_speed(self.scene) > 0.0 {
             return;
         }

@@ -128,14 +128,14 @@ proptest! {
 /// How hard a wall pushes what rubs on it follows from speeds, of which such a scene has none.
 #[test]
 fn contact_without_any_speed_is_refused() {
-    let of = |contact: &str, gravity: f64| {
-        let text = format!(
+    let text = |contact: &str, gravity: f64| {
+        format!(
             "resolution = 0.01\nend_time = 1.0\ngravity = [0.0, {gravity}]\n[solid]\n{MATERIAL}{contact}\n\
              [[shape]]\nname = \"block\"\nphase = \"solid\"\nbox = {{ min = [0.0, 0.0], max = [0.1, 0.07] }}\n\
              [[shape]]\nname = \"floor\"\nphase = \"wall\"\nbox = {{ min = [0.0, -0.05], max = [0.1, 0.0] }}\n"
-        );
-        parse(&text, Path::new("s.toml"), &[])
+        )
     };
+    let of = |contact: &str, gravity: f64| parse(&text(contact, gravity), Path::new("s.toml"), &[]);
     assert!(of("", 0.0).is_ok());
     let held = of("contact = { friction = 0.3 }", -9.81).expect("a right scene");
     assert!(held.leaves_walls_to_coupler(0) && held.solids[0].contact().expect("said").friction == 0.3);
@@ -143,4 +143,9 @@ fn contact_without_any_speed_is_refused() {
     let told: Vec<String> = errors.problems.iter().map(|p| p.to_string()).collect();
     assert_eq!(told.len(), 1);
     assert!(told[0].contains("solid.contact") && told[0].contains("says nothing of walls"), "{told:?}");
+    // A clamped block touches only walls that say so: `contact` then has nothing to speak of, which a run warns of.
+    let clamp = ", max = [0.1, 0.07] }\nclamp = { min = [0.0, 0.0], max = [0.1, 0.02] }\n";
+    let text = text("contact = { friction = 0.3 }", 0.0).replace(", max = [0.1, 0.07] }\n", clamp);
+    let held = parse(&text, Path::new("s.toml"), &[]).expect("no wall that it may touch");
+    assert!(held.walls_to_touch().next().is_none() && held.leaves_walls_to_coupler(0));
 }
