@@ -38,7 +38,7 @@ others() { # FOLDER: its pages beside the first one, README.md.
     entries '' docs/validation.md
     # shellcheck disable=SC2046 # Paths of the repository have no spaces.
     entries '    ' $(find validation -name README.md | LC_ALL=C sort)
-    entries '' docs/plate-study.md docs/set-ups.md docs/stability.md docs/theory/README.md
+    entries '' docs/comparison.md docs/plate-study.md docs/set-ups.md docs/stability.md docs/theory/README.md
     # shellcheck disable=SC2046
     entries '    ' $(others docs/theory)
     entries '' docs/architecture.md docs/protocol.md

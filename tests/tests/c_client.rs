@@ -86,8 +86,8 @@ fn a_run_says_what_a_solid_in_c_says() {
 }
 
 /// How long a half-step of the block takes by the Rust library (which the C library is) and by the Python package: from
-/// having sent the forces to having the next state, medians of three trials each, in turns. Measured: 4.3 times as long.
-/// The band says that both do the same work and that nobody waits for a timeout.
+/// having sent the forces to having the next state, medians of three trials each, in turns. Measured: 4.3 times as
+/// long. The band says that both do the same work and that nobody waits for a timeout.
 #[test]
 #[ignore = "a figure of docs/performance.md"]
 fn a_half_step_in_python_beside_one_in_rust() {

@@ -158,9 +158,9 @@ kind = "energy"
 phase = "solid"
 "#;
 
-/// The disc's own steps are a tenth of what contact allows, so the force goes over from that of coming to that of leaving
-/// within a small part of the disc's speed. A stiff body whose vibrations are much faster than the impact keeps what a
-/// point mass keeps; here the three models are apart by their vibrations, up to 0.03 where nothing is kept.
+/// The disc's own steps are a tenth of what contact allows, so the force goes over from that of coming to that of
+/// leaving within a small part of the disc's speed. A stiff body whose vibrations are much faster than the impact keeps
+/// what a point mass keeps; here the three models are apart by their vibrations, up to 0.03 where nothing is kept.
 #[test]
 fn a_disc_comes_back_with_about_the_restitution_that_is_asked() {
     let scene = Written::new(DISC);

@@ -17,7 +17,8 @@ pub(crate) struct FakeFluidArguments {
     /// The solid: a command that speaks the protocol; with several solids NAME=COMMAND
     #[arg(long, value_name = "[NAME=]COMMAND")]
     solid: String,
-    /// The whole force, N (2D: N/m): FX,FY or FX,FY,FZ (default: none, so what the scene does to the solid without water)
+    /// The whole force, N (2D: N/m): FX,FY or FX,FY,FZ (default: none, so what the scene does to the solid without
+    /// water)
     #[arg(long, value_name = "N,N", value_parser = vector, allow_hyphen_values = true)]
     force: Option<[f64; 3]>,
     /// Only on the particles that begin in this box, m: XMIN,YMIN,XMAX,YMAX (default: on all)
@@ -108,7 +109,7 @@ fn trial(scene: &Scene, arguments: FakeFluidArguments) -> Result<Trial, String> 
             within: arguments.within,
             ramp: arguments.ramp.unwrap_or(0.0),
         },
-        time_step: time_step,
+        time_step,
         out: arguments.out.unwrap_or(out),
         stop: StopFlags::of_signals().map_err(|e| format!("cannot watch for signals: {e}"))?,
     })

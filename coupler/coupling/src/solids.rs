@@ -276,8 +276,8 @@ impl<const D: usize> Solids<D> {
         work
     }
 
-    /// Evaluates the forces on both sides at the states' instant, s, in a time step `dt`, s; returns the pairs listed for
-    /// it.
+    /// Evaluates the forces on both sides at the states' instant, s, in a time step `dt`, s; returns the pairs listed
+    /// for it.
     pub(crate) fn evaluate(&mut self, states: &[impl StateMessage], [time, dt]: [f64; 2]) -> u64 {
         let touching = self.contact.is_some() || self.solids.iter().any(|side| side.walls.is_some());
         if self.solids.is_empty() || (self.first == 0 && !touching) {

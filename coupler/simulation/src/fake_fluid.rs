@@ -107,8 +107,10 @@ pub fn run(scene: &Scene, trial: &Trial) -> Result<Tried, RunError> {
     let variables = [(SCENE_VARIABLE, told.as_path()), (FOLDER_VARIABLE, &out), (PARTICLES_VARIABLE, &table)];
     children.spawn_shell(&config.participants[SOLID], &trial.command, &config, &variables)?;
 
-    let stand_in = ExternalSolid::new(scene, place, trial.solid, &out)?;
-    let columns: Vec<String> = probes_of(scene, place).flat_map(|p| p.columns(scene.dimension)).collect();
+    // Without water the first solid is the first participant of a run.
+    let of_run = place - usize::from(scene.fluid.is_none());
+    let stand_in = ExternalSolid::new(scene, of_run, trial.solid, &out)?;
+    let columns: Vec<String> = probes_of(scene, of_run).flat_map(|p| p.columns(scene.dimension)).collect();
     let path = file("probes.csv");
     let mut pusher = Pusher {
         scene,

@@ -1,5 +1,6 @@
 //! What must hold between the tables of contact.
 
+use super::Phase;
 use super::bounds::flow_speed;
 use super::check::Check;
 use super::contact::PairContact;
@@ -33,7 +34,11 @@ impl Check<'_> {
 
     /// What the coupler holds against walls has a speed that says how hard.
     fn wall_contacts(&self) {
-        if self.scene.walls_to_touch().next().is_none() || flow_speed(self.scene) > 0.0 {
+        let of = |phase: Phase| self.scene.shapes.iter().filter(move |shape| shape.phase == phase);
+        // Walls that say nothing may be touched where a body is free.
+        let free = of(Phase::Solid).any(|shape| shape.clamp.is_empty());
+        let walls = of(Phase::Wall).any(|shape| shape.contact || free);
+        if !walls || flow_speed(self.scene) > 0.0 {
             return;
         }
         let held = |k: &usize| self.scene.leaves_walls_to_coupler(*k);

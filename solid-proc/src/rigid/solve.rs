@@ -176,8 +176,8 @@ impl Search {
         Round { largest, most }
     }
 
-    /// Brings the joints, and what pushes and sticks, to their rates together, again and again without what would pull or
-    /// hold more than friction does. `false`: there are too many.
+    /// Brings the joints, and what pushes and sticks, to their rates together, again and again without what would pull
+    /// or hold more than friction does. `false`: there are too many.
     fn solve_system(&mut self, held: &Held<'_>, bodies: &[Body], poses: &[Pose], friction: f64) -> bool {
         for _ in 0..SOLUTIONS {
             if !self.solve_once(held, bodies, poses, friction) {

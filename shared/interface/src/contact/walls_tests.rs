@@ -109,8 +109,8 @@ fn an_elastic_impact_gives_the_speed_back() {
     assert!(errors[0] < 4e-3 && errors[1] < 0.5 * errors[0] && errors[2] < 0.3 * errors[1], "{errors:?}");
 }
 
-/// A block that does not strain, in steps of the limit and of a tenth of it: the speed within which the force changes is
-/// what a step changes. Measured: off by 0.031, 0.145 and 0.305, and by 0.0005, 0.006 and 0.074.
+/// A block that does not strain, in steps of the limit and of a tenth of it: the speed within which the force changes
+/// is what a step changes. Measured: off by 0.031, 0.145 and 0.305, and by 0.0005, 0.006 and 0.074.
 #[test]
 fn shorter_steps_come_nearer_to_the_restitution_that_is_asked() {
     for (restitution, most) in [(0.5, 0.002), (0.2, 0.01), (0.0, 0.08)] {
