@@ -12,7 +12,7 @@ fn fault(outline: &[[f64; 2]], holes: &[&[[f64; 2]]]) -> String {
 }
 
 fn spacing(wall: bool, nodal: bool) -> Spacing {
-    Spacing { dx: DX, nodal, wall, aligned: !wall, support: 3.0 }
+    Spacing { dx: DX, nodal, wall, aligned: !wall, support: 3.0, turn: 0.0 }
 }
 
 fn rectangle(low: [f64; 2], high: [f64; 2]) -> [[f64; 2]; 4] {
