@@ -33,6 +33,7 @@ mod shown_velocity;
 mod side_friction;
 mod sleep;
 pub mod solid;
+mod strain;
 mod sub_steps;
 mod surface;
 pub mod total_lagrangian;

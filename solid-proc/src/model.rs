@@ -182,6 +182,14 @@ pub trait SolidModel<const D: usize>: Send {
     fn body_of(&self) -> &[u32] {
         &[]
     }
+    /// Number of each particle's body, where fracture changes which are one.
+    fn parted(&self) -> Option<&[u32]> {
+        None
+    }
+    /// Deformation gradient of a particle; `None` of a model that keeps none.
+    fn deformation(&self, _particle: u32) -> Option<[[f64; D]; D]> {
+        None
+    }
     /// Kinetic energy, J (2D: J/m).
     fn kinetic_energy(&self) -> f64 {
         match self.rigid_bodies() {

@@ -1,10 +1,11 @@
 //! What is measured of a solid.
 
 use crate::model::{Load, SolidModel};
+use crate::strain::Strain;
 use halfstep_role::ledger::Ledger;
 use halfstep_scene::geometry::{self, SolidPoint, holds, nearest};
-use halfstep_scene::{Block, BodyQuantity, EnergyPart, Phase, ProbeKind, Scene};
-use halfstep_wire::frame::von_mises;
+use halfstep_scene::{Block, BodyQuantity, EnergyPart, Phase, ProbeKind, Scene, Spot};
+use halfstep_wire::frame::{mean_stress, von_mises};
 use halfstep_wire::wide;
 
 /// A probe of a solid.
@@ -15,6 +16,12 @@ pub(crate) enum Measurement<const D: usize> {
     Position(Vec<u32>),
     /// Mean von Mises stress of these particles.
     Stress(Vec<u32>),
+    /// Mean velocity of these particles.
+    Velocity(Vec<u32>),
+    /// Mean strain of particles.
+    Strain(Strain<D>),
+    /// Mean Cauchy stress of these particles.
+    CauchyStress(Vec<u32>),
     KineticEnergy,
     StrainEnergy,
     CrackEnergy,
@@ -44,6 +51,22 @@ pub(crate) fn of_solid<const D: usize>(
         let near = nearest(particles.reference.iter().copied(), std::array::from_fn(|d| at[d]));
         near.into_iter().map(|p| p as u32).collect()
     };
+    let of_body = |body: &str| -> Vec<u32> {
+        let points = geometry::layout::<D>(scene).with_solid(scene, solid).solid;
+        let own = |(_, point): &(usize, &SolidPoint<D>)| scene.shapes[point.body as usize].body() == body;
+        points.iter().enumerate().filter(own).map(|(p, _)| p as u32).collect()
+    };
+    let of_spot = |spot: &Spot| match spot {
+        Spot::At(at) => near(at),
+        Spot::Body(body) => of_body(body),
+    };
+    let strain = |of: &Spot| {
+        let particles = of_spot(of);
+        let layout = geometry::layout::<D>(scene).with_solid(scene, solid);
+        let pieces = geometry::pieces(scene, &layout);
+        let same = |p: u32, q: u32| pieces.get(p as usize) == pieces.get(q as usize);
+        Strain::new(model, &particles, scene.solid_spacing(solid), same)
+    };
     let loaded = |within: Option<Block>, shape: Option<usize>| {
         let bodies = shape.map(|_| geometry::layout::<D>(scene).with_solid(scene, solid).solid);
         let of_shape = |p: u32| match (&bodies, shape) {
@@ -61,6 +84,9 @@ pub(crate) fn of_solid<const D: usize>(
         ProbeKind::Displacement { at } => Some(Measurement::Displacement(near(at))),
         ProbeKind::Position { at } => Some(Measurement::Position(near(at))),
         ProbeKind::Stress { at } => Some(Measurement::Stress(near(at))),
+        ProbeKind::SolidVelocity { at } => Some(Measurement::Velocity(near(at))),
+        ProbeKind::Strain { of } => Some(Measurement::Strain(strain(of))),
+        ProbeKind::CauchyStress { of } => Some(Measurement::CauchyStress(of_spot(of))),
         ProbeKind::KineticEnergy { phase: Phase::Solid } => Some(Measurement::KineticEnergy),
         ProbeKind::StrainEnergy => Some(Measurement::StrainEnergy),
         ProbeKind::CrackEnergy => Some(Measurement::CrackEnergy),
@@ -72,11 +98,7 @@ pub(crate) fn of_solid<const D: usize>(
             Some(Measurement::Moment(loaded(*within, *shape), std::array::from_fn(|d| about[d])))
         }
         ProbeKind::Body { body, quantity: BodyQuantity::Energy } if model.rigid_bodies().is_empty() => {
-            let points = geometry::layout::<D>(scene).with_solid(scene, solid).solid;
-            let own =
-                |(_, point): &(usize, &SolidPoint<D>)| scene.shapes[point.body as usize].body() == *body;
-            let particles = points.iter().enumerate().filter(own).map(|(p, _)| p as u32).collect();
-            Some(Measurement::EnergyOf(particles))
+            Some(Measurement::EnergyOf(of_body(body)))
         }
         ProbeKind::Body { body, quantity } => {
             let of_name = model.rigid_bodies().iter().position(|state| state.name == *body);
@@ -123,6 +145,25 @@ impl<const D: usize> Measurement<D> {
                 model.records(particles, &mut records);
                 let sum: f64 = records.iter().map(|r| von_mises(&r.deviatoric_stress)).sum();
                 put(sum / particles.len() as f64);
+            }
+            Self::Velocity(particles) => {
+                for d in 0..D {
+                    let sum: f64 = particles.iter().map(|&p| state.velocity[p as usize][d]).sum();
+                    put(sum / particles.len() as f64);
+                }
+            }
+            Self::Strain(strain) => {
+                let mean = strain.mean(model);
+                let components: &[(usize, usize)] = match D {
+                    2 => &[(0, 0), (1, 1), (0, 1)],
+                    _ => &[(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)],
+                };
+                components.iter().for_each(|&at| put(mean[at]));
+            }
+            Self::CauchyStress(particles) => {
+                let mut records = Vec::with_capacity(particles.len());
+                model.records(particles, &mut records);
+                mean_stress(&records)[..if D == 2 { 4 } else { 6 }].iter().for_each(|&s| put(s));
             }
             Self::KineticEnergy => put(model.kinetic_energy()),
             Self::StrainEnergy => put(model.strain_energy()),

@@ -10,10 +10,11 @@ use crate::sub_steps::SubStepping;
 use halfstep_interface::{Interface, Parameters};
 use halfstep_role::ledger::Ledger;
 use halfstep_role::role::{Costs, CoverageError, Peer, Role};
+use halfstep_scene::geometry;
 use halfstep_scene::{EffectName, Gravity, Phase, Scene, Treatment};
 use halfstep_sph::lane::Isa;
 use halfstep_wire::failure::Diverged;
-use halfstep_wire::frame::{Frame, FramePoint};
+use halfstep_wire::frame::{Frame, FramePoint, von_mises};
 use halfstep_wire::half_step::{HalfStep, Stage};
 use halfstep_wire::protocol::{Audit, ForceRecord, StateRecord};
 use halfstep_wire::state::{Fields, State, StateError};
@@ -32,6 +33,8 @@ pub struct Solid<const D: usize> {
     outer: Vec<OuterRates<D>>,
     /// All particle numbers.
     all: Vec<u32>,
+    /// Number of each particle's body at the start; empty where the model's particles are not the scene's.
+    bodies: Vec<u32>,
     probes: Vec<Measurement<D>>,
     sub_steps: SubStepping,
     taken: u32,
@@ -65,6 +68,13 @@ impl<const D: usize> Solid<D> {
                 material.map(|material| Sleep::new(scene, material, scene.solid_spacing(solid), particles))
             })
             .flatten();
+        let mut bodies = match model.body_of() {
+            [] => geometry::pieces(scene, &geometry::layout::<D>(scene).with_solid(scene, solid)),
+            own => own.to_vec(),
+        };
+        if bodies.len() != particles.len() {
+            bodies.clear();
+        }
         let name = material.and_then(|solid| solid.name.parse().ok()).unwrap_or(Name::SOLID);
         Self {
             name,
@@ -74,6 +84,7 @@ impl<const D: usize> Solid<D> {
             outer: Vec::new(),
             all: (0..particles.len() as u32).collect(),
             limit: model.sub_step_limit(),
+            bodies,
             model,
             interface,
             probes,
@@ -261,6 +272,16 @@ impl<const D: usize> Role for Solid<D> {
         let mut records = Vec::with_capacity(self.all.len());
         self.model.records(&self.all, &mut records);
         records.iter().for_each(|r| frame.push(FramePoint::solid(r)));
+        let state = self.model.particles();
+        let gone = |(now, first): (&[f64; D], &[f64; D])| {
+            wide::<D>(std::array::from_fn(|d| now[d] - first[d])).map(|u| u as f32)
+        };
+        frame.displacement.extend(state.position.iter().zip(state.reference).map(gone));
+        if self.model.rigid_bodies().is_empty() {
+            frame.von_mises.extend(records.iter().map(|r| von_mises(&r.deviatoric_stress) as f32));
+        }
+        let bodies = self.model.parted().unwrap_or(&self.bodies);
+        frame.body.extend(bodies.iter().map(|&body| body as i32));
         if self.model.breaks() {
             frame.damage.extend(self.all.iter().map(|&p| self.model.damage(p) as f32));
         }

@@ -115,6 +115,9 @@ fn cracks_and_debris_hang_on_no_process_and_no_thread() {
     assert!((10..30).contains(&cracked), "{cracked}");
     assert!(end.iter().all(|damage| (0.0..=1.0).contains(damage)) && end.contains(&0.0));
     assert!(three.outcome.frames("second").iter().all(|frame| frame.damage.is_empty()));
+    // One body at the start, several once it is cracked through.
+    assert!(frames[0].body.iter().all(|body| *body == 0) && frames[0].body.len() == frames[0].len());
+    assert!(frames[frames.len() - 1].body.iter().any(|body| *body > 0));
 }
 
 /// The second solid is a program of somebody else: a block on a spring, in a fourth process.

@@ -77,6 +77,28 @@ fn every_shipped_scene_is_explained_and_its_shares_are_the_whole() {
 }
 
 #[test]
+fn what_a_scene_prescribes_has_its_rows() {
+    let sea = "shape.paddle.motion={ wave = \"regular\", height = 0.02, period = 0.9, depth = 0.2 }";
+    let flume = effects("wave-paddle", &["resolution=0.02", sea]);
+    // Place, normal and velocity in the plane, and the shape.
+    let moving = row(&flume, "moving-walls");
+    assert_eq!((&moving["on"], &moving["bytes_per_particle"]), (&Value::Bool(true), &Value::from(56.0)));
+    assert!(moving["why"].as_str().unwrap().contains("`paddle`"), "{moving}");
+    let why = row(&flume, "wave-maker")["why"].as_str().unwrap();
+    assert!(why.contains("0.02 m in 0.2 m of water with a stroke of 0.017 m"), "{why}");
+    let cracked = effects("kalthoff-winkler", &["resolution=0.0025"]);
+    assert!(row(&cracked, "crack")["why"].as_str().unwrap().contains("`plate`, `edge`"));
+    assert!(row(&cracked, "prescribed-solids")["why"].as_str().unwrap().contains("`edge`"));
+    let load = "shape.plate.load={ within = { min = [0.0, -1.0], max = [1.0, 1.0] }, traction = [0.0, 5.0] }";
+    let loaded = effects("oscillating-plate", &["resolution=0.004", load]);
+    assert!(row(&loaded, "load")["why"].as_str().unwrap().contains("(0, 5) Pa on "), "{loaded:#}");
+    let names = ["moving-walls", "wave-maker", "prescribed-solids", "load", "crack"];
+    let still = effects("dam-break", &["resolution=0.0028575"]);
+    let rows = still["effects"].as_array().unwrap();
+    assert!(rows.iter().all(|row| !names.contains(&row["name"].as_str().unwrap())), "absent costs no row");
+}
+
+#[test]
 fn the_reason_is_the_key_or_the_fact() {
     let forced = effects("hydrostatic-tank", &["fluid.viscosity=0.1", "effects.viscosity=on"]);
     let viscosity = row(&forced, "viscosity");

@@ -52,6 +52,19 @@ fn a_block_on_a_spring_in_python_swings_as_the_formula_says() {
     );
     assert!(run.report.audit.action_reaction.unwrap() <= 1e-12);
     assert!(run.report.audit.impulse.unwrap() <= 1e-12);
+    // What its records tell: how far it has gone, no stress, and nothing of bodies.
+    let frames = run.outcome.frames("solid");
+    let (first, last) = (&frames[0], &frames[frames.len() - 1]);
+    assert!(
+        first.displacement.iter().all(|gone| *gone == [0.0; 3]) && first.displacement.len() == first.len()
+    );
+    let gone = *run.curve("block.x").values.last().expect("a row") as f32;
+    assert!(
+        last.displacement.iter().all(|x| (x[0] - gone).abs() < 1e-7),
+        "{:?} {gone}",
+        last.displacement[0]
+    );
+    assert!(last.von_mises.iter().all(|stress| *stress == 0.0) && last.body.is_empty());
 }
 
 #[test]

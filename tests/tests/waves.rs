@@ -1,6 +1,9 @@
 //! Waves that paddles make, and the beach that absorbs them.
 
-use halfstep_tests::scene;
+use halfstep_scene::{self as scene_file, Motion};
+use halfstep_tests::{Curve, run, scene};
+use std::f64::consts::TAU;
+use std::path::Path;
 
 /// Three particles high: the height is held to a band, and the celerity to sqrt(g (d + H)), as near as levels that go
 /// by whole particles tell when a crest passes: 0.03 s at each gauge, 8 % together. sqrt(g d) is 12 % less.
@@ -55,4 +58,114 @@ fn a_beach_takes_what_it_says() {
     let expected = (decay(1.2) - decay(2.4)) / (sigma * 1.2);
     println!("kinetic energy {:.4} of {expected:.4}", damped / free);
     assert!((damped / free / expected - 1.0).abs() < 0.03, "{damped} {free} {expected}");
+}
+
+const DEPTH: f64 = 0.2;
+
+/// A flume of 4 m whose last 2 m absorb, and a piston at its left end.
+fn flume(motion: &str, until: f64) -> String {
+    format!(
+        "resolution = 0.02\nend_time = {until}\n[fluid]\ndensity = 1000.0\nsound_speed = 10.0\nbeach = {{ from = 2.0, to = 4.0 }}\n\
+         [[shape]]\nname = \"water\"\nphase = \"fluid\"\npressure = \"hydrostatic\"\n\
+         box = {{ min = [0.0, 0.0], max = [4.0, {DEPTH}] }}\n[[shape]]\nname = \"paddle\"\nphase = \"wall\"\n\
+         box = {{ min = [-0.08, 0.0], max = [0.0, 0.4] }}\nmotion = {motion}\n[[shape]]\nname = \"flume\"\n\
+         phase = \"wall\"\ntank = {{ min = [-0.2, 0.0], max = [4.0, 0.4], open = [\"left\", \"top\"] }}\n\
+         [[probe]]\nname = \"gauge\"\nkind = \"water-level\"\nx = 1.0\n"
+    )
+}
+
+/// The level at the gauge, and the paddle's way at the same instants, m.
+fn waves(motion: &str, until: f64) -> (Curve, Motion) {
+    let text = flume(motion, until);
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("flume.toml");
+    std::fs::write(&path, &text).expect("a scene");
+    let scene = scene_file::parse(&text, Path::new("flume.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}"));
+    let moves = scene.shapes[1].motion.clone().expect("a motion");
+    (run::scene_at(&path).in_process().run().curve("gauge.level"), moves)
+}
+
+/// Height of waves over a piston's stroke at an angular frequency, 1/s: 2 (cosh 2kd - 1) / (sinh 2kd + 2kd).
+fn height_by_stroke(omega: f64) -> f64 {
+    let mut k = omega * omega / 9.81;
+    for _ in 0..200 {
+        k = 0.5 * (k + omega * omega / (9.81 * (k * DEPTH).tanh()));
+    }
+    let twice = 2.0 * k * DEPTH;
+    2.0 * (twice.cosh() - 1.0) / (twice.sinh() + twice)
+}
+
+/// Amplitude of a curve's part at an angular frequency.
+fn part(curve: &Curve, omega: f64) -> f64 {
+    let mean = curve.mean();
+    let of = |f: fn(f64) -> f64| -> f64 {
+        let products =
+            curve.times.iter().zip(&curve.values).map(|(t, y)| (y - mean) * f(omega * t)).collect();
+        2.0 * Curve { times: curve.times.clone(), values: products }.mean()
+    };
+    of(f64::cos).hypot(of(f64::sin))
+}
+
+/// A curve about its mean that fades in and out over its length, with its energy: a part of a series of waves has no
+/// jumps at its ends then, which are waves of every frequency.
+fn faded(curve: &Curve) -> Curve {
+    let (mean, first) = (curve.mean(), curve.times[0]);
+    let length = curve.times[curve.times.len() - 1] - first;
+    let fade = |t: f64| (1.0 - (TAU * (t - first) / length).cos()) / 1.5_f64.sqrt();
+    let values = curve.times.iter().zip(&curve.values).map(|(t, y)| (y - mean) * fade(*t)).collect();
+    Curve { times: curve.times.clone(), values }
+}
+
+/// Ten particles deep, waves of a particle's height: the paddle of `scenes/wave-paddle.toml` makes 0.90 of its height
+/// at this spacing, and so does this one, whose stroke follows from the height.
+#[test]
+fn regular_waves_have_the_height_that_was_asked_for() {
+    let (level, paddle) = waves("{ wave = \"regular\", height = 0.02, period = 0.9, depth = 0.2 }", 5.9);
+    // Linear theory by hand: k = 5.97 1/m, H / S = 1.154, S = 17.3 mm.
+    let stroke =
+        2.0 * (0..900).map(|k| paddle.at(2.0 + 1e-3 * f64::from(k)).displacement[0]).fold(0.0, f64::max);
+    assert!((stroke - 0.02 / 1.154).abs() < 2e-5, "{stroke}");
+    let height = 2.0 * part(&level.between(3.2, 5.9), TAU / 0.9);
+    println!("height {:.3} of the one asked for", height / 0.02);
+    assert!((0.86..0.94).contains(&(height / 0.02)), "{height}");
+}
+
+/// A sea of JONSWAP by its significant height, four standard deviations of the level, beside what linear theory makes
+/// of the paddle's own motion, frequency by frequency, and by its mean frequency. At this spacing short waves lose more
+/// than long ones.
+#[test]
+fn a_sea_has_the_height_that_its_paddle_makes() {
+    const LENGTH: f64 = 12.0;
+    let (level, paddle) =
+        waves("{ wave = \"irregular\", height = 0.03, period = 1.5, depth = 0.2, seed = 3 }", 3.5 + LENGTH);
+    let level = faded(&level.between(3.5, 3.5 + LENGTH));
+    // The waves take about a second to the gauge.
+    let times: Vec<f64> = (0..=2400).map(|k| 2.5 + LENGTH / 2400.0 * f64::from(k)).collect();
+    let values = times.iter().map(|t| paddle.at(*t).displacement[0]).collect();
+    let way = faded(&Curve { times, values });
+    // The band of the sea, half to three times the peak's frequency.
+    let (mut found, mut expected, mut moments) = (0.0, 0.0, [0.0; 2]);
+    for n in (LENGTH / 3.0) as u32..=(LENGTH * 2.0) as u32 {
+        let omega = TAU * f64::from(n) / LENGTH;
+        let (energy, asked) =
+            (part(&level, omega).powi(2), (part(&way, omega) * height_by_stroke(omega)).powi(2));
+        (found, expected) = (found + energy, expected + asked);
+        moments = [moments[0] + energy * omega, moments[1] + asked * omega];
+    }
+    let height = |energy: f64| 4.0 * (0.5 * energy).sqrt();
+    let [mean, asked] = [moments[0] / found, moments[1] / expected];
+    println!(
+        "significant height {:.4} m, by theory {:.4} m; mean frequency {mean:.3} of {asked:.3} 1/s",
+        height(found),
+        height(expected)
+    );
+    // Some five waves count: the sea's energy over them has a standard deviation of about a half of its mean.
+    assert!((0.6..1.4).contains(&(height(expected) / 0.03)), "{}", height(expected));
+    assert!(
+        (0.88..1.0).contains(&(height(found) / height(expected))),
+        "{} {}",
+        height(found),
+        height(expected)
+    );
+    assert!((mean / asked - 1.0).abs() < 0.1, "{mean} {asked}");
 }

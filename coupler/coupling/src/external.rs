@@ -4,9 +4,9 @@ use crate::roles::probes_of;
 pub use halfstep_interface::contact::WallContact;
 use halfstep_output::{Frame, FramePoint, FrameWriter, OutputError};
 use halfstep_scene::geometry::{self, holds, nearest};
-use halfstep_scene::{Geometry, ProbeKind, Scene};
+use halfstep_scene::{Geometry, ProbeKind, Scene, Spot};
 use halfstep_wire::Name;
-use halfstep_wire::frame::von_mises;
+use halfstep_wire::frame::{body_of, mean_stress, von_mises};
 use halfstep_wire::protocol::{ForceRecord, StateRecord};
 use halfstep_wire::state::{Fields, State, StateError};
 use std::path::Path;
@@ -85,6 +85,21 @@ impl ExternalSolid {
                     let sum: f64 = chosen.iter().map(|&i| von_mises(&records[i].deviatoric_stress)).sum();
                     self.values.push(sum / chosen.len() as f64);
                 }
+                ProbeKind::SolidVelocity { .. } => {
+                    for d in 0..self.dimension {
+                        let sum: f64 = chosen.iter().map(|&i| records[i].velocity[d]).sum();
+                        self.values.push(sum / chosen.len() as f64);
+                    }
+                }
+                ProbeKind::CauchyStress { of: Spot::At(_) } => {
+                    let stress = mean_stress(chosen.iter().map(|&i| &records[i]));
+                    self.values.extend(&stress[..if self.dimension == 2 { 4 } else { 6 }]);
+                }
+                // Its records say nothing of its strain, nor of its inside.
+                ProbeKind::Strain { .. } | ProbeKind::CauchyStress { .. } => {
+                    let parts = kind.components(self.dimension).0.len();
+                    self.values.extend(std::iter::repeat_n(f64::NAN, parts));
+                }
                 // Its particles say nothing of what its inside stores.
                 ProbeKind::StrainEnergy | ProbeKind::CrackEnergy | ProbeKind::CrackArea => {
                     self.values.push(f64::NAN)
@@ -126,9 +141,11 @@ impl ExternalSolid {
 
     fn choose(&self, kind: &ProbeKind) -> Vec<usize> {
         match *kind {
-            ProbeKind::Displacement { at } | ProbeKind::Position { at } | ProbeKind::Stress { at } => {
-                nearest(self.first.iter().copied(), at)
-            }
+            ProbeKind::Displacement { at }
+            | ProbeKind::Position { at }
+            | ProbeKind::Stress { at }
+            | ProbeKind::SolidVelocity { at }
+            | ProbeKind::CauchyStress { of: Spot::At(at) } => nearest(self.first.iter().copied(), at),
             ProbeKind::Force { within, shape } | ProbeKind::Moment { within, shape, .. } => {
                 let of_shape = |x: &[f64; 3]| {
                     let shape = shape.and_then(|shape| self.bodies.get(shape));
@@ -154,6 +171,15 @@ impl ExternalSolid {
             frame.time = time;
             for r in records {
                 frame.push(FramePoint::solid(r));
+                frame.von_mises.push(von_mises(&r.deviatoric_stress) as f32);
+            }
+            let gone = |(r, first): (&StateRecord, &[f64; 3])| {
+                std::array::from_fn(|d| (r.position[d] - first[d]) as f32)
+            };
+            frame.displacement.extend(records.iter().zip(&self.first).map(gone));
+            // Bodies are told by a solid that has several.
+            if let Some(bodies) = records.iter().map(body_of).collect::<Option<Vec<u32>>>() {
+                frame.body.extend(bodies.iter().map(|&body| body as i32));
             }
         })
     }

@@ -110,6 +110,12 @@ pub(crate) fn end(
     {
         tracing::warn!("how the run ended is not known from its last frames: {error}");
     }
+    if let Some(folder) = folder.filter(|_| !scene.probes.is_empty()) {
+        match output::probes::summarise(&folder.file("probes.csv")) {
+            Ok(probes) => report.probes = probes,
+            Err(error) => tracing::warn!("the probes' extremes are not known: {error}"),
+        }
+    }
     let remarked = remarks::outcome(scene, &report);
     remarked.iter().for_each(|warning| tracing::warn!("{warning}"));
     report.warnings.extend(remarked);

@@ -75,6 +75,7 @@ pub(crate) fn reports(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
     if solid {
         list.extend(halfstep_solid::effects::decide(scene).into_iter().map(self::row));
     }
+    list.extend(crate::prescribed::rows(scene, counts));
     let coupled = fluid && solid;
     let treatment = match scene.interface.treatment {
         Treatment::MovingWall => "moving-wall",

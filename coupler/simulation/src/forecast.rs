@@ -10,6 +10,8 @@ use std::path::Path;
 
 /// Bytes of a particle in a frame: the columns of docs/output.md.
 const FRAME: u64 = 78;
+/// The same of a solid's, which has more columns.
+const SOLID_FRAME: u64 = 98;
 /// Bytes of a frame's file without particles.
 const FRAME_FILE: u64 = 16 << 10;
 /// Bytes of a particle in a checkpoint: 56 to 60 of a fluid's, 134 of a solid's, measured.
@@ -37,7 +39,9 @@ impl Forecast {
         let instants = |interval: f64| (scene.end_time / interval).min(1e15) as u64 + 2;
         let frames = instants(scene.output.frame_interval);
         let files = scene.participants().len() as u64 * FRAME_FILE;
-        let of_frames = frames.saturating_mul(counts.total().saturating_mul(FRAME).saturating_add(files));
+        let of_fluid = (counts.fluid + counts.wall).saturating_mul(FRAME);
+        let a_frame = of_fluid.saturating_add(counts.solid.saturating_mul(SOLID_FRAME)).saturating_add(files);
+        let of_frames = frames.saturating_mul(a_frame);
         let saved = (counts.fluid + counts.wall).saturating_mul(SAVED[0]);
         let saved = saved.saturating_add(counts.solid.saturating_mul(SAVED[1])).saturating_mul(GENERATIONS);
         let columns: u64 =

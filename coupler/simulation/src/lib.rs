@@ -33,6 +33,7 @@ mod last_frame;
 pub mod options;
 mod participants;
 mod particles;
+mod prescribed;
 pub mod remarks;
 mod role_main;
 pub mod run;

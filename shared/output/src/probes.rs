@@ -1,6 +1,7 @@
 //! `probes.csv`: what is measured while the run goes on, one row an instant.
 
 use super::OutputError;
+use super::run_json::ProbeReport;
 use super::series::is_at;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom, Write};
@@ -178,9 +179,55 @@ pub fn read_probes(path: &Path) -> Result<Table, OutputError> {
     Ok(Table { columns, rows })
 }
 
+/// The end and the extremes of each column of a `probes.csv`, read row by row; none where it has no rows.
+pub fn summarise(path: &Path) -> Result<Vec<ProbeReport>, OutputError> {
+    let bad = |e: csv::Error| OutputError::malformed(path, e.to_string());
+    let mut reader = csv::Reader::from_path(path).map_err(bad)?;
+    let named = |title: &str| {
+        let (name, unit) = split_unit(title);
+        ProbeReport { name: name.into(), unit: unit.into(), ..ProbeReport::default() }
+    };
+    let mut all: Vec<ProbeReport> = reader.headers().map_err(bad)?.iter().skip(1).map(named).collect();
+    let mut rows = 0;
+    for row in reader.deserialize() {
+        let row: Vec<f64> = row.map_err(bad)?;
+        let Some((&time, values)) = row.split_first() else { continue };
+        rows += 1;
+        for (report, &value) in all.iter_mut().zip(values) {
+            report.end = (!value.is_nan()).then_some(value);
+            if report.min.is_none_or(|min| value < min) && report.end.is_some() {
+                (report.min, report.min_time) = (Some(value), Some(time));
+            }
+            if report.max.is_none_or(|max| value > max) && report.end.is_some() {
+                (report.max, report.max_time) = (Some(value), Some(time));
+            }
+        }
+    }
+    Ok(if rows > 0 { all } else { Vec::new() })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn columns_have_their_end_and_their_extremes() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("probes.csv");
+        let columns = ["tip.x [m]", "w.bodies [1]"].map(String::from);
+        let mut log = ProbeLog::create(&path, &columns).unwrap();
+        assert_eq!(summarise(&path).unwrap(), []);
+        for (time, x) in [(0.0, 0.5), (0.1, -2.0), (0.2, 3.0), (0.3, -2.0), (0.4, 1.0)] {
+            log.row(time, &[x, f64::NAN]).unwrap();
+        }
+        let [tip, bodies] = summarise(&path).unwrap().try_into().unwrap();
+        assert_eq!((tip.name.as_str(), tip.unit.as_str(), tip.end), ("tip.x", "m", Some(1.0)));
+        assert_eq!(
+            (tip.min, tip.min_time, tip.max, tip.max_time),
+            (Some(-2.0), Some(0.1), Some(3.0), Some(0.2))
+        );
+        assert_eq!((bodies.end, bodies.min, bodies.max_time), (None, None, None));
+    }
 
     #[test]
     fn values_read_back_bit_for_bit_while_the_log_is_open() {

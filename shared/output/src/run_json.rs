@@ -47,6 +47,8 @@ pub struct RunReport {
     pub audit: Audit,
     /// Contact of pairs of solids; empty where no two can touch.
     pub contacts: Vec<ContactReport>,
+    /// What the columns of `probes.csv` came to; empty while the run goes on.
+    pub probes: Vec<ProbeReport>,
     /// The energy ledgers; `null` where no probe asks for energies.
     pub energy: Option<EnergyReport>,
     /// Owners of particles: the fluid, then the solids in the scene's order. `particles` and `roles` are their sums.
@@ -97,6 +99,26 @@ pub struct ParticipantReport {
     pub capacity: Option<u32>,
     /// Where its time went, s.
     pub times: Option<RoleSeconds>,
+}
+
+/// A column of `probes.csv`: its end and its extremes. `null` where nothing could be measured.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ProbeReport {
+    /// Its title without the unit: `tip.x`.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// Value in the last row.
+    pub end: Option<f64>,
+    /// Least value.
+    pub min: Option<f64>,
+    /// When it was that for the first time, s.
+    pub min_time: Option<f64>,
+    /// Largest value.
+    pub max: Option<f64>,
+    /// When it was that for the first time, s.
+    pub max_time: Option<f64>,
 }
 
 /// What [`ContactReport::solids`] calls the walls of a scene: the name of no solid.

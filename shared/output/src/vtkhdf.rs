@@ -8,7 +8,7 @@
 //!   NumberOfPoints, NumberOfCells, NumberOfConnectivityIds    i64[1] = n
 //!   Points f32[n,3]   Connectivity i64[n] = 0..n-1   Offsets i64[n+1] = 0..n   Types u8[n] = 1 (vertex)
 //!   PointData/velocity f32[n,3], density f32[n], pressure f32[n], stress f32[n,6], phase u8[n], id i32[n];
-//!   damage f32[n] of a solid that can break
+//!   displacement f32[n,3], von_mises f32[n], body i32[n] of a solid; damage f32[n] of one that can break
 //!   FieldData/TimeValue f64[1]
 //! ```
 
@@ -66,6 +66,15 @@ fn fill(path: &Path, frame: &Frame) -> hdf5::Result<()> {
     if !frame.damage.is_empty() {
         put(&data, "damage", &frame.damage)?;
     }
+    if !frame.displacement.is_empty() {
+        put_rows(&data, "displacement", &frame.displacement)?;
+    }
+    if !frame.von_mises.is_empty() {
+        put(&data, "von_mises", &frame.von_mises)?;
+    }
+    if !frame.body.is_empty() {
+        put(&data, "body", &frame.body)?;
+    }
     put(&data, "phase", &frame.phase)?;
     put(&data, "id", &frame.id)?;
     put(&root.create_group("FieldData")?, "TimeValue", &[frame.time])?;
@@ -99,6 +108,13 @@ pub fn read(path: &Path) -> Result<Frame, OutputError> {
         pressure: column(&data, "pressure", path)?,
         stress: rows(&data, "stress", path)?,
         damage: if data.link_exists("damage") { column(&data, "damage", path)? } else { Vec::new() },
+        displacement: if data.link_exists("displacement") {
+            rows(&data, "displacement", path)?
+        } else {
+            Vec::new()
+        },
+        von_mises: if data.link_exists("von_mises") { column(&data, "von_mises", path)? } else { Vec::new() },
+        body: if data.link_exists("body") { column(&data, "body", path)? } else { Vec::new() },
         phase: column(&data, "phase", path)?,
         id: column(&data, "id", path)?,
     };

@@ -40,6 +40,16 @@ fn a_frame_reads_back_bit_for_bit() {
         assert_eq!(vtkhdf::read(&path).unwrap(), frame);
         assert!(!atomic::temporary(&path).exists());
     }
+    // What only solids have.
+    let path = dir.path().join("solid_000000.hdf");
+    let mut solid = filled(11, 3);
+    solid.displacement = vec![[0.5, -0.25, 0.0]; 3];
+    solid.von_mises = vec![1.0, 2.0, 4.0];
+    solid.body = vec![0, 1, 0];
+    vtkhdf::write(&path, &solid).unwrap();
+    assert_eq!(vtkhdf::read(&path).unwrap(), solid);
+    solid.body.pop();
+    assert!(vtkhdf::write(&path, &solid).is_err(), "a body for each particle");
     let mut crooked = filled(0, 3);
     crooked.id.pop();
     let error = vtkhdf::write(&dir.path().join("crooked.hdf"), &crooked).unwrap_err();

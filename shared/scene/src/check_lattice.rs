@@ -16,12 +16,17 @@ pub(super) fn check_lattice(scene: &Scene, root: &Node, report: &Report) {
     }
     let odd = dispatch!(scene.dimension, D => odd_neighbours::<D>(scene, &elements)).flatten();
     let Some([one, other]) = odd else { return };
+    let needs = "finite elements need the particles of a body on one lattice along the axes";
+    let turned = [one, other].into_iter().find(|k| scene.shapes[*k].lattice_angle != 0.0);
+    if let Some(turned) = turned {
+        let key = format!("shape.{}.lattice_angle", scene.shapes[turned].name);
+        return report.among(root, &key, &[], format!("turns its particles, and {needs}"));
+    }
     let key = format!("shape.{}", scene.shapes[one].name);
     let whose = match one == other {
         true => "its particles are turned".to_owned(),
         false => format!("those of `{}` do not fit to it", scene.shapes[other].name),
     };
-    let needs = "finite elements need the particles of a body on one lattice along the axes";
     report.place(&key, root.origin_of(&key), format!("{needs}: {whose}"));
 }
 

@@ -43,7 +43,10 @@ impl Check<'_> {
             {
                 "without `fracture` of the solid nothing breaks"
             }
-            ProbeKind::Stress { .. } | ProbeKind::StrainEnergy
+            ProbeKind::Stress { .. }
+            | ProbeKind::Strain { .. }
+            | ProbeKind::CauchyStress { .. }
+            | ProbeKind::StrainEnergy
                 if solid.model.name() == SolidModelName::Rigid =>
             {
                 "a rigid body does not strain"
@@ -59,7 +62,12 @@ impl Check<'_> {
         }
         let solids = || self.scene.shapes.iter().filter(|s| s.phase == Phase::Solid);
         match &probe.kind {
-            ProbeKind::Displacement { at } | ProbeKind::Position { at } | ProbeKind::Stress { at } => {
+            ProbeKind::Displacement { at }
+            | ProbeKind::Position { at }
+            | ProbeKind::Stress { at }
+            | ProbeKind::SolidVelocity { at }
+            | ProbeKind::Strain { of: Spot::At(at) }
+            | ProbeKind::CauchyStress { of: Spot::At(at) } => {
                 let near = |s: &Shape| {
                     let bounds = geometry::bounding_box(s, self.scene);
                     geometry::holds(&bounds, at, 2.0 * self.scene.resolution)
@@ -96,6 +104,11 @@ impl Check<'_> {
             }
             ProbeKind::Force { within, shape } | ProbeKind::Moment { within, shape, .. } => {
                 self.loaded(probe, key, within.as_ref(), *shape);
+            }
+            ProbeKind::Strain { of: Spot::Body(body) } | ProbeKind::CauchyStress { of: Spot::Body(body) } => {
+                if let Some(solid) = probe.solid {
+                    self.is_one_body(solid, &format!("{key}.body"), body);
+                }
             }
             ProbeKind::Body { body, quantity } => {
                 let key = format!("{key}.body");

@@ -5,7 +5,7 @@
 //! [`Lattice`] says whether particles sit at the cells' centres or at their corners.
 //!
 //! A polygon of solid has a lattice along its longest side, one of fluid along the axes; a wall has rows parallel to
-//! its sides. A shape that is turned takes its lattice along.
+//! its sides. A shape that is turned takes its lattice along; a solid may have its lattice turned inside of it.
 //!
 //! Where shapes overlap, the solid wins over the wall, the wall over the fluid, and in one phase the shape that comes
 //! first in the file. The loser has no particle inside the winner nor closer than dx / 2 (the mean where spacings
@@ -34,7 +34,7 @@ pub(crate) use outline::extent;
 pub use pieces::{pieces, touching};
 pub use plate::Plate;
 pub(crate) use plate::joined;
-pub use plate::least_thickness;
+pub use plate::{least_thickness, second_moments};
 use points::Spacing;
 use polygon::Standing;
 pub(crate) use polygon::{Fault, twice_area};
@@ -434,6 +434,7 @@ impl Spacing {
             wall: shape.phase == Phase::Wall,
             aligned: shape.phase == Phase::Solid,
             support: 2.0 * scene.smoothing_ratio,
+            turn: shape.lattice_angle,
         }
     }
 }

@@ -78,7 +78,7 @@ pub use load::{load, load_with, parse, parse_with};
 pub use metric::{Metric, MetricKind, MetricReference};
 pub use motion::{Composed, Course, Motion, Part, Placement, Solitary, Spline, Turn, WaveMaker};
 pub use participant::Participant;
-pub use probe::{BodyQuantity, Probe, ProbeKind, Reference};
+pub use probe::{BodyQuantity, Probe, ProbeKind, Reference, Spot};
 pub use resources::{expected_speed, expected_speed_of_fluid, memory_available, memory_needed};
 pub use schema::schema;
 pub use solid::{
@@ -292,6 +292,9 @@ pub struct Shape {
     /// Solid only: particle spacing, m; `None`: the scene's resolution.
     #[serde(default)]
     pub spacing: Option<f64>,
+    /// Solid only: angle of its lattice against the one that it would have, degrees, counter-clockwise.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub lattice_angle: f64,
     /// Rigid solid only: density, kg/m³; `None`: the solid's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub density: Option<f64>,
@@ -325,6 +328,10 @@ pub struct Shape {
     pub free_slip: bool,
     /// Fluid only: start with hydrostatic pressure below the shape's highest point.
     pub hydrostatic: bool,
+}
+
+fn is_zero(x: &f64) -> bool {
+    *x == 0.0
 }
 
 /// A traction on a solid's particles: each takes it on one face of its cell, dx (in space dx²).

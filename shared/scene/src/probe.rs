@@ -33,6 +33,21 @@ pub enum ProbeKind {
         /// The point, m.
         at: [f64; 3],
     },
+    /// Velocity of the solid particles nearest to a point of the initial configuration; components x, y (, z), m/s.
+    SolidVelocity {
+        /// The point, m.
+        at: [f64; 3],
+    },
+    /// Green's strain (F^T F - 1) / 2 of a solid; components xx, yy, xy (in space xx, yy, zz, xy, yz, xz).
+    Strain {
+        /// Where.
+        of: Spot,
+    },
+    /// Cauchy stress of a solid; components xx, yy, zz, xy (, yz, xz), Pa.
+    CauchyStress {
+        /// Where.
+        of: Spot,
+    },
     /// Elastic energy stored in a solid, J (2D: J/m).
     StrainEnergy,
     /// Energy that the fracture of a solid has taken, J (2D: J/m).
@@ -116,6 +131,16 @@ pub enum ProbeKind {
         /// What of it.
         quantity: BodyQuantity,
     },
+}
+
+/// Where a solid's strain or stress is measured.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Spot {
+    /// Of the particles nearest to a point of the initial configuration, m.
+    At([f64; 3]),
+    /// Mean over a body, by its name.
+    Body(String),
 }
 
 /// What is measured of a body: all of a rigid one, the energy of any.
@@ -204,11 +229,17 @@ impl ProbeKind {
     pub fn components(&self, dimension: usize) -> (Vec<String>, &'static str) {
         let axes = || ["x", "y", "z"][..dimension].iter().map(|&axis| axis.to_owned()).collect();
         let one = |name: &str| vec![name.to_owned()];
+        let tensor = |plane: &[&str]| {
+            let all = if dimension == 2 { plane } else { &["xx", "yy", "zz", "xy", "yz", "xz"] };
+            all.iter().map(|&component| component.to_owned()).collect()
+        };
         match self {
             Self::Displacement { .. } | Self::Position { .. } | Self::Centroid { .. } => (axes(), "m"),
             Self::Stress { .. } => (one("stress"), "Pa"),
             Self::Pressure { .. } => (one("pressure"), "Pa"),
-            Self::Velocity { .. } => (axes(), "m/s"),
+            Self::Velocity { .. } | Self::SolidVelocity { .. } => (axes(), "m/s"),
+            Self::Strain { .. } => (tensor(&["xx", "yy", "xy"]), "1"),
+            Self::CauchyStress { .. } => (tensor(&["xx", "yy", "zz", "xy"]), "Pa"),
             Self::Flux { .. } => (one("flux"), if dimension == 2 { "m2/s" } else { "m3/s" }),
             Self::WaterLevel { x } if x.len() == 1 => (one("level"), "m"),
             Self::WaterLevel { x } => ((1..=x.len()).map(|k| format!("level-{k}")).collect(), "m"),
@@ -240,6 +271,9 @@ impl Probe {
             ProbeKind::Displacement { .. }
             | ProbeKind::Position { .. }
             | ProbeKind::Stress { .. }
+            | ProbeKind::SolidVelocity { .. }
+            | ProbeKind::Strain { .. }
+            | ProbeKind::CauchyStress { .. }
             | ProbeKind::StrainEnergy
             | ProbeKind::CrackEnergy
             | ProbeKind::CrackArea

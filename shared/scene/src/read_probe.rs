@@ -11,6 +11,9 @@ pub(crate) enum Kind {
     Displacement,
     Position,
     Stress,
+    SolidVelocity,
+    Strain,
+    CauchyStress,
     StrainEnergy,
     CrackEnergy,
     CrackArea,
@@ -28,10 +31,13 @@ pub(crate) enum Kind {
     Body(BodyQuantity),
 }
 
-const OTHERS: [(&str, Kind); 17] = [
+const OTHERS: [(&str, Kind); 20] = [
     ("displacement", Kind::Displacement),
     ("position", Kind::Position),
     ("stress", Kind::Stress),
+    ("solid-velocity", Kind::SolidVelocity),
+    ("strain", Kind::Strain),
+    ("cauchy-stress", Kind::CauchyStress),
     ("strain-energy", Kind::StrainEnergy),
     ("crack-energy", Kind::CrackEnergy),
     ("crack-area", Kind::CrackArea),
@@ -71,6 +77,9 @@ pub(super) fn probe(
         Kind::Displacement => ProbeKind::Displacement { at: at() },
         Kind::Position => ProbeKind::Position { at: at() },
         Kind::Stress => ProbeKind::Stress { at: at() },
+        Kind::SolidVelocity => ProbeKind::SolidVelocity { at: at() },
+        Kind::Strain => ProbeKind::Strain { of: spot(&section, dimension)? },
+        Kind::CauchyStress => ProbeKind::CauchyStress { of: spot(&section, dimension)? },
         Kind::StrainEnergy => ProbeKind::StrainEnergy,
         Kind::CrackEnergy => ProbeKind::CrackEnergy,
         Kind::CrackArea => ProbeKind::CrackArea,
@@ -105,9 +114,12 @@ pub(super) fn probe(
     };
     let mut probe = Probe { name, kind, solid: None };
     probe.solid = match probe.kind {
-        ProbeKind::Displacement { at } | ProbeKind::Position { at } | ProbeKind::Stress { at } => {
-            nearest_solid(shapes, &at)
-        }
+        ProbeKind::Displacement { at }
+        | ProbeKind::Position { at }
+        | ProbeKind::Stress { at }
+        | ProbeKind::SolidVelocity { at }
+        | ProbeKind::Strain { of: Spot::At(at) }
+        | ProbeKind::CauchyStress { of: Spot::At(at) } => nearest_solid(shapes, &at),
         ProbeKind::Force { shape: Some(shape), .. } | ProbeKind::Moment { shape: Some(shape), .. } => {
             shapes[shape].solid
         }
@@ -120,7 +132,11 @@ pub(super) fn probe(
     let needless = match probe.kind {
         ProbeKind::Displacement { .. } => Some("the displacement is that of the solid nearest to `at`"),
         ProbeKind::Position { .. } => Some("the position is that of the solid nearest to `at`"),
-        ProbeKind::Stress { .. } => Some("the stress is that of the solid nearest to `at`"),
+        ProbeKind::Stress { .. } | ProbeKind::CauchyStress { of: Spot::At(_) } => {
+            Some("the stress is that of the solid nearest to `at`")
+        }
+        ProbeKind::SolidVelocity { .. } => Some("the velocity is that of the solid nearest to `at`"),
+        ProbeKind::Strain { of: Spot::At(_) } => Some("the strain is that of the solid nearest to `at`"),
         ProbeKind::Force { shape: Some(_), .. } | ProbeKind::Moment { shape: Some(_), .. } => {
             Some("`shape` says it")
         }
@@ -131,6 +147,18 @@ pub(super) fn probe(
     }
     section.finish();
     Some(probe)
+}
+
+/// A point `at` of a solid, or a `body`.
+fn spot(section: &Section<'_>, dimension: usize) -> Option<Spot> {
+    let Some(node) = section.node("body") else {
+        return Some(Spot::At(section.vector("at", dimension, None)));
+    };
+    if section.node("at").is_some() {
+        section.wrong("body", node, "is measured as a whole, and `at` says a point: a probe has one of them");
+        return None;
+    }
+    Some(Spot::Body(section.string("body")?.to_owned()))
 }
 
 /// Pressure at a point `at`, or its mean between `from` and `to`; `shape` is what takes them along.

@@ -69,6 +69,7 @@ pub(super) fn shape(section: Section<'_>, around: &Around<'_>, solids: &[&str], 
         phase: phase.unwrap_or(Phase::Wall),
         solid: which_solid(&section, solids).filter(|_| phase == Some(Phase::Solid)),
         spacing: spacing(&section, &geometry, dimension, lattice).filter(|_| phase == Some(Phase::Solid)),
+        lattice_angle: lattice_angle(&section),
         geometry,
         density: section.optional_number("density"),
         velocity: section.vector("velocity", dimension, Some([0.0; 3])),
@@ -94,6 +95,7 @@ pub(super) fn shape(section: Section<'_>, around: &Around<'_>, solids: &[&str], 
         ("solid", Phase::Solid, "a solid"),
         ("spacing", Phase::Solid, "a solid"),
         ("across", Phase::Solid, "a solid"),
+        ("lattice_angle", Phase::Solid, "a solid"),
         ("velocity_field", Phase::Fluid, "a fluid"),
         ("contact", Phase::Wall, "a wall"),
         ("slip", Phase::Wall, "a wall"),
@@ -135,6 +137,16 @@ fn spacing(section: &Section<'_>, geometry: &Geometry, dimension: usize, lattice
     across?;
     let across = section.optional_integer("across")?;
     Some(spacing::with_across(geometry, dimension, lattice, across)).filter(|spacing| spacing.is_finite())
+}
+
+/// The angle of a solid's lattice inside its shape, degrees.
+fn lattice_angle(section: &Section<'_>) -> f64 {
+    let Some(node) = section.node("lattice_angle") else { return 0.0 };
+    if section.node("across").is_some() {
+        let why = "turned rows are not so many across everywhere: say the `spacing`";
+        section.wrong("lattice_angle", node, format!("stands beside `across`: {why}"));
+    }
+    section.number("lattice_angle", Some(0.0))
 }
 
 /// Index of the solid that a shape or a probe names; where it names none, of the only one.

@@ -10,8 +10,8 @@ pub const SOLID: u8 = 1;
 /// Number of the walls in [`Frame::phase`].
 pub const WALL: u8 = 2;
 
-/// All particles of a process at one instant, in single precision. The columns are equally long; that of the
-/// damage may be empty.
+/// All particles of a process at one instant, in single precision. The columns are equally long; those
+/// of what only solids have may be empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Frame {
     /// Simulated time, s.
@@ -28,6 +28,12 @@ pub struct Frame {
     pub stress: Vec<[f32; 6]>,
     /// Damage of a solid that can break, 0 to 1; of all others this column is empty.
     pub damage: Vec<f32>,
+    /// Displacements from the initial configuration, m: of a solid.
+    pub displacement: Vec<[f32; 3]>,
+    /// Von Mises stresses, Pa: of a solid that strains.
+    pub von_mises: Vec<f32>,
+    /// Numbers of the bodies, from 0 on in each solid: of a solid.
+    pub body: Vec<i32>,
     /// [`FLUID`], [`SOLID`] or [`WALL`].
     pub phase: Vec<u8>,
     /// Particle numbers: unique in a phase, the same in every frame.
@@ -51,6 +57,11 @@ pub trait FrameSink: Send {
     /// # Errors
     /// A frame could not be written.
     fn finish(self: Box<Self>) -> Result<u32, SinkError>;
+}
+
+/// The body that a record says, from 0 on; `None` where it says none.
+pub fn body_of(record: &StateRecord) -> Option<u32> {
+    (record.flags >> 8).checked_sub(1)
 }
 
 /// One particle, as the numerics hold it.
@@ -79,13 +90,30 @@ pub fn von_mises(stress: &[f64; 6]) -> f64 {
     (0.5 * normal + 3.0 * (xy * xy + yz * yz + xz * xz)).sqrt()
 }
 
+/// Cauchy stress xx, yy, zz, xy, yz, xz of a record, Pa.
+fn stress_of(r: &StateRecord) -> [f64; 6] {
+    let mut stress = r.deviatoric_stress;
+    for normal in &mut stress[..3] {
+        *normal -= r.pressure;
+    }
+    stress
+}
+
+/// Mean Cauchy stress xx, yy, zz, xy, yz, xz of records, Pa; of none NaN.
+pub fn mean_stress<'a>(records: impl IntoIterator<Item = &'a StateRecord>) -> [f64; 6] {
+    let (mut sum, mut count) = ([0.0; 6], 0.0);
+    for record in records {
+        let stress = stress_of(record);
+        (0..6).for_each(|c| sum[c] += stress[c]);
+        count += 1.0;
+    }
+    sum.map(|s| s / count)
+}
+
 impl FramePoint {
     /// A solid particle as its record shows it.
     pub fn solid(r: &StateRecord) -> Self {
-        let mut stress = r.deviatoric_stress;
-        for normal in &mut stress[..3] {
-            *normal -= r.pressure;
-        }
+        let stress = stress_of(r);
         Self {
             position: r.position,
             velocity: r.velocity,
@@ -118,6 +146,9 @@ impl Frame {
         self.pressure.clear();
         self.stress.clear();
         self.damage.clear();
+        self.displacement.clear();
+        self.von_mises.clear();
+        self.body.clear();
         self.phase.clear();
         self.id.clear();
     }
@@ -137,10 +168,10 @@ impl Frame {
         self.id.push(particle.id as i32);
     }
 
-    /// Whether all columns are equally long, that of the damage apart where it is empty: what a file can hold.
+    /// Whether all columns are equally long, those of solids apart where they are empty: what a file can hold.
     pub fn is_consistent(&self) -> bool {
         let n = self.len();
-        let damage = self.damage.is_empty() || self.damage.len() == n;
+        let of_solids = [self.damage.len(), self.displacement.len(), self.von_mises.len(), self.body.len()];
         [
             self.velocity.len(),
             self.density.len(),
@@ -151,6 +182,6 @@ impl Frame {
         ]
         .iter()
         .all(|&length| length == n)
-            && damage
+            && of_solids.iter().all(|&length| length == 0 || length == n)
     }
 }

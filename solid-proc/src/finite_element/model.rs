@@ -408,6 +408,11 @@ impl<const D: usize> SolidModel<D> for FiniteElement<D> {
         self.check()
     }
 
+    fn deformation(&self, particle: u32) -> Option<[[f64; D]; D]> {
+        let gradient = &self.gradient[particle as usize];
+        Some(std::array::from_fn(|a| std::array::from_fn(|b| gradient[(a, b)])))
+    }
+
     fn keep_account(&mut self) {
         self.account = Some(Account::new(self.sinks()));
     }

@@ -408,6 +408,15 @@ impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {
         self.fracture.is_some()
     }
 
+    fn parted(&self) -> Option<&[u32]> {
+        self.fracture.as_ref().map(Fracture::bodies)
+    }
+
+    fn deformation(&self, particle: u32) -> Option<[[f64; D]; D]> {
+        let gradient = &self.gradient[self.slot_of[particle as usize] as usize];
+        Some(std::array::from_fn(|a| std::array::from_fn(|b| gradient[(a, b)])))
+    }
+
     fn keep_account(&mut self) {
         self.account = Some(Account::new(self.sinks()));
     }

@@ -12,7 +12,8 @@ pub(super) fn clamp_faces(scene: &Scene, all: &mut Vec<String>) {
     if scene.switch(EffectName::ClampFace) == Switch::Off {
         return;
     }
-    for shape in &scene.shapes {
+    // Turned rows are cut by every face.
+    for shape in scene.shapes.iter().filter(|shape| shape.lattice_angle == 0.0) {
         let model = shape.solid.and_then(|k| scene.solids.get(k)).map(|solid| solid.model.name());
         let Geometry::Box(body) = &shape.geometry else { continue };
         let elements = model == Some(SolidModelName::FiniteElement);

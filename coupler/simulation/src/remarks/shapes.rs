@@ -2,13 +2,15 @@
 
 use super::beams;
 use super::thickness::{self, Thinnest};
-use halfstep_scene::geometry::{Layout, Plate};
+use halfstep_scene::geometry::{self, Layout, Plate};
 use halfstep_scene::{Geometry, Lattice, Phase, Scene, Shape, SolidModelName};
 use serde::{Serialize, Serializer};
 use std::fmt;
 
 /// From which relative difference on a size is remarked.
 const NOTABLE: f64 = 0.02;
+/// The same of a bending stiffness: that of a thickness that much larger.
+const NOTABLY_STIFFER: f64 = 0.06;
 /// From which share of its particles on a loss to other shapes is remarked.
 const LOST: f64 = 0.1;
 
@@ -44,6 +46,9 @@ pub(crate) struct Placed {
     /// Bending stiffness of a plate that can bend, asked and computed, N m.
     #[serde(skip_serializing_if = "Option::is_none")]
     bending: Option<[f64; 2]>,
+    /// The computed one is that of the particles' area: they lie in no rectangle whose second moment is known.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    bending_by_area: bool,
     /// Deflection of a clamped plate by beam theory under the fluid at rest, and its free length, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) bends: Option<[f64; 2]>,
@@ -105,14 +110,18 @@ fn of_shape<const D: usize>(scene: &Scene, index: usize, [particles, clamped]: [
         Phase::Fluid => scene.fluid.as_ref().map_or(0.0, |fluid| fluid.density),
         Phase::Wall => 0.0,
     };
-    let whole = halfstep_scene::geometry::particles_alone::<D>(scene, index);
+    let whole = geometry::particles_alone::<D>(scene, index);
     let cells = |extent: f64| (extent / dx).round() * dx;
     let copies = match &shape.geometry {
         Geometry::Moved(moved) => moved.count as usize,
         _ => 1,
     };
     let each = whole / copies;
+    let measure = each as f64 * dx.powi(D as i32);
     let (asked, computed) = match shape.geometry.unmoved() {
+        Geometry::Box(b) if shape.lattice_angle != 0.0 => {
+            (vec![(0..D).map(|a| b.max[a] - b.min[a]).product()], vec![measure])
+        }
         Geometry::Box(b) | Geometry::Tank { cavity: b, .. } => {
             let asked: Vec<f64> = (0..D).map(|a| b.max[a] - b.min[a]).collect();
             let computed = asked.iter().map(|&extent| cells(extent)).collect();
@@ -129,11 +138,12 @@ fn of_shape<const D: usize>(scene: &Scene, index: usize, [particles, clamped]: [
         Geometry::Polygon(polygon) if shape.phase == Phase::Wall => {
             (vec![polygon.area()], vec![polygon.area()])
         }
-        Geometry::Polygon(polygon) => (vec![polygon.area()], vec![each as f64 * dx.powi(D as i32)]),
+        Geometry::Polygon(polygon) => (vec![polygon.area()], vec![measure]),
         Geometry::Moved(_) => (Vec::new(), Vec::new()),
     };
     let plate = Plate::<D>::of(scene, shape);
     let bending = plate.as_ref().and_then(|plate| bending(scene, shape, plate, &asked, &computed));
+    let by_area = bending.is_some_and(|(_, by_area)| by_area);
     let mut with: Vec<String> = shape.clamp_with.iter().flatten().cloned().collect();
     with.dedup();
     Placed {
@@ -149,30 +159,48 @@ fn of_shape<const D: usize>(scene: &Scene, index: usize, [particles, clamped]: [
         moves: shape.motion.is_some(),
         with,
         body: (shape.phase == Phase::Solid).then(|| shape.body().to_owned()),
-        bending,
+        bending: bending.map(|(both, _)| both),
+        bending_by_area: by_area,
         bends: beams::deflection(scene, shape),
         thinnest: None,
-        unit: if matches!(shape.geometry.unmoved(), Geometry::Polygon(_)) { "m²" } else { "m" },
+        unit: if is_measured(shape) { "m²" } else { "m" },
     }
 }
 
-/// Bending stiffness of a plate per width, asked and computed, N m: E' t³ / 12. `None` of what cannot bend.
+/// Whether the size of a shape is the area of its particles: no lattice fits it along its sides.
+fn is_measured(shape: &Shape) -> bool {
+    match shape.geometry.unmoved() {
+        Geometry::Polygon(_) => true,
+        Geometry::Box(_) => shape.lattice_angle != 0.0,
+        _ => false,
+    }
+}
+
+/// Bending stiffness of a plate per width, asked and computed, N m, and whether the computed one follows from the
+/// particles' area alone. `None` of what cannot bend.
 fn bending<const D: usize>(
     scene: &Scene,
     shape: &Shape,
     plate: &Plate<D>,
     asked: &[f64],
     computed: &[f64],
-) -> Option<[f64; 2]> {
+) -> Option<([f64; 2], bool)> {
     let solid = shape.solid.and_then(|k| scene.solids.get(k)).filter(|solid| solid.rigid().is_none())?;
+    let modulus = solid.bending_modulus();
+    let of = |thickness: f64| modulus * thickness.powi(3) / 12.0;
     let thin = (0..asked.len()).min_by(|&a, &b| asked[a].total_cmp(&asked[b]))?;
-    let (thickness, factor) = match shape.geometry.unmoved() {
+    let factor = computed[thin] / asked[thin];
+    if !is_measured(shape) {
+        return Some(([of(asked[thin]), of(factor * asked[thin])], false));
+    }
+    match geometry::second_moments(scene, shape).filter(|_| D == 2) {
+        Some(moments) => Some((moments.map(|moment| modulus * moment), false)),
         // An area is larger where its plate is thicker.
-        Geometry::Polygon(_) => (plate.rows * scene.spacing(shape), computed[thin] / asked[thin]),
-        _ => (asked[thin], computed[thin] / asked[thin]),
-    };
-    let of = |thickness: f64| solid.bending_modulus() * thickness.powi(3) / 12.0;
-    Some([of(thickness), of(factor * thickness)])
+        None => {
+            let thickness = plate.rows * scene.spacing(shape);
+            Some(([of(thickness), of(factor * thickness)], true))
+        }
+    }
 }
 
 /// Radius of the disc or ball that has the measure of so many particles, m.
@@ -212,7 +240,8 @@ impl fmt::Display for Placed {
         if let Some([asked, computed]) = self.bending {
             write!(f, ", bending stiffness {} N m", length(asked))?;
             if (computed / asked - 1.0).abs() >= 1e-3 {
-                write!(f, " asked, {} computed", length(computed))?;
+                let by = if self.bending_by_area { " from its area" } else { "" };
+                write!(f, " asked, {} computed{by}", length(computed))?;
             }
         }
         if let Some([way, free]) = self.bends {
@@ -252,9 +281,14 @@ pub(super) fn length(x: f64) -> String {
 /// Shapes whose size is another one than asked for.
 pub(super) fn sizes(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
     for (shape, of_scene) in placed.iter().zip(&scene.shapes) {
-        let Some((axis, factor)) = shape.worst().filter(|(_, factor)| (factor - 1.0).abs() >= NOTABLE) else {
+        let Some((axis, factor)) = shape.worst() else { continue };
+        // Of what is no box along its lattice.
+        let stiffer = shape.bending.filter(|_| shape.unit == "m²" && !shape.bending_by_area);
+        let stiffer = stiffer.map(|[asked, computed]| computed / asked);
+        let bends_otherwise = stiffer.is_some_and(|factor| (factor - 1.0).abs() >= NOTABLY_STIFFER);
+        if (factor - 1.0).abs() < NOTABLE && !bends_otherwise {
             continue;
-        };
+        }
         let box_ = matches!(of_scene.geometry.unmoved(), Geometry::Box(_));
         if shape.phase == Phase::Wall && box_ {
             // A wall's thickness is nobody's question.
@@ -262,6 +296,7 @@ pub(super) fn sizes(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
         }
         let (asked, computed) = (length(shape.asked[axis]), length(shape.computed[axis]));
         let what = match of_scene.geometry.unmoved() {
+            _ if shape.unit == "m²" => "large",
             Geometry::Box(_) | Geometry::Tank { .. } => ["wide", "high", "deep"][axis],
             Geometry::Disc { .. } => "across",
             Geometry::Ring { .. } => "thick",
@@ -270,10 +305,13 @@ pub(super) fn sizes(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
         let thin = shape.rows.is_some() && shape.asked.iter().all(|extent| *extent >= shape.asked[axis]);
         let stiffness = match thin {
             true if shape.unit == "m" => format!(": {:.2} times the bending stiffness", factor.powi(3)),
-            _ => String::new(),
+            _ => stiffer.map_or(String::new(), |factor| format!(": {factor:.2} times the bending stiffness")),
         };
         let dx = scene.spacing(of_scene);
         let remedy = match shape.phase {
+            Phase::Solid if of_scene.lattice_angle != 0.0 => {
+                format!(" (its spacing is {}, and `lattice_angle` turns its rows)", length(dx))
+            }
             Phase::Solid => format!(" (its spacing is {}; `across` at the shape makes it fit)", length(dx)),
             _ => format!(" (the resolution is {})", length(dx)),
         };

@@ -562,3 +562,35 @@ fn a_frame_that_changes_nothing_or_leaves_much_out() {
     let much = seen("{ angle = 0.2, period = 1.0, ramp = 0.5, pivot = [0.0, 0.0] }");
     assert!(much.iter().any(|remark| remark.contains("Coriolis forces are left out")), "{much:?}");
 }
+
+/// An upright plate of 5 mm and a wedge of a mean 5 mm, both 0.1 m high, as polygons at 1.4 mm.
+#[test]
+fn the_bending_stiffness_of_polygons() {
+    let shown = |corners: &str, more: &str| {
+        let text = format!(
+            "resolution = 0.0014\nend_time = 1.0\n[solid]\ndensity = 1100.0\nyoungs_modulus = 12e6\n\
+             poissons_ratio = 0.4\n[[shape]]\nname = \"plate\"\nphase = \"solid\"\n{corners}\n{more}\n\
+             clamp = {{ min = [-0.1, -0.1], max = [0.1, 0.01] }}\n"
+        );
+        let scene = parse(&text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}"));
+        let placed = super::placed(&scene, &halfstep_scene::geometry::layout::<2>(&scene))[0].to_string();
+        (placed, remarks(&scene))
+    };
+    // E / (1 - nu²) t³ / 12 = 14.2857e6 Pa (5 mm)³ / 12, and that of 5.6 mm.
+    let (plate, warned) = shown("polygon = [[0.0, 0.0], [0.005, 0.0], [0.005, 0.098], [0.0, 0.098]]", "");
+    assert!(
+        plate.contains("bending stiffness 0.1488 N m asked, 0.2091 computed,")
+            || plate.ends_with("0.2091 computed"),
+        "{plate}"
+    );
+    assert!(
+        warned.iter().any(|text| text.contains("m² as computed: 1.40 times the bending stiffness")),
+        "{warned:?}"
+    );
+    let (wedge, warned) = shown("polygon = [[0.0, 0.0], [0.0076, 0.0], [0.004, 0.1], [0.0, 0.1]]", "");
+    assert!(wedge.contains("computed from its area"), "{wedge}");
+    assert!(!warned.iter().any(|text| text.contains("bending stiffness")), "{warned:?}");
+    // A lattice that lies across the plate changes its area, and its stiffness.
+    let (turned, _) = shown("box = { min = [0.0, 0.0], max = [0.0056, 0.098] }", "lattice_angle = 45");
+    assert!(turned.contains("m² asked,") && turned.contains("bending stiffness"), "{turned}");
+}

@@ -132,7 +132,9 @@ fn axis(name: &str, kind: &ProbeKind) -> String {
     match kind {
         ProbeKind::Displacement { .. } => format!("{name} displacement"),
         ProbeKind::Position { .. } => format!("{name} position"),
-        ProbeKind::Velocity { .. } => format!("{name} velocity"),
+        ProbeKind::Velocity { .. } | ProbeKind::SolidVelocity { .. } => format!("{name} velocity"),
+        ProbeKind::Strain { .. } => format!("{name} strain"),
+        ProbeKind::CauchyStress { .. } => format!("{name} stress"),
         ProbeKind::Centroid { .. } => format!("{name} centre of mass"),
         ProbeKind::Front => format!("{name} reach"),
         ProbeKind::Force { .. } => format!("{name} force"),

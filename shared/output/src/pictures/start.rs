@@ -7,7 +7,7 @@ use super::stamp::{Rect, Scale, Sheet, WALL};
 use super::view::{View, layout};
 use crate::OutputError;
 use halfstep_scene::geometry::{self, Layout};
-use halfstep_scene::{Block, Phase, ProbeKind, Scene, dispatch};
+use halfstep_scene::{Block, Phase, ProbeKind, Scene, Spot, dispatch};
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 use std::path::Path;
@@ -146,6 +146,9 @@ fn marks(kind: &ProbeKind) -> Vec<[f64; 3]> {
         ProbeKind::Displacement { at }
         | ProbeKind::Position { at }
         | ProbeKind::Stress { at }
+        | ProbeKind::SolidVelocity { at }
+        | ProbeKind::Strain { of: Spot::At(at) }
+        | ProbeKind::CauchyStress { of: Spot::At(at) }
         | ProbeKind::Velocity { at } => vec![*at],
         ProbeKind::Pressure { at, to, .. } => [Some(*at), *to].into_iter().flatten().collect(),
         ProbeKind::Flux { from, to } => vec![*from, *to],

@@ -20,19 +20,24 @@ pub struct Moved {
     pub step: [f64; 3],
 }
 
-impl Moved {
-    /// Cosine and sine of the angle, exact for quarters of a turn.
-    fn turn(&self) -> [f64; 2] {
-        match self.angle.rem_euclid(360.0) {
-            0.0 => [1.0, 0.0],
-            90.0 => [0.0, 1.0],
-            180.0 => [-1.0, 0.0],
-            270.0 => [0.0, -1.0],
-            angle => {
-                let radians = angle.to_radians();
-                [libm::cos(radians), libm::sin(radians)]
-            }
+/// Cosine and sine of an angle, degrees: exact for quarters of a turn.
+pub(super) fn turn(angle: f64) -> [f64; 2] {
+    match angle.rem_euclid(360.0) {
+        0.0 => [1.0, 0.0],
+        90.0 => [0.0, 1.0],
+        180.0 => [-1.0, 0.0],
+        270.0 => [0.0, -1.0],
+        angle => {
+            let radians = angle.to_radians();
+            [libm::cos(radians), libm::sin(radians)]
         }
+    }
+}
+
+impl Moved {
+    /// Cosine and sine of the angle.
+    fn turn(&self) -> [f64; 2] {
+        turn(self.angle)
     }
 
     /// A vector of the geometry as it is turned.

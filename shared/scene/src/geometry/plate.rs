@@ -1,7 +1,7 @@
 //! Solid shapes that are plates: how many particles they have across, and which way their faces look.
 
 use super::polygon::{Edges, Polygon, in_space};
-use super::{Moved, Spacing};
+use super::{Moved, Spacing, points};
 use crate::{Block, EffectName, Geometry, Lattice, Phase, Scene, Shape, Switch, Treatment};
 
 /// A box, ring or polygon that is longer than thick.
@@ -63,9 +63,14 @@ impl<const D: usize> Plate<D> {
                 }
                 // Where the lattice ends, which a rounded extent is not.
                 let low: [f64; D] = std::array::from_fn(|a| block.min[a]);
-                let cells = |a: usize| spacing.cells(extent(a)) as f64 * spacing.dx;
-                let high = std::array::from_fn(|a| low[a] + cells(a));
-                (Kind::Box { low, high, across }, spacing.expected(extent(across), 0.0))
+                if spacing.turn != 0.0 {
+                    let high = std::array::from_fn(|a| block.max[a]);
+                    (Kind::Box { low, high, across }, extent(across) / spacing.dx)
+                } else {
+                    let cells = |a: usize| spacing.cells(extent(a)) as f64 * spacing.dx;
+                    let high = std::array::from_fn(|a| low[a] + cells(a));
+                    (Kind::Box { low, high, across }, spacing.expected(extent(across), 0.0))
+                }
             }
             Geometry::Ring { center, inner, outer } if *inner > 0.5 * (outer - inner) => {
                 let center = std::array::from_fn(|a| center[a]);
@@ -178,6 +183,51 @@ pub(crate) fn joined(scene: &Scene, shape: &Shape, geometry: &Geometry) -> Optio
     Some(block)
 }
 
+/// By how much a plate may miss a rectangle whose second moment is asked for.
+const STRAIGHT: f64 = 0.05;
+
+/// Second moment of area of a straight plate in the plane about its middle, per width, asked and of its particles, m³:
+/// that of their distances across and of their cells, over the plate's length. `None` of what is no rectangle.
+pub fn second_moments(scene: &Scene, shape: &Shape) -> Option<[f64; 2]> {
+    let spacing = Spacing::of(scene, shape);
+    let geometry = shape.geometry.unmoved();
+    let corners: Vec<[f64; 2]> = match geometry {
+        Geometry::Box(Block { min, max }) => {
+            vec![[min[0], min[1]], [max[0], min[1]], [max[0], max[1]], [min[0], max[1]]]
+        }
+        Geometry::Polygon(polygon) => polygon.outline.clone(),
+        _ => return None,
+    };
+    let polygon = Polygon { outline: corners, holes: Vec::new() };
+    let area = match geometry {
+        Geometry::Polygon(whole) => whole.area(),
+        _ => polygon.area(),
+    };
+    let along = Edges::new(&polygon).longest().direction();
+    let at = |p: &[f64; 2]| [p[0] * along[0] + p[1] * along[1], p[1] * along[0] - p[0] * along[1]];
+    let extents = |points: &mut dyn Iterator<Item = [f64; 2]>| {
+        let start = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
+        let of =
+            points.fold(start, |of, p| std::array::from_fn(|a| [of[a][0].min(p[a]), of[a][1].max(p[a])]));
+        of.map(|[low, high]| high - low)
+    };
+    let [length, thickness] = extents(&mut polygon.outline.iter().map(at));
+    if length < 2.0 * thickness || area < (1.0 - STRAIGHT) * length * thickness {
+        return None;
+    }
+    let points = points::of_shape::<2>(geometry, spacing);
+    let places: Vec<[f64; 2]> = points.iter().map(|point| at(&point.position)).collect();
+    // Whole columns of an unturned lattice are as long as they are, which is no matter of stiffness.
+    let length = match spacing.turn == 0.0 {
+        true => extents(&mut places.iter().copied())[0] + spacing.dx,
+        false => length,
+    };
+    let middle = places.iter().map(|p| p[1]).sum::<f64>() / places.len() as f64;
+    let cell = spacing.dx.powi(2);
+    let moment: f64 = places.iter().map(|p| cell * ((p[1] - middle).powi(2) + cell / 12.0)).sum();
+    Some([thickness.powi(3) / 12.0, moment / length])
+}
+
 fn length<const D: usize>(x: &[f64; D]) -> f64 {
     x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
@@ -277,6 +327,33 @@ mod tests {
             }
             assert!(!plate.holds(&at(0.0, 0.03)));
         }
+    }
+
+    /// 5 mm at 1.4 mm are four rows, 0.7 and 2.1 mm off the middle: (5.6 mm)³ / 12, whichever way the plate lies. A
+    /// wedge is no plate whose second moment is one number.
+    #[test]
+    fn second_moments_by_hand() {
+        let moments = |dx: f64, geometry: &str| {
+            let text = format!(
+                "resolution = {dx}\nend_time = 1.0\n[solid]\nmodel = \"hypoelastic\"\ndensity = 1000.0\n\
+                 youngs_modulus = 1e6\npoissons_ratio = 0.3\n[[shape]]\nname = \"s\"\nphase = \"solid\"\n{geometry}\n"
+            );
+            let scene = parse(&text, Path::new("s.toml"), &[]).unwrap();
+            second_moments(&scene, &scene.shapes[0]).map(|moments| moments.map(|moment| 12.0 * moment))
+        };
+        let upright = "polygon = [[0.0, 0.0], [0.005, 0.0], [0.005, 0.1], [0.0, 0.1]]";
+        // Along (3, 4) / 5.
+        let inclined = "polygon = [[0.0, 0.0], [0.06, 0.08], [0.056, 0.083], [-0.004, 0.003]]";
+        for geometry in [upright, inclined, "box = { min = [0.0, 0.0], max = [0.1, 0.005] }"] {
+            let [asked, computed] = moments(0.0014, geometry).unwrap();
+            assert!((asked / 0.005_f64.powi(3) - 1.0).abs() < 1e-9, "{geometry}: {asked}");
+            assert!((computed / 0.0056_f64.powi(3) - 1.0).abs() < 1e-9, "{geometry}: {computed}");
+        }
+        // Of a turned lattice the rough edges of the plate: 16 spacings across and 160 along.
+        let turned = "box = { min = [0.0, 0.0], max = [0.2, 0.02] }\nlattice_angle = 30";
+        let [asked, computed] = moments(0.00125, turned).unwrap();
+        assert!((computed / asked - 1.0).abs() < 0.02, "{}", computed / asked);
+        assert_eq!(moments(0.001, "polygon = [[0.0, 0.0], [0.1, 0.0], [0.1, 0.01], [0.0, 0.005]]"), None);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The lattice of one shape, and the normals of walls.
 
-use super::{Moved, TOLERANCE, polygon};
+use super::{Moved, TOLERANCE, moved, polygon, region};
 use crate::{Block, Geometry, TankSide};
 use std::collections::HashMap;
 
@@ -17,6 +17,8 @@ pub(super) struct Spacing {
     pub(super) aligned: bool,
     /// Kernel support over dx.
     pub(super) support: f64,
+    /// Angle of the lattice against the one that the shape would have, degrees.
+    pub(super) turn: f64,
 }
 
 impl Spacing {
@@ -77,6 +79,13 @@ pub(super) fn sides(axis: usize) -> [TankSide; 2] {
 /// All points of a shape, x innermost.
 pub(super) fn of_shape<const D: usize>(geometry: &Geometry, spacing: Spacing) -> Vec<Point<D>> {
     match geometry {
+        Geometry::Box(block) if spacing.turn != 0.0 => turned(geometry, block, spacing),
+        Geometry::Disc { center, radius: reach } | Geometry::Ring { center, outer: reach, .. }
+            if spacing.turn != 0.0 =>
+        {
+            let [min, max] = [-reach, *reach].map(|way| center.map(|x| x + way));
+            turned(geometry, &Block { min, max }, spacing)
+        }
         Geometry::Box(block) => in_box(block, spacing),
         Geometry::Disc { center, radius } => in_ring(center, -1.0, *radius, spacing),
         Geometry::Ring { center, inner, outer } => in_ring(center, *inner, *outer, spacing),
@@ -167,6 +176,25 @@ fn in_box<const D: usize>(block: &Block, spacing: Spacing) -> Vec<Point<D>> {
         let (normal, corner) = nearest_face(&place, &cells);
         let position = std::array::from_fn(|a| block.min[a] + place[a] * spacing.dx);
         points.push(Point { position, normal, corner });
+    });
+    points
+}
+
+/// The points of a lattice in a geometry of a solid that is turned about the middle of the box around it.
+fn turned<const D: usize>(geometry: &Geometry, around: &Block, spacing: Spacing) -> Vec<Point<D>> {
+    let middle: [f64; D] = std::array::from_fn(|a| 0.5 * (around.min[a] + around.max[a]));
+    let reach = (0..D).map(|a| (around.max[a] - around.min[a]).powi(2)).sum::<f64>().sqrt();
+    let cells = (0.5 * reach / spacing.dx).ceil() as i64 + 1;
+    let [cos, sin] = moved::turn(spacing.turn);
+    let mut points = Vec::new();
+    each_index([[-cells, cells]; D], |k| {
+        let mut from: [f64; D] = k.map(|k| spacing.place(k) * spacing.dx);
+        (from[0], from[1]) = (cos * from[0] - sin * from[1], sin * from[0] + cos * from[1]);
+        let position = std::array::from_fn(|a| middle[a] + from[a]);
+        // What lies on the surface is outside, as in a polygon.
+        if region::contains(geometry, spacing, &position, -TOLERANCE * spacing.dx) {
+            points.push(Point { position, normal: [0.0; D], corner: false });
+        }
     });
     points
 }

@@ -93,6 +93,8 @@ impl Polygon {
             true => (edges.longest().from, edges.longest().direction()),
             false => (edges.low, [1.0, 0.0]),
         };
+        let [cos, sin] = super::moved::turn(spacing.turn);
+        let along = [cos * along[0] - sin * along[1], sin * along[0] + cos * along[1]];
         let across = [-along[1], along[0]];
         let place = |s: f64, t: f64| [0, 1].map(|a| origin[a] + along[a] * s + across[a] * t);
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);

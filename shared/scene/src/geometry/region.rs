@@ -67,7 +67,12 @@ pub(super) fn voids_before(scene: &Scene, index: usize) -> Vec<&Void> {
 }
 
 /// Whether a box, disc, ring or tank, grown by `margin` (shrunk where negative), holds a point.
-fn contains<const D: usize>(geometry: &Geometry, spacing: Spacing, p: &[f64; D], margin: f64) -> bool {
+pub(super) fn contains<const D: usize>(
+    geometry: &Geometry,
+    spacing: Spacing,
+    p: &[f64; D],
+    margin: f64,
+) -> bool {
     let radius = |center: &[f64; 3]| (0..D).map(|a| (p[a] - center[a]).powi(2)).sum::<f64>().sqrt();
     match geometry {
         Geometry::Box(block) => holds(block, p, margin),

@@ -75,6 +75,7 @@ fn scene(shapes: Vec<Shape>) -> Scene {
 fn shape(phase: Phase, geometry: Geometry) -> Shape {
     Shape {
         spacing: None,
+        lattice_angle: 0.0,
         name: "shape".into(),
         phase,
         solid: (phase == Phase::Solid).then_some(0),

@@ -17,6 +17,8 @@ const BODIES: &[&str] = &[
     "body-contact-force",
     "body-contact-moment",
     "body-energy",
+    "strain",
+    "cauchy-stress",
 ];
 
 pub(super) static PROBE: Table = Table::new(
@@ -29,6 +31,9 @@ pub(super) static PROBE: Table = Table::new(
             "displacement",
             "position",
             "stress",
+            "solid-velocity",
+            "strain",
+            "cauchy-stress",
             "pressure",
             "velocity",
         ]),
@@ -57,7 +62,12 @@ pub(super) static PROBE: Table = Table::new(
         Key::new("within", Kind::Table(&BOX), "Only on particles that are in this box at the start.")
             .only(LOADED),
         Key::new("about", Kind::Vector, "The point that a moment is about.").unit("m").only(&["moment"]),
-        Key::new("body", Kind::Text, "Name of a body; but for its energy of a rigid one.").only(BODIES),
+        Key::new(
+            "body",
+            Kind::Text,
+            "Name of a body: for strain, stress and energy of any, else of a rigid one.",
+        )
+        .only(BODIES),
         Key::new("solid", Kind::Text, "Name of the solid that it is about, where there are several."),
     ],
 )

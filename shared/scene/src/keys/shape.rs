@@ -12,6 +12,8 @@ const SOLID: &[&str] = &["solid"];
 const FLUID: &[&str] = &["fluid"];
 const WALL: &[&str] = &["wall"];
 const NO_VOID: &[&str] = &["fluid", "solid", "wall"];
+// Degrees: more would lose digits, and fewer say the same.
+const TURN: Range = Range::at_least(-360.0).up_to(360.0);
 const CORNER: Kind = Kind::Array(&Kind::Number(Range::ANY), 2, 2);
 const CORNERS: Kind = Kind::Array(&CORNER, 3, MAX_CORNERS + 1);
 
@@ -36,6 +38,14 @@ pub(super) static SHAPE: Table = Table {
                 .only(SOLID),
             Key::new("across", Kind::Integer(1, MAX_ACROSS), "So many particles across its thinnest side.")
                 .only(SOLID),
+            Key::number(
+                "lattice_angle",
+                TURN,
+                "Turns its particles' lattice inside of it, counter-clockwise.",
+            )
+            .unit("degrees")
+            .default("0.0")
+            .only(SOLID),
             Key::new("box", Kind::Table(&BOX), "An axis-parallel box."),
             Key::new("disc", Kind::Table(&DISC), "A disc."),
             Key::new("ring", Kind::Table(&RING), "A ring."),
@@ -159,10 +169,7 @@ static ROTATE: Table = Table::new(
     "rotate",
     "Turns a shape.",
     &[
-        // Degrees: more would lose digits, and fewer say the same.
-        Key::number("angle", Range::at_least(-360.0).up_to(360.0), "Angle, counter-clockwise.")
-            .unit("degrees")
-            .required(),
+        Key::number("angle", TURN, "Angle, counter-clockwise.").unit("degrees").required(),
         Key::new("about", Kind::Vector, "Centre of the rotation.")
             .unit("m")
             .default("the middle of the box around it"),

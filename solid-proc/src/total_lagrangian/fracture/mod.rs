@@ -119,6 +119,11 @@ impl<const D: usize> Fracture<D> {
         self.crushed.clear();
     }
 
+    /// Body of each particle.
+    pub(super) fn bodies(&self) -> &[u32] {
+        &self.body
+    }
+
     /// What happens now is not taken back.
     pub(super) fn is_accepted(&self) -> bool {
         self.accepted

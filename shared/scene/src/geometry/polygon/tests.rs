@@ -12,7 +12,7 @@ fn fault(outline: &[[f64; 2]], holes: &[&[[f64; 2]]]) -> String {
 }
 
 fn spacing(wall: bool, nodal: bool) -> Spacing {
-    Spacing { dx: DX, nodal, wall, aligned: !wall, support: 3.0 }
+    Spacing { dx: DX, nodal, wall, aligned: !wall, support: 3.0, turn: 0.0 }
 }
 
 fn rectangle(low: [f64; 2], high: [f64; 2]) -> [[f64; 2]; 4] {
@@ -174,13 +174,21 @@ fn lines_that_bound_no_region_are_refused_with_the_place() {
 
 #[test]
 fn a_wedge_on_a_floor_is_set_into_it() {
-    // The slope 3 : 4 goes on to (-0.16 / 3, -0.04). The right side is upright and ends in no wedge.
+    // The slope 3 : 4 goes on to (-0.16 / 3, -0.04), and behind an upright wall to (0.44, 0.33).
     let wedge = polygon(&[[0.0, 0.0], [0.4, 0.0], [0.4, 0.3]], &[]);
     let floor = |p: &[f64; 2]| (-0.5..=0.5).contains(&p[0]) && (-0.04 - 1e-9..=1e-9).contains(&p[1]);
-    let walls = |p: &[f64; 2]| p[0] >= 0.4 - 1e-9 && p[0] <= 0.5 && p[1] >= -0.1 || floor(p);
-    for held in [&floor as &dyn Fn(&[f64; 2]) -> bool, &walls] {
+    let wall = |p: &[f64; 2], top: f64| p[0] >= 0.4 - 1e-9 && p[0] <= 0.5 && (-0.1..=top).contains(&p[1]);
+    let high = |p: &[f64; 2]| wall(p, 1.0) || floor(p);
+    // The slope would come out of it at its upper end.
+    let low = |p: &[f64; 2]| wall(p, 0.31) || floor(p);
+    let tip = [-0.16 / 3.0, -0.04];
+    let on_floor = [tip, [0.4, -0.04], [0.4, 0.3]];
+    let on_both = [tip, [0.44, -0.04], [0.44, 0.33]];
+    for (held, expected) in
+        [(&floor as &dyn Fn(&[f64; 2]) -> bool, on_floor), (&low, on_floor), (&high, on_both)]
+    {
         let [set, rows] = standing::set_into(&wedge, 0.04, DX, held).expect("it stands on walls");
-        for (found, expected) in set.outline.iter().zip([[-0.16 / 3.0, -0.04], [0.4, -0.04], [0.4, 0.3]]) {
+        for (found, expected) in set.outline.iter().zip(expected) {
             assert!((0..2).all(|a| (found[a] - expected[a]).abs() < 1e-12), "{found:?} {expected:?}");
         }
         assert!((rows.outline[0][1] + 0.16).abs() < 1e-12, "four times as deep: {rows:?}");
@@ -191,6 +199,35 @@ fn a_wedge_on_a_floor_is_set_into_it() {
     assert_eq!(standing::set_into(&wedge, 0.04, DX, short), None, "a part of its side lies on no wall");
     let block = polygon(&rectangle([0.0, 0.0], [0.3, 0.2]), &[]);
     assert_eq!(standing::set_into(&block, 0.04, DX, floor), None, "no wedge");
+}
+
+/// Shifted, turned or both, a beach has the same particles.
+#[test]
+fn a_beach_that_is_shifted_and_turned_is_set_in_alike() {
+    let walls = |beach: &str| {
+        let text = format!(
+            "resolution = 0.01\nend_time = 1.0\n[fluid]\ndensity = 1000.0\n[[shape]]\nname = \"water\"\n\
+             phase = \"fluid\"\nbox = {{ min = [0.0, 0.2], max = [0.3, 0.3] }}\n[[shape]]\nname = \"beach\"\n\
+             phase = \"wall\"\n{beach}\n[[shape]]\nname = \"tank\"\nphase = \"wall\"\n\
+             tank = {{ min = [0.0, 0.0], max = [1.0, 0.5], open = [\"top\"] }}\n"
+        );
+        let scene = crate::parse(&text, std::path::Path::new("beach.toml"), &[]).expect("a scene");
+        crate::geometry::layout::<2>(&scene).wall
+    };
+    let plain = walls("polygon = [[0.4, 0.0], [1.0, 0.0], [1.0, 0.2]]");
+    for beach in [
+        "polygon = [[0.0, 0.0], [0.6, 0.0], [0.6, 0.2]]\ntranslate = [0.4, 0.0]",
+        "polygon = [[0.6, 0.2], [0.0, 0.2], [0.0, 0.0]]\nrotate = { angle = 180, about = [0.5, 0.1] }",
+    ] {
+        let moved = walls(beach);
+        assert_eq!(moved.len(), plain.len(), "{beach}");
+        for (a, b) in plain.iter().zip(&moved) {
+            let near = |a: [f64; 2], b: [f64; 2]| (0..2).all(|d| (a[d] - b[d]).abs() < 1e-9);
+            assert!(near(a.position, b.position) && near(a.normal, b.normal), "{beach}: {a:?} {b:?}");
+        }
+    }
+    let leaning = walls("polygon = [[0.4, 0.0], [1.0, 0.0], [1.0, 0.2]]\ntranslate = [0.0, 0.004]");
+    assert_ne!(leaning.len(), plain.len(), "0.4 dx above the floor it does not stand on it");
 }
 
 /// Below the surface of a beach whose tip lies on the floor, whichever stands first in the scene, walls are filled as

@@ -1,0 +1,90 @@
+//! Rows of `explain` for what a scene prescribes: motion, waves, loads and cracks. A scene without them has no such
+//! row.
+
+use crate::effects::row;
+use halfstep_output::run_json::EffectReport;
+use halfstep_scene::geometry::{Counts, Layout, holds};
+use halfstep_scene::{Decision, Phase, Scene, Shape, dispatch};
+
+/// Bytes of a real number.
+const REAL: usize = 8;
+
+/// The rows of a scene.
+pub(crate) fn rows(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
+    let names = |take: &dyn Fn(&Shape) -> bool| {
+        let names: Vec<String> =
+            scene.shapes.iter().filter(|s| take(s)).map(|s| format!("`{}`", s.name)).collect();
+        (!names.is_empty()).then(|| names.join(", "))
+    };
+    let mut list = Vec::new();
+    let mut put = |name, bytes: Option<usize>, why: String| {
+        let bytes_per_particle = bytes.map(|bytes| bytes as f64);
+        list.push(EffectReport { bytes_per_particle, ..row(Decision { name, on: true, why }) });
+    };
+    let moves = |s: &Shape| s.phase == Phase::Wall && s.motion.is_some();
+    if let Some(names) = names(&moves) {
+        // Where each begins, its normal and its surface's velocity, and its shape.
+        let bytes = (3 * scene.dimension + 1) * REAL;
+        let of_all = match scene.fluid.is_some() {
+            true => {
+                format!("all {} wall particles are placed anew, within the share of `fluid`", counts.wall)
+            }
+            false => "they are where it says, within the share of `solid`".into(),
+        };
+        let bytes = scene.fluid.is_some().then_some(bytes);
+        put("moving-walls", bytes, format!("`motion` of {names}: at each half-step {of_all}"));
+    }
+    for shape in &scene.shapes {
+        let Some(makes) = shape.motion.as_ref().and_then(|motion| motion.makes()) else { continue };
+        put(
+            "wave-maker",
+            None,
+            format!(
+                "`motion` of `{}` makes waves of {} m in {} m of water with a stroke of {:.3} m: sums of sines at each \
+                 half-step, within the share of `fluid`",
+                shape.name, makes.height, makes.depth, makes.stroke
+            ),
+        );
+    }
+    let driven = |s: &Shape| {
+        s.phase == Phase::Solid && (s.motion.is_some() || s.clamp_with.iter().any(Option::is_some))
+    };
+    if let Some(names) = names(&driven) {
+        let why = format!("clamps or bodies of {names} move as prescribed, within the share of `solid`");
+        put("prescribed-solids", None, why);
+    }
+    for shape in &scene.shapes {
+        let Some(load) = &shape.load else { continue };
+        let traction = load.traction[..scene.dimension].iter().map(f64::to_string).collect::<Vec<_>>();
+        put(
+            "load",
+            None,
+            format!(
+                "`load` of `{}`: ({}) Pa on {} particles over {} s, {} bytes for each, within the share of `solid`",
+                shape.name,
+                traction.join(", "),
+                dispatch!(scene.dimension, D => loaded::<D>(scene, shape)).unwrap_or(0),
+                load.ramp,
+                (scene.dimension + 2) * REAL
+            ),
+        );
+    }
+    if let Some(names) = names(&|s: &Shape| s.crack.is_some()) {
+        put(
+            "crack",
+            None,
+            format!("`crack` of {names}: pairs are cut at the start, which costs nothing later"),
+        );
+    }
+    list
+}
+
+/// Number of particles that a shape's load acts on.
+fn loaded<const D: usize>(scene: &Scene, shape: &Shape) -> usize {
+    let Some(load) = &shape.load else { return 0 };
+    let layout: Layout<D> = halfstep_scene::geometry::solids(scene);
+    let own = |body: u32| scene.shapes[body as usize].name == shape.name;
+    let tolerance = 1e-6 * scene.spacing(shape);
+    let taken = layout.solid.iter().filter(|p| own(p.body) && !p.clamped);
+    taken.filter(|p| holds(&load.within, &p.position, tolerance)).count()
+}
