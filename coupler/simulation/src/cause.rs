@@ -32,6 +32,12 @@ impl Cause<'_> {
                 let said = last_words(self.log, role, self.external.contains(&role));
                 RunError::RoleFailed { role, step, said }
             }
+            // Whoever is silent is the cause: a program of the user's that has ended by then ended because of that.
+            (RunError::Link(link @ LinkError::Timeout { peer, .. }), Some((role, _)))
+                if role != peer && self.external.contains(&role) =>
+            {
+                RunError::Link(link)
+            }
             (RunError::Link(link), Some((role, status))) if !names_the_fault(&link) => {
                 let is_own = !self.external.contains(&role);
                 // Whom a signal ends has no last words.

@@ -142,11 +142,12 @@ fn spacing(section: &Section<'_>, geometry: &Geometry, dimension: usize, lattice
 /// The angle of a solid's lattice inside its shape, degrees.
 fn lattice_angle(section: &Section<'_>) -> f64 {
     let Some(node) = section.node("lattice_angle") else { return 0.0 };
-    if section.node("across").is_some() {
+    let angle = section.number("lattice_angle", Some(0.0));
+    if angle != 0.0 && section.node("across").is_some() {
         let why = "turned rows are not so many across everywhere: say the `spacing`";
         section.wrong("lattice_angle", node, format!("stands beside `across`: {why}"));
     }
-    section.number("lattice_angle", Some(0.0))
+    angle
 }
 
 /// Index of the solid that a shape or a probe names; where it names none, of the only one.

@@ -193,7 +193,7 @@ fn bending<const D: usize>(
     if !is_measured(shape) {
         return Some(([of(asked[thin]), of(factor * asked[thin])], false));
     }
-    match geometry::second_moments(scene, shape).filter(|_| D == 2) {
+    match geometry::second_moments::<D>(scene, shape).filter(|_| D == 2) {
         Some(moments) => Some((moments.map(|moment| modulus * moment), false)),
         // An area is larger where its plate is thicker.
         None => {

@@ -118,10 +118,13 @@ impl Law {
                         continue;
                     }
                     let Some(foot) = nearest(other, k, at) else { continue };
-                    deepest = deepest.max(foot.depth);
                     let key = [pass, point, k as u32];
                     let before =
                         touches.binary_search_by(|touch| touch.key.cmp(&key)).ok().map(|k| touches[k]);
+                    if before.is_none() && foot.depth > other.1.deepest_start(other.0) {
+                        continue;
+                    }
+                    deepest = deepest.max(foot.depth);
                     let (forces, touch) = self.force([own, other], key, &foot, (before, dt));
                     found.push(touch);
                     let part = &other.0.parts[foot.part as usize];

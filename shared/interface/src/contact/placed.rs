@@ -6,8 +6,11 @@ use halfstep_wire::protocol::StateRecord;
 /// A point is torn whose particles lie farther from it than this, over [`REACH`]: they belong to different fragments.
 const TORN: f64 = 1.5;
 
-/// Beside torn parts nothing is deeper in a solid than this, in spacings: what seems to be lies between fragments.
-const DEEPEST: f64 = 2.0;
+/// Beside torn parts nothing is deeper in a solid than this, in spacings, and no contact begins deeper than that: what
+/// seems to be lies between fragments, or lost the surface that was nearest to it.
+const DEEPEST: f64 = 3.0;
+const DEEPEST_START: f64 = 0.5;
+
 /// An axis-parallel box.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Around {
@@ -85,6 +88,11 @@ impl Placed {
     /// Greatest depth in the solid that is believed, m.
     pub(super) fn deepest(&self, outline: &Outline) -> f64 {
         if self.torn.is_empty() { f64::INFINITY } else { DEEPEST * outline.spacing }
+    }
+
+    /// Greatest depth at which a contact with the solid begins, m.
+    pub(super) fn deepest_start(&self, outline: &Outline) -> f64 {
+        if self.torn.is_empty() { f64::INFINITY } else { DEEPEST_START * outline.spacing }
     }
 
     /// Finds the points whose particles are no longer together.

@@ -188,7 +188,7 @@ const STRAIGHT: f64 = 0.05;
 
 /// Second moment of area of a straight plate in the plane about its middle, per width, asked and of its particles, m³:
 /// that of their distances across and of their cells, over the plate's length. `None` of what is no rectangle.
-pub fn second_moments(scene: &Scene, shape: &Shape) -> Option<[f64; 2]> {
+pub fn second_moments<const D: usize>(scene: &Scene, shape: &Shape) -> Option<[f64; 2]> {
     let spacing = Spacing::of(scene, shape);
     let geometry = shape.geometry.unmoved();
     let corners: Vec<[f64; 2]> = match geometry {
@@ -215,8 +215,9 @@ pub fn second_moments(scene: &Scene, shape: &Shape) -> Option<[f64; 2]> {
     if length < 2.0 * thickness || area < (1.0 - STRAIGHT) * length * thickness {
         return None;
     }
-    let points = points::of_shape::<2>(geometry, spacing);
-    let places: Vec<[f64; 2]> = points.iter().map(|point| at(&point.position)).collect();
+    let points = points::of_shape::<D>(geometry, spacing);
+    let places: Vec<[f64; 2]> =
+        points.iter().map(|point| at(&[point.position[0], point.position[1]])).collect();
     // Whole columns of an unturned lattice are as long as they are, which is no matter of stiffness.
     let length = match spacing.turn == 0.0 {
         true => extents(&mut places.iter().copied())[0] + spacing.dx,
@@ -339,7 +340,7 @@ mod tests {
                  youngs_modulus = 1e6\npoissons_ratio = 0.3\n[[shape]]\nname = \"s\"\nphase = \"solid\"\n{geometry}\n"
             );
             let scene = parse(&text, Path::new("s.toml"), &[]).unwrap();
-            second_moments(&scene, &scene.shapes[0]).map(|moments| moments.map(|moment| 12.0 * moment))
+            second_moments::<2>(&scene, &scene.shapes[0]).map(|moments| moments.map(|moment| 12.0 * moment))
         };
         let upright = "polygon = [[0.0, 0.0], [0.005, 0.0], [0.005, 0.1], [0.0, 0.1]]";
         // Along (3, 4) / 5.
