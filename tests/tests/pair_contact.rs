@@ -279,8 +279,8 @@ solid = "brittle"
 "#;
 
 /// Where points held on whose particles were in different fragments, contact gave energy: the slab's particles came to
-/// 140 m/s and the run diverged at 0.018 s. What contact does only takes energy: 354, 73 and 35 J/m of the ram's 1200 J/m
-/// by 0.06 s.
+/// 140 m/s and the run diverged at 0.018 s. What contact does only takes energy: 354, 73 and 35 J/m of the ram's
+/// 1200 J/m by 0.06 s.
 #[test]
 fn crumbs_between_two_solids_gain_nothing() {
     let crushed = Written::new(CRUSHED);
