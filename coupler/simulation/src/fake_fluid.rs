@@ -264,7 +264,9 @@ impl Pusher<'_> {
                     dt = self.trial.time_step.min(state.header().dt_limit).min(contact).min(left);
                     next_time = if dt < left { time + dt } else { self.scene.end_time };
                 }
-                let forces = self.forces([half_step.before(), dt], records, stage == 0);
+                // The last state has no step: contacts then take that of their limit.
+                let step_length = if stops { f64::INFINITY } else { dt };
+                let forces = self.forces([half_step.before(), step_length], records, stage == 0);
                 if stage == 0 {
                     self.log.row(time, self.solid.measure(records, &forces))?;
                 }

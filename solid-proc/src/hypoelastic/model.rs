@@ -107,7 +107,7 @@ impl<const D: usize> Hypoelastic<D> {
             [EffectName::WallClamp, EffectName::WallParticles].map(|effect| takes_part(scene, solid, effect));
         let mut points = layout.solid.clone();
         if walls_hold {
-            points.extend(wall_particles(&layout.solid, &layout.wall, 2.0 * h + SKIN * h));
+            points.extend(wall_particles(&layout.wall));
         }
         let n = points.len();
         let now = State::new(&points, material.density);

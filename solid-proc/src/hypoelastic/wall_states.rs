@@ -34,26 +34,17 @@ impl<const D: usize> WallStates<D> {
     }
 }
 
-/// The scene's wall particles that a solid may come near while its particles move by at most the largest side of the
-/// box around them.
+/// The scene's wall particles as particles of the model.
 pub(super) fn wall_particles<const D: usize>(
-    solid: &[SolidPoint<D>],
     walls: &[WallPoint<D>],
-    reach: f64,
-) -> Vec<SolidPoint<D>> {
-    let bound = |d: usize, f: fn(f64, f64) -> f64, from| solid.iter().map(|p| p.position[d]).fold(from, f);
-    let low: [f64; D] = std::array::from_fn(|d| bound(d, f64::min, f64::INFINITY));
-    let high: [f64; D] = std::array::from_fn(|d| bound(d, f64::max, f64::NEG_INFINITY));
-    let margin = reach + (0..D).map(|d| high[d] - low[d]).fold(0.0, f64::max);
-    let near = |x: &[f64; D]| (0..D).all(|d| (low[d] - margin..high[d] + margin).contains(&x[d]));
-    let held = |wall: &WallPoint<D>| SolidPoint {
+) -> impl Iterator<Item = SolidPoint<D>> + '_ {
+    walls.iter().map(|wall| SolidPoint {
         position: wall.position,
         velocity: [0.0; D],
         clamped: true,
         body: wall.shape,
         copy: 0,
-    };
-    walls.iter().filter(|wall| near(&wall.position)).map(held).collect()
+    })
 }
 
 /// Why the scene's walls cannot hold values toward its solid of that index; `None`: they can.
@@ -64,6 +55,9 @@ pub(super) fn why_not(scene: &Scene, solid: usize) -> Option<&'static str> {
     }
     if walls().any(|wall| wall.motion.is_some()) {
         return Some("a wall moves");
+    }
+    if scene.leaves_walls_to_coupler(solid) {
+        return Some("the solid says `contact`, so that the coupler holds it against walls");
     }
     (scene.solid_spacing(solid) != scene.resolution).then_some("the solid's spacing is not that of the walls")
 }

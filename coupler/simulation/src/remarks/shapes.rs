@@ -163,7 +163,13 @@ fn of_shape<const D: usize>(scene: &Scene, index: usize, [particles, clamped]: [
         bending_by_area: by_area,
         bends: beams::deflection(scene, shape),
         thinnest: None,
-        unit: if is_measured(shape) { "m²" } else { "m" },
+        unit: if !is_measured(shape) {
+            "m"
+        } else if D == 2 {
+            "m²"
+        } else {
+            "m³"
+        },
     }
 }
 
@@ -193,7 +199,7 @@ fn bending<const D: usize>(
     if !is_measured(shape) {
         return Some(([of(asked[thin]), of(factor * asked[thin])], false));
     }
-    match geometry::second_moments::<D>(scene, shape).filter(|_| D == 2) {
+    match (D == 2).then(|| geometry::second_moments::<D>(scene, shape)).flatten() {
         Some(moments) => Some((moments.map(|moment| modulus * moment), false)),
         // An area is larger where its plate is thicker.
         None => {
@@ -283,7 +289,7 @@ pub(super) fn sizes(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
     for (shape, of_scene) in placed.iter().zip(&scene.shapes) {
         let Some((axis, factor)) = shape.worst() else { continue };
         // Of what is no box along its lattice.
-        let stiffer = shape.bending.filter(|_| shape.unit == "m²" && !shape.bending_by_area);
+        let stiffer = shape.bending.filter(|_| shape.unit != "m" && !shape.bending_by_area);
         let stiffer = stiffer.map(|[asked, computed]| computed / asked);
         let bends_otherwise = stiffer.is_some_and(|factor| (factor - 1.0).abs() >= NOTABLY_STIFFER);
         if (factor - 1.0).abs() < NOTABLE && !bends_otherwise {
@@ -296,7 +302,7 @@ pub(super) fn sizes(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
         }
         let (asked, computed) = (length(shape.asked[axis]), length(shape.computed[axis]));
         let what = match of_scene.geometry.unmoved() {
-            _ if shape.unit == "m²" => "large",
+            _ if shape.unit != "m" => "large",
             Geometry::Box(_) | Geometry::Tank { .. } => ["wide", "high", "deep"][axis],
             Geometry::Disc { .. } => "across",
             Geometry::Ring { .. } => "thick",
