@@ -290,7 +290,7 @@ fn crumbs_between_two_solids_gain_nothing() {
     for pair in &run.report.contacts {
         println!("{:?} {:.2} J/m, {:.1} mm deep", pair.solids, pair.normal, 1e3 * pair.largest_penetration);
         assert!(pair.normal < 0.0 && pair.friction == 0.0, "{pair:?}");
-        assert!(pair.largest_penetration <= 2.0 * 0.005, "{pair:?}");
+        assert!(pair.largest_penetration <= 3.0 * 0.005, "{pair:?}");
     }
     let same = crushed.run().run();
     assert_eq!(run.state_hash(), same.state_hash(), "three processes");
