@@ -14,7 +14,7 @@ use crate::time_step::StepLimits;
 use crate::walls::Walls;
 use crate::walls::moving::motions;
 use halfstep_interface::Parameters;
-use halfstep_role::impulse::Impulse;
+use halfstep_role::balance::Balance;
 use halfstep_role::ledger::Ledger;
 use halfstep_role::role::{Costs, CoverageError, Peer, Role};
 use halfstep_role::timeline;
@@ -346,7 +346,7 @@ impl<const D: usize, X: FluidEffect<D>> Role for Fluid<D, X> {
         self.ledger.as_ref().map(|own| &own.ledger)
     }
 
-    fn impulse(&self) -> Option<Impulse> {
+    fn impulse(&self) -> Option<Balance> {
         self.coupling.as_ref().map(|coupling| coupling.impulse)
     }
 

@@ -9,7 +9,7 @@ use halfstep_sph::neighbours::PADDING;
 use halfstep_wire::half_step::HalfStep;
 use std::path::Path;
 
-fn tank(overrides: &[&str]) -> Scene {
+pub(crate) fn tank(overrides: &[&str]) -> Scene {
     let text = r#"
         resolution = 0.01
         end_time = 1.0

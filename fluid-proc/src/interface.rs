@@ -4,7 +4,7 @@ use crate::columns::Columns;
 use crate::ledger::FluidLedger;
 use crate::rates::RateSum;
 use halfstep_interface::{Interface, Parameters};
-use halfstep_role::impulse::{Impulse, add_force};
+use halfstep_role::balance::Balance;
 use halfstep_role::role::{CoverageError, Peer};
 use halfstep_sph::columns::bounds;
 use halfstep_sph::lane::LANES;
@@ -32,9 +32,9 @@ pub struct Coupling<const D: usize> {
     /// By slots, what solids add to the velocity gradient, 1/s; empty where no viscous stress crosses the interface.
     pub(crate) gradients: Vec<(u32, [[f64; D]; D])>,
     /// Of all that solids did to the particles over whole steps.
-    pub(crate) impulse: Impulse,
-    /// Sum of the forces of this half-step and of their magnitudes, N (2D: N/m).
-    forces: ([f64; 3], f64),
+    pub(crate) impulse: Balance,
+    /// The forces of this half-step.
+    forces: Balance,
 }
 
 impl<const D: usize> Coupling<D> {
@@ -54,8 +54,8 @@ impl<const D: usize> Coupling<D> {
             gap: f64::INFINITY,
             seen: false,
             gradients: Vec::new(),
-            impulse: Impulse::default(),
-            forces: ([0.0; 3], 0.0),
+            impulse: Balance::default(),
+            forces: Balance::default(),
         })
     }
 
@@ -212,13 +212,13 @@ impl<const D: usize> Coupling<D> {
             self.seen = false;
         }
         self.gap = f64::INFINITY;
-        self.forces = ([0.0; 3], 0.0);
+        self.forces = Balance::default();
         for interface in &mut self.interfaces {
             let (slots, forces) = (&self.slots, &mut self.forces);
             interface.act_on_fluid(|record, acceleration, density_rate| {
                 let slot = slots[record] as usize;
                 sums[slot / LANES].add(slot % LANES, acceleration, density_rate);
-                add_force(forces, wide(acceleration).map(|a| own[record].mass * a));
+                forces.add(wide(acceleration).map(|a| own[record].mass * a));
                 if let Some(ledger) = &mut ledger {
                     ledger.push(&own[record], acceleration, density_rate);
                 }
@@ -233,13 +233,13 @@ impl<const D: usize> Coupling<D> {
         for (&slot, answer) in self.slots.iter().zip(answers) {
             let acceleration: [f64; D] = std::array::from_fn(|d| answer.cross_viscosity[d]);
             sums[slot as usize / LANES].add(slot as usize % LANES, acceleration, 0.0);
-            add_force(&mut self.forces, wide(acceleration).map(|a| mass * a));
+            self.forces.add(wide(acceleration).map(|a| mass * a));
         }
     }
 
     /// Books the forces of this half-step as those of a whole step of this length, s.
     pub(crate) fn book(&mut self, dt: f64) {
-        self.impulse.add(dt, self.forces);
+        self.impulse.add_all(&self.forces, dt);
     }
 
     /// Place of the solid whose particles moved farthest since the set was chosen.

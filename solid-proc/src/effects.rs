@@ -41,9 +41,7 @@ pub(crate) fn takes_part(scene: &Scene, solid: usize, effect: EffectName) -> boo
 
 /// The model of the scene's solid of that index evaluates contact with walls.
 pub(crate) fn touches_walls(scene: &Scene, solid: usize) -> bool {
-    !scene.leaves_walls_to_coupler(solid)
-        && !takes_part(scene, solid, EffectName::WallParticles)
-        && takes_part(scene, solid, EffectName::WallContact)
+    !scene.leaves_walls_to_coupler(solid) && takes_part(scene, solid, EffectName::WallContact)
 }
 
 fn derive(scene: &Scene, k: usize, effect: EffectName) -> Derived {

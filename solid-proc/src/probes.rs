@@ -7,6 +7,7 @@ use halfstep_scene::geometry::{self, SolidPoint, holds, nearest};
 use halfstep_scene::{Block, BodyQuantity, EnergyPart, Phase, ProbeKind, Scene, Spot};
 use halfstep_wire::frame::{mean_stress, von_mises};
 use halfstep_wire::wide;
+use std::cell::OnceCell;
 
 /// A probe of a solid.
 pub(crate) enum Measurement<const D: usize> {
@@ -51,10 +52,12 @@ pub(crate) fn of_solid<const D: usize>(
         let near = nearest(particles.reference.iter().copied(), std::array::from_fn(|d| at[d]));
         near.into_iter().map(|p| p as u32).collect()
     };
+    // Filled where a probe asks for it, for all of them.
+    let placed = OnceCell::new();
+    let layout = || placed.get_or_init(|| geometry::layout::<D>(scene).with_solid(scene, solid));
     let of_body = |body: &str| -> Vec<u32> {
-        let points = geometry::layout::<D>(scene).with_solid(scene, solid).solid;
         let own = |(_, point): &(usize, &SolidPoint<D>)| scene.shapes[point.body as usize].body() == body;
-        points.iter().enumerate().filter(own).map(|(p, _)| p as u32).collect()
+        layout().solid.iter().enumerate().filter(own).map(|(p, _)| p as u32).collect()
     };
     let of_spot = |spot: &Spot| match spot {
         Spot::At(at) => near(at),
@@ -62,19 +65,15 @@ pub(crate) fn of_solid<const D: usize>(
     };
     let strain = |of: &Spot| {
         let particles = of_spot(of);
-        let layout = geometry::layout::<D>(scene).with_solid(scene, solid);
-        let pieces = geometry::pieces(scene, &layout);
+        let pieces = geometry::pieces(scene, layout());
         let same = |p: u32, q: u32| pieces.get(p as usize) == pieces.get(q as usize);
         Strain::new(model, &particles, scene.solid_spacing(solid), same)
     };
     let loaded = |within: Option<Block>, shape: Option<usize>| {
-        let bodies = shape.map(|_| geometry::layout::<D>(scene).with_solid(scene, solid).solid);
-        let of_shape = |p: u32| match (&bodies, shape) {
-            (Some(points), Some(shape)) => {
-                points.get(p as usize).is_some_and(|point| point.body as usize == shape)
-            }
-            _ => true,
+        let is_of = |p: u32, shape: usize| {
+            layout().solid.get(p as usize).is_some_and(|point| point.body as usize == shape)
         };
+        let of_shape = |p: u32| shape.is_none_or(|shape| is_of(p, shape));
         let inside = |p: &u32| {
             within.is_none_or(|b| holds(&b, &particles.reference[*p as usize], 0.0)) && of_shape(*p)
         };

@@ -2,6 +2,7 @@
 
 use crate::model::{Particles, SolidModel};
 use crate::total_lagrangian::material::{Matrix, green};
+use halfstep_scene::geometry::Cells;
 use halfstep_sph::tensor::{determinant, inverse};
 
 /// Neighbours are closer than this in the reference configuration, in spacings: the diagonal of a cell.
@@ -26,6 +27,8 @@ impl<const D: usize> Strain<D> {
         same: impl Fn(u32, u32) -> bool,
     ) -> Self {
         let places = model.particles().reference;
+        let mut all = Cells::new(NEIGHBOUR * spacing);
+        (0..places.len() as u32).for_each(|p| all.add(&places[p as usize], p));
         let near = |p: u32| {
             if model.deformation(p).is_some() {
                 return Vec::new();
@@ -34,7 +37,9 @@ impl<const D: usize> Strain<D> {
                 let r2: f64 = difference(&places[q as usize], &places[p as usize]).norm_squared();
                 q != p && r2 < (NEIGHBOUR * spacing).powi(2) && same(p, q)
             };
-            (0..places.len() as u32).filter(close).collect()
+            let mut near: Vec<u32> = all.around(&places[p as usize]).copied().filter(close).collect();
+            near.sort_unstable();
+            near
         };
         Self { particles: particles.iter().map(|&p| (p, near(p))).collect(), spacing }
     }

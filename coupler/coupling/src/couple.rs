@@ -10,7 +10,7 @@ pub use crate::solids::ContactSummary;
 use crate::solids::{Jump, Solids, Work};
 use halfstep_link::{CouplerPort, Expect, StateMessage};
 use halfstep_output::run_json::RoleSeconds;
-use halfstep_role::impulse::Impulse;
+use halfstep_role::balance::Balance;
 use halfstep_role::timeline::{self, Kind, Watch};
 use halfstep_scene::Scene;
 use halfstep_sph::Phase;
@@ -38,7 +38,7 @@ pub struct Outcome {
     /// Largest relative mismatch of the forces on both sides.
     pub action_reaction: f64,
     /// Of the fluid's forces on all solids, as they were sent.
-    pub impulse: Impulse,
+    pub impulse: Balance,
     /// Consistency checks passed.
     pub checks: u64,
     /// Pairs listed in the coupler's sums.

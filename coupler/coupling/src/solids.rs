@@ -12,7 +12,7 @@ use halfstep_interface::cross_viscosity::CrossViscosity;
 use halfstep_interface::{Interface, Parameters};
 use halfstep_link::{FLUID, StateMessage};
 use halfstep_output::FirstMessage;
-use halfstep_role::impulse::{Impulse, add_force};
+use halfstep_role::balance::Balance;
 use halfstep_role::timeline;
 use halfstep_scene::{Gravity, Scene, geometry};
 use halfstep_sph::lane::Isa;
@@ -62,10 +62,10 @@ pub(crate) struct Solids<const D: usize> {
     cross: CrossViscosity<D>,
     fluid_forces: Vec<ForceRecord>,
     gravity: Gravity,
-    /// Sum of the fluid's forces on all solids at the states' instant, and of their magnitudes, N (2D: N/m).
-    by_fluid: ([f64; 3], f64),
+    /// The fluid's forces on all solids at the states' instant.
+    by_fluid: Balance,
     /// Of them over whole steps.
-    pub(crate) impulse: Impulse,
+    pub(crate) impulse: Balance,
     /// What solids do to each other; `None` where there is one.
     contact: Option<Contact>,
 }
@@ -126,8 +126,8 @@ impl<const D: usize> Solids<D> {
             cross: CrossViscosity::default(),
             fluid_forces: Vec::new(),
             gravity: Gravity::of(scene),
-            by_fluid: ([0.0; 3], 0.0),
-            impulse: Impulse::default(),
+            by_fluid: Balance::default(),
+            impulse: Balance::default(),
             contact: Contact::new(scene),
         }
     }
@@ -289,7 +289,7 @@ impl<const D: usize> Solids<D> {
         let blank = |id| ForceRecord { id, ..ForceRecord::default() };
         let mut pairs = 0;
         self.fluid_forces.clear();
-        self.by_fluid = ([0.0; 3], 0.0);
+        self.by_fluid = Balance::default();
         if self.first > 0 {
             self.fluid_forces.extend(states[FLUID].records().iter().map(|r| blank(r.id)));
         }
@@ -318,7 +318,7 @@ impl<const D: usize> Solids<D> {
             });
             interface.drag_on_fluid(|record, a| more(&mut forces[record], a));
             for (slot, record) in interface.solid.slots() {
-                add_force(&mut self.by_fluid, side.forces[record].force(interface.solid.own_mass[slot]));
+                self.by_fluid.add(side.forces[record].force(interface.solid.own_mass[slot]));
             }
         }
         if touching {
@@ -329,7 +329,7 @@ impl<const D: usize> Solids<D> {
 
     /// Books the fluid's forces as last evaluated as those of a whole step of this length, s.
     pub(crate) fn book(&mut self, dt: f64) {
-        self.impulse.add(dt, self.by_fluid);
+        self.impulse.add_all(&self.by_fluid, dt);
     }
 
     /// Adds the forces of contacts at the states' instant, s, in a time step `dt`, s, to those of the fluid.
@@ -361,19 +361,13 @@ impl<const D: usize> Solids<D> {
 
     /// Sum of all interface forces over the sum of their magnitudes; `None` where there are none.
     pub(crate) fn audit(&mut self, states: &[impl StateMessage]) -> Option<f64> {
-        let (mut sum, mut scale) = ([0.0; 3], 0.0);
-        let mut add = |force: [f64; 3]| {
-            for d in 0..3 {
-                sum[d] += force[d];
-                scale += force[d].abs();
-            }
-        };
+        let mut all = Balance::default();
         let records = states.first()?.records();
         for interface in self.solids.iter_mut().filter_map(|side| side.interface.as_mut()) {
-            interface.act_on_fluid(|record, a, _| add(wide(a).map(|a| a * records[record].mass)));
+            interface.act_on_fluid(|record, a, _| all.add(wide(a).map(|a| a * records[record].mass)));
         }
         for (force, record) in self.fluid_forces.iter().zip(records) {
-            add(force.cross_viscosity.map(|a| a * record.mass));
+            all.add(force.cross_viscosity.map(|a| a * record.mass));
         }
         for side in &self.solids {
             let Some(interface) = &side.interface else { continue };
@@ -381,10 +375,10 @@ impl<const D: usize> Solids<D> {
                 // Walls are no part of the exchange: nobody has the opposite force.
                 let walls = side.walls.as_ref().map_or([0.0; 2], |walls| walls.on(record));
                 let force = side.forces[record].force(interface.solid.own_mass[slot]);
-                add([force[0] - walls[0], force[1] - walls[1], force[2]]);
+                all.add([force[0] - walls[0], force[1] - walls[1], force[2]]);
             }
         }
-        (scale > 0.0).then(|| sum.iter().fold(0.0_f64, |m, s| m.max(s.abs())) / scale)
+        all.mismatch()
     }
 }
 

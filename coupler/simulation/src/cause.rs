@@ -1,6 +1,7 @@
 //! Why a coupled run ended: who caused it, and what that process said last.
 
 use halfstep_coupling::error::{RoleEnd, RunError};
+use halfstep_coupling::supervise::Children;
 use halfstep_link::LinkError;
 use halfstep_wire::Name;
 use std::fs::File;
@@ -8,6 +9,7 @@ use std::io::{Read, Seek, SeekFrom};
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::process::ExitStatus;
+use std::time::Duration;
 
 /// The end of the log that is searched, bytes.
 const TAIL: u64 = 64 << 10;
@@ -48,6 +50,18 @@ impl Cause<'_> {
             (error, _) => error,
         }
     }
+}
+
+/// Ends all children after a run that failed with this error; returns the one whose end ended the others, if one did.
+pub(crate) fn culprit(children: &mut Children, error: &RunError) -> Option<(Name, ExitStatus)> {
+    children.wait(Duration::from_millis(300));
+    let missed = match error {
+        RunError::Link(LinkError::PeerDied { peer }) => Some(*peer),
+        _ => None,
+    };
+    let cause = children.culprit(missed);
+    children.stop(Duration::from_secs(1));
+    cause
 }
 
 /// Whether an error says what is wrong, and not only that somebody is missed.

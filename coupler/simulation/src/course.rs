@@ -4,7 +4,7 @@
 use crate::advice::advice;
 use crate::checkpoint::Checkpoint;
 use crate::options::SolidSource;
-use crate::participants::{report_impulse, report_outcome, report_participants};
+use crate::participants::{report_outcome, report_participants};
 use crate::{last_frame, remarks, run};
 use halfstep_coupling::checkpoints::Checkpoints;
 use halfstep_coupling::clock::Clock;
@@ -84,8 +84,7 @@ pub(crate) fn report_local(
 ) -> bool {
     report_outcome(scene, &outcome, report);
     let reports: Vec<Option<Report>> = reports.into_iter().map(Some).collect();
-    report_impulse(&outcome, &reports, report);
-    report_participants(scene, external, &outcome.last, &reports, None, report);
+    report_participants(scene, external, &outcome, &reports, None, report);
     outcome.stopped
 }
 

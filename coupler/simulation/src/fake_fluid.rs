@@ -1,7 +1,7 @@
 //! `halfstep fake-fluid`: pushes a solid of another program with a known load, so that it can be tried alone. The
 //! solid's side of the exchange is that of a run; fluid and coupler are stand-ins.
 
-use crate::cause::Cause;
+use crate::cause::{Cause, culprit};
 use crate::particles::{self, PARTICLES_VARIABLE};
 use crate::run::check_gravity;
 use crate::session::watch;
@@ -159,13 +159,8 @@ pub fn run(scene: &Scene, trial: &Trial) -> Result<Tried, RunError> {
         ..RunReport::default()
     };
     let ended = ended.map_err(|error| {
-        children.wait(Duration::from_millis(300));
-        let missed = match error {
-            RunError::Link(LinkError::PeerDied { peer }) => Some(peer),
-            _ => None,
-        };
-        let cause = early.or_else(|| children.culprit(missed));
-        children.stop(Duration::from_secs(1));
+        let ended = culprit(&mut children, &error);
+        let cause = early.or(ended);
         let at = connected.load(Ordering::Relaxed).then_some((steps, time));
         Cause { log: &log, external: &[trial.solid], at }.of(error, cause)
     });

@@ -14,7 +14,6 @@ use halfstep_role::report::Report;
 use halfstep_scene::geometry::Layout;
 use halfstep_scene::{Phase, Scene};
 use halfstep_wire::Name;
-use halfstep_wire::protocol::StateHeader;
 
 /// The participants of a coupled scene with the sizes of their messages: each in the process that the scene names,
 /// those in `external` in one of their own.
@@ -97,17 +96,11 @@ pub(crate) fn report_outcome(scene: &Scene, outcome: &Outcome, report: &mut RunR
     }
 }
 
-/// Puts into the report how far what the fluid took from the solids is from what the coupler sent to them.
-pub(crate) fn report_impulse(outcome: &Outcome, reports: &[Option<Report>], report: &mut RunReport) {
-    let taken = reports.iter().flatten().find_map(|own| own.impulse);
-    report.audit.impulse = taken.and_then(|taken| taken.mismatch(&outcome.impulse));
-}
-
 /// Puts what the participants said at their ends into the report: sums by phase, and a row for each of them.
 pub(crate) fn report_participants(
     scene: &Scene,
     external: &[(Name, SolidSource)],
-    last: &[StateHeader],
+    outcome: &Outcome,
     reports: &[Option<Report>],
     config: Option<&LinkConfig>,
     report: &mut RunReport,
@@ -156,13 +149,17 @@ pub(crate) fn report_participants(
             }),
             process,
             name: participant.name,
-            particles: last[place].particles,
-            mass: last[place].audit.mass,
+            particles: outcome.last[place].particles,
+            mass: outcome.last[place].audit.mass,
             outside: 0,
             capacity: config.map(|c| c.participants[place].capacity),
             times,
         });
     }
+    report.audit.impulse = reports.iter().flatten().find_map(|own| own.impulse).and_then(|mut both| {
+        both.add_all(&outcome.impulse, 1.0);
+        both.mismatch()
+    });
     report.energy = energy(reports, &report.contacts);
     let phases = scene.participants().into_iter().map(|participant| participant.phase);
     let known: Vec<(Phase, Report)> =

@@ -3,7 +3,7 @@
 
 use crate::effects::row;
 use halfstep_output::run_json::EffectReport;
-use halfstep_scene::geometry::{Counts, Layout, holds};
+use halfstep_scene::geometry::{Counts, Layout};
 use halfstep_scene::{Decision, Phase, Scene, Shape, dispatch};
 
 /// Bytes of a real number.
@@ -53,7 +53,7 @@ pub(crate) fn rows(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
         let why = format!("clamps or bodies of {names} move as prescribed, within the share of `solid`");
         put("prescribed-solids", None, why);
     }
-    for shape in &scene.shapes {
+    for (index, shape) in scene.shapes.iter().enumerate() {
         let Some(load) = &shape.load else { continue };
         let traction = load.traction[..scene.dimension].iter().map(f64::to_string).collect::<Vec<_>>();
         put(
@@ -63,7 +63,7 @@ pub(crate) fn rows(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
                 "`load` of `{}`: ({}) Pa on {} particles over {} s, {} bytes for each, within the share of `solid`",
                 shape.name,
                 traction.join(", "),
-                dispatch!(scene.dimension, D => loaded::<D>(scene, shape)).unwrap_or(0),
+                dispatch!(scene.dimension, D => loaded::<D>(scene, index)).unwrap_or(0),
                 load.ramp,
                 (scene.dimension + 2) * REAL
             ),
@@ -79,12 +79,8 @@ pub(crate) fn rows(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
     list
 }
 
-/// Number of particles that a shape's load acts on.
-fn loaded<const D: usize>(scene: &Scene, shape: &Shape) -> usize {
-    let Some(load) = &shape.load else { return 0 };
+/// Number of particles that the load of a shape of that index acts on.
+fn loaded<const D: usize>(scene: &Scene, shape: usize) -> usize {
     let layout: Layout<D> = halfstep_scene::geometry::solids(scene);
-    let own = |body: u32| scene.shapes[body as usize].name == shape.name;
-    let tolerance = 1e-6 * scene.spacing(shape);
-    let taken = layout.solid.iter().filter(|p| own(p.body) && !p.clamped);
-    taken.filter(|p| holds(&load.within, &p.position, tolerance)).count()
+    layout.solid.iter().filter(|p| p.body as usize == shape && !p.clamped && p.is_in_load(scene)).count()
 }

@@ -1,10 +1,10 @@
 //! A coupled run: starts its roles as processes or as threads, couples them, and finds out why one of them ended.
 
-use crate::cause::Cause;
+use crate::cause::{Cause, culprit};
 use crate::checkpoint::Checkpoint;
 use crate::isa::{self, ISA_VARIABLE};
 use crate::options::{Launcher, RunOptions, SolidSource};
-use crate::participants::{participants, report_impulse, report_outcome, report_participants};
+use crate::participants::{participants, report_outcome, report_participants};
 use crate::particles::{self, PARTICLES_VARIABLE};
 use crate::silence::{Ended, Silence, TICK, TOLD};
 use crate::timeline;
@@ -15,9 +15,7 @@ use halfstep_coupling::external::ExternalSolid;
 use halfstep_coupling::supervise::Children;
 use halfstep_coupling::{no_room, say};
 use halfstep_coupling::{reports, roles};
-use halfstep_link::{
-    self as link, Claim, CouplerLink, FLUID, LinkConfig, LinkError, Participant, Processes, Threads,
-};
+use halfstep_link::{self as link, Claim, CouplerLink, FLUID, LinkConfig, Participant, Processes, Threads};
 use halfstep_output::run_json::{Percentiles, RunStatus};
 use halfstep_output::{self as output, RunDirectory, RunReport};
 use halfstep_role::lockstep::RoleError;
@@ -134,15 +132,7 @@ impl<'a, const D: usize> Session<'a, D> {
             let [p50, p99] = fluid.round_trip_us;
             Percentiles { p50, p99 }
         });
-        report_impulse(&outcome, &own, report);
-        report_participants(
-            self.scene,
-            &self.options.external,
-            &outcome.last,
-            &own,
-            Some(&self.config),
-            report,
-        );
+        report_participants(self.scene, &self.options.external, &outcome, &own, Some(&self.config), report);
         Ok(outcome.stopped)
     }
 
@@ -244,13 +234,7 @@ impl<'a, const D: usize> Session<'a, D> {
                     children.stop(Duration::from_millis(300));
                     return Err(error);
                 }
-                children.wait(Duration::from_millis(300));
-                let missed = match error {
-                    RunError::Link(LinkError::PeerDied { peer }) => Some(peer),
-                    _ => None,
-                };
-                let cause = children.culprit(missed);
-                children.stop(Duration::from_secs(1));
+                let cause = culprit(&mut children, &error);
                 let waiting = !connected.load(Ordering::Relaxed);
                 let seconds = self.options.solid_wait;
                 Err(match (error, cause) {

@@ -168,10 +168,9 @@ impl<const D: usize> PairEffect<D> for GuardedViscosity<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use halfstep_scene as scene;
+    use crate::fluid_tests::tank;
     use halfstep_sph::kernel::CubicSpline;
     use halfstep_sph::lane::Fused;
-    use std::path::Path;
 
     const DX: f64 = 0.01;
     /// Of the scene's kernel: h / dx = 2 where water is alone.
@@ -179,23 +178,7 @@ mod tests {
     const RHO: f64 = 1000.0;
 
     fn guard() -> WallGuard<2> {
-        let text = r#"
-            resolution = 0.01
-            end_time = 1.0
-            effects.artificial-viscosity = "off"
-            [fluid]
-            density = 1000.0
-            sound_speed = 20.0
-            [[shape]]
-            name = "water"
-            phase = "fluid"
-            box = { min = [0.0, 0.0], max = [0.2, 0.1] }
-            [[shape]]
-            name = "tank"
-            phase = "wall"
-            tank = { min = [0.0, 0.0], max = [0.2, 0.2], open = ["top"] }
-        "#;
-        let scene = scene::parse(text, Path::new("tank.toml"), &[]).expect("a right scene");
+        let scene = tank(&["effects.artificial-viscosity=\"off\""]);
         let mut guard = WallGuard::of(&scene).expect("a fluid");
         guard.added = vec![guard.guard];
         guard

@@ -10,8 +10,8 @@
 //! assert_eq!(on_threads(2, || 6 * 7).expect("two threads"), 42);
 //! ```
 
+pub mod balance;
 mod error;
-pub mod impulse;
 mod latency;
 pub mod ledger;
 pub mod lockstep;

@@ -1,6 +1,6 @@
 //! What a participant says about itself when it ends: where its time went and how much it computed.
 
-use crate::impulse::Impulse;
+use crate::balance::Balance;
 use halfstep_scene::{EffectName, EnergyEntry};
 use serde::{Deserialize, Serialize};
 
@@ -31,5 +31,5 @@ pub struct Report {
     /// Energy ledger, J; empty where the scene asks for none.
     pub energy: Vec<EnergyEntry>,
     /// Impulse that the solids gave it, as it was added to its particles; of the fluid.
-    pub impulse: Option<Impulse>,
+    pub impulse: Option<Balance>,
 }

@@ -1,6 +1,6 @@
 //! What a process that owns particles does, seen from the lock-step: the seam between physics and co-simulation.
 
-use crate::impulse::Impulse;
+use crate::balance::Balance;
 use crate::ledger::Ledger;
 use halfstep_scene::EffectName;
 use halfstep_sph::Phase;
@@ -106,7 +106,7 @@ pub trait Role: Send {
         None
     }
     /// Impulse that the solids gave it since the start, as it was added to its particles.
-    fn impulse(&self) -> Option<Impulse> {
+    fn impulse(&self) -> Option<Balance> {
         None
     }
     /// Copies the particles for output.

@@ -74,6 +74,15 @@ pub struct SolidPoint<const D: usize> {
     pub copy: u32,
 }
 
+impl<const D: usize> SolidPoint<D> {
+    /// It begins in the box of its shape's load, which acts on it unless it is clamped.
+    pub fn is_in_load(&self, scene: &Scene) -> bool {
+        let shape = &scene.shapes[self.body as usize];
+        let tolerance = 1e-6 * scene.spacing(shape);
+        shape.load.as_ref().is_some_and(|load| holds(&load.within, &self.position, tolerance))
+    }
+}
+
 /// A wall particle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WallPoint<const D: usize> {
@@ -434,7 +443,8 @@ impl Spacing {
             wall: shape.phase == Phase::Wall,
             aligned: shape.phase == Phase::Solid,
             support: 2.0 * scene.smoothing_ratio,
-            turn: shape.lattice_angle,
+            // A square lattice that is turned by right angles is the same one.
+            turn: shape.lattice_angle % 90.0,
         }
     }
 }

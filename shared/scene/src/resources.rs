@@ -109,10 +109,9 @@ pub(super) fn check_loads(scene: &Scene, root: &Node, report: &Report) {
     let found = dispatch!(scene.dimension, D => {
         let points = geometry::solids::<D>(scene).solid;
         let of = |(index, shape): (usize, &Shape)| {
-            let within = shape.load.as_ref()?.within;
-            let tolerance = 1e-6 * scene.spacing(shape);
+            shape.load.as_ref()?;
             let own = points.iter().filter(|p| p.body as usize == index);
-            let held = own.filter(|p| geometry::holds(&within, &p.position, tolerance)).map(|p| p.clamped);
+            let held = own.filter(|p| p.is_in_load(scene)).map(|p| p.clamped);
             Some((index, held.fold([0, 0], |[free, clamped], is| [free + u32::from(!is), clamped + u32::from(is)])))
         };
         scene.shapes.iter().enumerate().filter_map(of).collect::<Vec<_>>()

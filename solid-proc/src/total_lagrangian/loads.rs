@@ -1,7 +1,7 @@
 //! Tractions and cracks that a scene prescribes.
 
 use crate::columns::Vectors;
-use halfstep_scene::geometry::{SolidPoint, holds};
+use halfstep_scene::geometry::SolidPoint;
 use halfstep_scene::{Scene, Traction};
 use halfstep_sph::pair::FixedPairs;
 
@@ -18,10 +18,7 @@ impl<const D: usize> Loads<D> {
         let (mut loaded, mut tractions) = (Vec::new(), Vec::new());
         for (index, shape) in scene.shapes.iter().enumerate() {
             let Some(load) = &shape.load else { continue };
-            let tolerance = 1e-6 * dx;
-            let taken = |p: &SolidPoint<D>| {
-                p.body as usize == index && !p.clamped && holds(&load.within, &p.position, tolerance)
-            };
+            let taken = |p: &SolidPoint<D>| p.body as usize == index && !p.clamped && p.is_in_load(scene);
             let area = dx.powi(D as i32 - 1);
             let acceleration = std::array::from_fn(|d| load.traction[d] * area / mass);
             let slots = points.iter().zip(slot_of).filter(|(p, _)| taken(p));

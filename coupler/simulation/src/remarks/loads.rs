@@ -1,6 +1,6 @@
 //! Remarks on tractions.
 
-use halfstep_scene::geometry::{self, Layout};
+use halfstep_scene::geometry::Layout;
 use halfstep_scene::{Scene, Shape, Traction};
 use std::collections::BTreeSet;
 
@@ -11,12 +11,10 @@ const SEVERAL: f64 = 1.5;
 /// grows as the spacing falls.
 pub(super) fn tractions<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
     let loaded = |(index, shape): (usize, &Shape)| Some((index, shape.name.clone(), shape.load?));
-    for (index, name, Traction { within, traction, .. }) in scene.shapes.iter().enumerate().filter_map(loaded)
-    {
+    for (index, name, Traction { traction, .. }) in scene.shapes.iter().enumerate().filter_map(loaded) {
         let dx = scene.spacing(&scene.shapes[index]);
-        let taken = layout.solid.iter().filter(|p| {
-            p.body as usize == index && !p.clamped && geometry::holds(&within, &p.position, 1e-6 * dx)
-        });
+        let taken =
+            layout.solid.iter().filter(|p| p.body as usize == index && !p.clamped && p.is_in_load(scene));
         let places: Vec<[f64; D]> = taken.map(|p| p.position).collect();
         let columns = |axis: usize| {
             let cells: BTreeSet<i64> = places.iter().map(|x| (x[axis] / dx).floor() as i64).collect();

@@ -121,7 +121,7 @@ impl Law {
                     let key = [pass, point, k as u32];
                     let before =
                         touches.binary_search_by(|touch| touch.key.cmp(&key)).ok().map(|k| touches[k]);
-                    if before.is_none() && foot.depth > other.1.deepest_start(other.0) {
+                    if foot.depth > other.1.deepest(other.0, before.is_none()) {
                         continue;
                     }
                     deepest = deepest.max(foot.depth);
@@ -263,7 +263,7 @@ fn nearest((outline, placed): (&Outline, &Placed), piece: usize, at: [f64; 2]) -
     };
     let depth = square.sqrt();
     let outside = dot(away, side[0]) + dot(away, side[1]) >= 0.0;
-    if outside || depth > placed.deepest(outline) {
+    if outside {
         return None;
     }
     let normal = if share > 0.0 && share < 1.0 { side[0] } else { away.map(|x| -x / depth) };

@@ -85,14 +85,10 @@ impl Placed {
         self.torn.get(point as usize).is_some_and(|torn| *torn)
     }
 
-    /// Greatest depth in the solid that is believed, m.
-    pub(super) fn deepest(&self, outline: &Outline) -> f64 {
-        if self.torn.is_empty() { f64::INFINITY } else { DEEPEST * outline.spacing }
-    }
-
-    /// Greatest depth at which a contact with the solid begins, m.
-    pub(super) fn deepest_start(&self, outline: &Outline) -> f64 {
-        if self.torn.is_empty() { f64::INFINITY } else { DEEPEST_START * outline.spacing }
+    /// Greatest depth in the solid that is believed of a contact that begins, or that goes on, m.
+    pub(super) fn deepest(&self, outline: &Outline, begins: bool) -> f64 {
+        let deepest = if begins { DEEPEST_START } else { DEEPEST };
+        if self.torn.is_empty() { f64::INFINITY } else { deepest * outline.spacing }
     }
 
     /// Finds the points whose particles are no longer together.

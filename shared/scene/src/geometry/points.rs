@@ -79,10 +79,9 @@ pub(super) fn sides(axis: usize) -> [TankSide; 2] {
 /// All points of a shape, x innermost.
 pub(super) fn of_shape<const D: usize>(geometry: &Geometry, spacing: Spacing) -> Vec<Point<D>> {
     match geometry {
-        // A square lattice that is turned by right angles is the same one.
-        Geometry::Box(block) if spacing.turn % 90.0 != 0.0 => turned(geometry, block, spacing),
+        Geometry::Box(block) if spacing.turn != 0.0 => turned(geometry, block, spacing),
         Geometry::Disc { center, radius: reach } | Geometry::Ring { center, outer: reach, .. }
-            if spacing.turn % 90.0 != 0.0 =>
+            if spacing.turn != 0.0 =>
         {
             let [min, max] = [-reach, *reach].map(|way| center.map(|x| x + way));
             turned(geometry, &Block { min, max }, spacing)
