@@ -173,7 +173,8 @@ fn a_run_that_goes_on_tells_how_far_it_is() {
     let path = running.dir().join("run.json");
     let report = || halfstep_output::RunReport::read(&path).unwrap();
     eventually(20.0, "steps in run.json", || report().steps > 0);
-    assert!(report().status.is_none() && report().time > 0.0);
+    let now = report();
+    assert!(now.status.is_none() && now.time > 0.0, "{:?}, {} s: {:?}", now.status, now.time, now.error);
     kill(running.pid(), libc::SIGKILL);
     let outcome = running.wait();
     assert!(!outcome.dir.join("plot.png").exists());

@@ -62,6 +62,9 @@ pub struct Without {
     /// Models for which this is true; empty: all.
     #[serde(default)]
     pub models: Vec<String>,
+    /// Particle spacings for which this is true, m; empty: all.
+    #[serde(default)]
+    pub resolution: Vec<f64>,
     /// What the program's error must contain where the run diverges.
     #[serde(default)]
     pub says: String,

@@ -78,6 +78,7 @@ fn at(case: &Case, model: Option<&str>, dx: f64, long: bool, rows: &mut Vec<Row>
         .without
         .iter()
         .filter(|w| w.models.is_empty() || model.is_some_and(|m| w.models.iter().any(|own| own == m)))
+        .filter(|w| w.resolution.is_empty() || w.resolution.contains(&dx))
         .map(|w| (w, run(&w.set)))
         .collect();
     for (w, result) in &removed {
