@@ -28,20 +28,25 @@ price oscillating-plate --until 0.4 --set resolution=0.004 \
     --vary solid.model=hypoelastic --vary solid.material=st-venant-kirchhoff --vary solid.hourglass=0.1 \
     --vary effects.clamp-face=off --vary solid.smoothing_ratio=1.33 --vary numerics.solid_cfl=0.3,0.9
 price hydrostatic-tank --set resolution=0.02 --vary resolution=0.015,0.03 \
+    --vary numerics.precision=mixed
     --vary fluid.density_diffusion=simple,hydrostatic,none \
     --vary fluid.artificial_viscosity.linear=1 --vary smoothing_ratio=1.5 --vary numerics.cfl=0.2
 price taylor-green --vary resolution=0.025,0.04,0.05 --vary numerics.kernel=cubic-spline \
+    --vary numerics.precision=mixed
     --vary smoothing_ratio=1.5,2.4 --vary effects.particle-shifting=off \
     --vary fluid.density_diffusion=none --vary numerics.cfl=0.2
 price standing-wave --set resolution=0.025 --vary resolution=0.0357142857142857143,0.05 \
+    --vary numerics.precision=mixed
     --vary numerics.kernel=cubic-spline \
     --vary smoothing_ratio=1.5,2.4 --vary effects.particle-shifting=off
 price dam-break --set resolution=0.0028575 --vary resolution=0.00408214285714285714,0.005715 \
+    --vary numerics.precision=mixed
     --vary numerics.cfl=0.2,0.6 --vary smoothing_ratio=1.5 --vary effects.particle-shifting=off \
     --vary numerics.kernel=cubic-spline --vary fluid.density_diffusion=simple,none
 price hydrostatic-plate --until 0.25 --set resolution=0.01666666666666666667 --vary resolution=0.0125,0.025 \
     --vary solid.model=hypoelastic --vary fluid.density_diffusion=simple
 price elastic-gate --until 0.25 --set resolution=0.00166666666666666667 --set shape.plate.across=5 \
+    --vary numerics.precision=mixed
     --vary resolution=0.00125,0.0025 --vary shape.plate.across=3,4 \
     --vary solid.model=hypoelastic,finite-element --vary solid.sub_steps=20 \
     --vary numerics.cfl=0.2,0.6 \

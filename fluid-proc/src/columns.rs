@@ -3,9 +3,10 @@
 use halfstep_scene::geometry::FluidPoint;
 use halfstep_sph::columns::copy;
 pub use halfstep_sph::columns::{Vectors, fit, vectors};
-use halfstep_sph::lane::{LANES, Lanes};
+use halfstep_sph::lane::{Halves, LANES, Lanes, Number, Precision};
 use halfstep_sph::neighbours::{PADDING, Rows};
 use halfstep_sph::state_equation::StateEquation;
+use rayon::prelude::*;
 
 /// A particle's state but for where it is as a target, and what the pair pass reads of a neighbour, side by side: one
 /// cache line in two dimensions.
@@ -52,6 +53,64 @@ impl<const D: usize> Source<D> {
     }
 }
 
+/// Slots that one task rounds.
+const TASK: usize = 1024;
+
+/// A source in single precision, half as long.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(64))]
+struct SingleSource<const D: usize> {
+    position: [Halves; D],
+    velocity: [f32; D],
+    density: f32,
+    excess: f32,
+    pressure: f32,
+    pressure_term: f32,
+    volume: f32,
+}
+
+impl<const D: usize> SingleSource<D> {
+    const ZERO: Self = Self {
+        position: [Halves { high: 0.0, low: 0.0 }; D],
+        velocity: [0.0; D],
+        density: 0.0,
+        excess: 0.0,
+        pressure: 0.0,
+        pressure_term: 0.0,
+        volume: 0.0,
+    };
+
+    #[inline(always)]
+    fn new(source: &Source<D>, reference: f64) -> Self {
+        Self {
+            position: source.position.map(Halves::of),
+            velocity: source.velocity.map(|v| v as f32),
+            density: source.density as f32,
+            excess: (source.density - reference) as f32,
+            pressure: source.pressure as f32,
+            pressure_term: source.pressure_term as f32,
+            volume: source.volume as f32,
+        }
+    }
+}
+
+/// A source beside several targets: the same numbers for each of them.
+#[derive(Clone, Copy, Debug)]
+pub struct Beside<const D: usize, L> {
+    /// Velocity, m/s.
+    pub velocity: [L; D],
+    /// Density rho, kg/m³.
+    pub density: L,
+    /// Density over the reference, kg/m³: differences of densities are those of this.
+    pub excess: L,
+    /// Pressure p, Pa.
+    pub pressure: L,
+    /// p / rho², m⁵/(kg s²).
+    pub pressure_term: L,
+    /// Volume, m³ (2D: m²).
+    pub volume: L,
+}
+
 /// The particles of a pair pass: fluid and walls alike.
 #[derive(Clone, Debug)]
 pub struct PairParticles<const D: usize> {
@@ -59,14 +118,18 @@ pub struct PairParticles<const D: usize> {
     pub position: Vectors<D>,
     /// The same with the rest of the state.
     pub sources: Vec<Source<D>>,
+    /// The same in single precision; only for passes of mixed precision.
+    single: Vec<SingleSource<D>>,
     /// Mass of each particle, kg (2D: kg/m).
     pub mass: f64,
+    /// Reference density, kg/m³.
+    density: f64,
 }
 
 impl<const D: usize> PairParticles<D> {
-    /// `n` particles of one mass.
-    pub fn new(n: usize, mass: f64) -> Self {
-        Self { position: vectors(n), sources: vec![Source::ZERO; n], mass }
+    /// `n` particles of one mass, kg (2D: kg/m), whose density is about `density`, kg/m³.
+    pub fn new(n: usize, mass: f64, density: f64) -> Self {
+        Self { position: vectors(n), sources: vec![Source::ZERO; n], single: Vec::new(), mass, density }
     }
 
     /// Brings all into a new order. What a source has of position and pressure is not what it was.
@@ -87,6 +150,62 @@ impl<const D: usize> PairParticles<D> {
         self.sources[slot] = Source::new(position, velocity, density, pressure, self.mass);
     }
 
+    /// Brings what passes of this precision read up to date.
+    pub fn round_for(&mut self, precision: Precision) {
+        if precision == Precision::Double {
+            return;
+        }
+        let reference = self.density;
+        fit(&mut self.single, self.sources.len(), SingleSource::ZERO);
+        let parts = self.single.par_chunks_mut(TASK).zip(self.sources.par_chunks(TASK));
+        parts.for_each(|(single, sources)| {
+            for (single, source) in single.iter_mut().zip(sources) {
+                *single = SingleSource::new(source, reference);
+            }
+        });
+    }
+
+    /// Bytes allocated for what passes of mixed precision read.
+    pub fn bytes_of_single(&self) -> usize {
+        self.single.capacity() * size_of::<SingleSource<D>>()
+    }
+
+    /// Where source `j` is.
+    #[inline(always)]
+    pub fn at<L: Lanes>(&self, j: usize) -> [L::Number; D] {
+        if L::SINGLE {
+            self.single[j].position.map(L::of_halves)
+        } else {
+            self.sources[j].position.map(L::Number::of)
+        }
+    }
+
+    /// Source `j` beside several targets.
+    #[inline(always)]
+    pub fn beside<L: Lanes>(&self, j: usize) -> Beside<D, L> {
+        if L::SINGLE {
+            let s = &self.single[j];
+            Beside {
+                velocity: std::array::from_fn(|d| L::splat_single(s.velocity[d])),
+                density: L::splat_single(s.density),
+                excess: L::splat_single(s.excess),
+                pressure: L::splat_single(s.pressure),
+                pressure_term: L::splat_single(s.pressure_term),
+                volume: L::splat_single(s.volume),
+            }
+        } else {
+            let s = &self.sources[j];
+            Beside {
+                velocity: std::array::from_fn(|d| L::splat(s.velocity[d])),
+                density: L::splat(s.density),
+                excess: L::splat(s.density),
+                pressure: L::splat(s.pressure),
+                pressure_term: L::splat(s.pressure_term),
+                volume: L::splat(s.volume),
+            }
+        }
+    }
+
     #[inline(always)]
     fn each<L: Lanes>(&self, slot: usize, of: impl Fn(&Source<D>) -> f64) -> L {
         each(&self.sources, slot, of)
@@ -102,6 +221,12 @@ impl<const D: usize> PairParticles<D> {
     #[inline(always)]
     pub fn densities<L: Lanes>(&self, slot: usize) -> L {
         self.each(slot, |s| s.density)
+    }
+
+    /// Densities over the reference of consecutive slots, as [`Beside::excess`] has them.
+    #[inline(always)]
+    pub fn excesses<L: Lanes>(&self, slot: usize) -> L {
+        if L::SINGLE { self.each(slot, |s| s.density - self.density) } else { self.densities(slot) }
     }
 
     /// p / rho² of consecutive slots.
@@ -141,7 +266,7 @@ impl<const D: usize> Columns<D> {
     /// From the scene's points, unsorted.
     pub fn new(points: &[FluidPoint<D>], state: &StateEquation, volume: f64) -> Self {
         let n = points.len();
-        let mut now = PairParticles::new(n, state.density * volume);
+        let mut now = PairParticles::new(n, state.density * volume, state.density);
         for (i, p) in points.iter().enumerate() {
             for d in 0..D {
                 now.position[d][i] = p.position[d];

@@ -97,17 +97,21 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         let layout = geometry::layout::<D>(scene);
         let h = scene.smoothing_ratio * scene.resolution;
         let skin = SKIN * h;
+        let precision = scene.numerics.precision;
         let volume = scene.resolution.powi(D as i32);
         let state = StateEquation::new(fluid.density, fluid.sound_speed, fluid.background_pressure);
         let columns = Columns::new(&layout.fluid, &state, volume);
         let non_negative = NonNegativeWallPressure::<D>::decide(scene).on;
-        let walls = (!layout.wall.is_empty())
-            .then(|| Walls::new(&layout.wall, &state, volume, 2.0 * h + skin, non_negative, &motions(scene)));
+        let walls = (!layout.wall.is_empty()).then(|| {
+            let (reach, motions) = (2.0 * h + skin, motions(scene));
+            Walls::new(&layout.wall, &state, volume, reach, non_negative, &motions, precision)
+        });
         let effects = effects::of_scene(scene, more);
         let domain = geometry::domain(scene);
         let coupled =
             (0..scene.solids.len()).filter_map(|solid| Parameters::new(scene, solid, isa)).collect();
         let gravity_in_time = Gravity::of(scene);
+        let list = || ClusterList::with_precision(isa, precision);
         let (probes, riders) = probes::of_fluid(scene, &layout);
         Some(
             Self {
@@ -116,7 +120,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
                 walls,
                 coupling: Coupling::new(coupled),
                 state,
-                rows: Rows::default(),
+                rows: Rows::new(precision),
                 smoothing_length: h,
                 skin,
                 resolution: scene.resolution,
@@ -133,9 +137,9 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
                 effects,
                 stage: Stage::First,
                 domain: (std::array::from_fn(|d| domain.min[d]), std::array::from_fn(|d| domain.max[d])),
-                fluid_list: ClusterList::new(isa),
-                wall_list: ClusterList::new(isa),
-                list_of_walls: ClusterList::new(isa),
+                fluid_list: list(),
+                wall_list: list(),
+                list_of_walls: list(),
                 sums: Vec::new(),
                 displacement: 0.0,
                 largest_speed: 0.0,

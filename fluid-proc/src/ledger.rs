@@ -68,6 +68,7 @@ struct PowerLaw<'a, K, E, const D: usize> {
 }
 
 impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for PowerLaw<'_, K, E, D> {
+    const SINGLE: bool = true;
     type Target<L: Lanes> = Target<E::Own<L>, L, D>;
     type Sum<L: Lanes> = Power<L>;
 
@@ -84,10 +85,14 @@ impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for PowerLaw<'_,
         self.sources.sources[j].position
     }
     #[inline(always)]
+    fn source_numbers<L: Lanes>(&self, j: usize) -> [L::Number; D] {
+        self.sources.at::<L>(j)
+    }
+    #[inline(always)]
     fn add<A: Arch, L: Lanes>(&self, i: &Self::Target<L>, j: usize, dx: [L; D], r2: L, sum: &mut Power<L>) {
-        let s = &self.sources.sources[j];
+        let s = self.sources.beside::<L>(j);
         let f = self.kernel.gradient_over_r::<A, L>(distance(r2, self.kernel.smoothing_length()));
-        let pair = i.with::<A>(s, dx, r2);
+        let pair = i.with::<A>(&s, dx, r2);
         let mut rates = PairRates { bracket: L::ZERO, density: L::ZERO, vector: [L::ZERO; D] };
         self.effect.add::<A, L>(&i.own, j, &pair, &mut rates);
         let mf = L::splat(self.sources.mass) * f;
@@ -97,7 +102,7 @@ impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for PowerLaw<'_,
             sum.given += a[d] * (i.velocity[d] - wall(d));
             sum.walls += a[d] * wall(d);
         }
-        sum.given += i.pressure_term * L::splat(s.volume) * f * rates.density;
+        sum.given += i.pressure_term * s.volume * f * rates.density;
     }
 }
 

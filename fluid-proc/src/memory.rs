@@ -16,7 +16,7 @@ fn of_each<T, const D: usize>(columns: &[Vec<T>; D]) -> usize {
 
 impl<const D: usize> PairParticles<D> {
     fn bytes(&self) -> usize {
-        of_each(&self.position) + of(&self.sources)
+        of_each(&self.position) + of(&self.sources) + self.bytes_of_single()
     }
 }
 

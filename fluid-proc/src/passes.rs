@@ -15,6 +15,7 @@ use halfstep_sph::pair;
 impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
     /// All sums of a half-step over fluid and walls.
     pub(crate) fn sums<K: Kernel<D>>(&mut self, kernel: K) {
+        self.columns.now.round_for(self.fluid_list.precision());
         self.extrapolate(kernel);
         let stage = self.stage;
         self.pair_evaluations += self.among(kernel, |effects, around| effects.prepare(stage, around));
@@ -57,6 +58,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         let show = |slot, sum: &_| walls.shows(slot, sum, &self.state);
         pair::pass_into(self.isa, &law, &self.list_of_walls, show, fours);
         walls.shown.sources = sources;
+        walls.shown.round_for(self.list_of_walls.precision());
         self.pair_evaluations += evaluations(&self.list_of_walls);
     }
 

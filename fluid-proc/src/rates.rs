@@ -1,7 +1,7 @@
 //! The one pass that gives acceleration and density rate: pressure, continuity and whatever effects the scene calls
 //! for.
 
-use crate::columns::{PairParticles, Source};
+use crate::columns::{Beside, PairParticles};
 use crate::composition::Composition;
 use crate::momentum::pressure_and_continuity;
 use halfstep_sph::artificial_viscosity::damping;
@@ -24,6 +24,8 @@ pub struct FluidPair<const D: usize, L = Lane> {
     pub density_i: L,
     /// rho_j, kg/m³.
     pub density_j: L,
+    /// rho_i - rho_j, kg/m³.
+    pub density_difference: L,
     /// p_i / rho_i².
     pub pressure_term_i: L,
     /// p_j / rho_j².
@@ -171,6 +173,7 @@ pub struct RateLaw<'a, K, E, const D: usize> {
 pub struct Target<O, L, const D: usize> {
     pub(crate) velocity: [L; D],
     density: L,
+    excess: L,
     pub(crate) pressure_term: L,
     pub(crate) own: O,
 }
@@ -181,6 +184,7 @@ impl<O, L: Lanes, const D: usize> Target<O, L, D> {
         Self {
             velocity: targets.velocities(slot),
             density: targets.densities(slot),
+            excess: targets.excesses(slot),
             pressure_term: targets.pressure_terms(slot),
             own,
         }
@@ -188,22 +192,24 @@ impl<O, L: Lanes, const D: usize> Target<O, L, D> {
 
     /// The targets with one neighbour.
     #[inline(always)]
-    pub(crate) fn with<A: Arch>(&self, s: &Source<D>, dx: [L; D], r2: L) -> FluidPair<D, L> {
-        let dv = std::array::from_fn(|d| self.velocity[d] - L::splat(s.velocity[d]));
+    pub(crate) fn with<A: Arch>(&self, s: &Beside<D, L>, dx: [L; D], r2: L) -> FluidPair<D, L> {
+        let dv = std::array::from_fn(|d| self.velocity[d] - s.velocity[d]);
         FluidPair {
             dx,
             r2,
             dv,
             approach: dot::<D, A, L>(dv, dx),
             density_i: self.density,
-            density_j: L::splat(s.density),
+            density_j: s.density,
+            density_difference: self.excess - s.excess,
             pressure_term_i: self.pressure_term,
-            pressure_term_j: L::splat(s.pressure_term),
+            pressure_term_j: s.pressure_term,
         }
     }
 }
 
 impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for RateLaw<'_, K, E, D> {
+    const SINGLE: bool = true;
     type Target<L: Lanes> = Target<E::Own<L>, L, D>;
     type Sum<L: Lanes> = RateSum<D, L>;
 
@@ -220,6 +226,10 @@ impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for RateLaw<'_, 
     fn source_position(&self, j: usize) -> [f64; D] {
         self.sources.sources[j].position
     }
+    #[inline(always)]
+    fn source_numbers<L: Lanes>(&self, j: usize) -> [L::Number; D] {
+        self.sources.at::<L>(j)
+    }
 
     #[inline(always)]
     fn add<A: Arch, L: Lanes>(
@@ -230,9 +240,9 @@ impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for RateLaw<'_, 
         r2: L,
         sum: &mut RateSum<D, L>,
     ) {
-        let s = &self.sources.sources[j];
+        let s = self.sources.beside::<L>(j);
         let f = self.kernel.gradient_over_r::<A, L>(distance(r2, self.kernel.smoothing_length()));
-        let pair = i.with::<A>(s, dx, r2);
+        let pair = i.with::<A>(&s, dx, r2);
         let mut rates = pressure_and_continuity(&pair);
         self.effects.add::<A, L>(&i.own, j, &pair, &mut rates);
         let mf = L::splat(self.sources.mass) * f;
@@ -243,6 +253,6 @@ impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for RateLaw<'_, 
                 sum.acceleration[d] = A::mul_add(mf, rates.vector[d], sum.acceleration[d]);
             }
         }
-        sum.density_rate = A::mul_add(L::splat(s.volume) * f, rates.density, sum.density_rate);
+        sum.density_rate = A::mul_add(s.volume * f, rates.density, sum.density_rate);
     }
 }

@@ -9,7 +9,7 @@ use crate::effects::viscosity::{self, StressTerm, VelocityGradient, ViscousStres
 use crate::rates::{PairEffect, RateLaw, RateSum};
 use halfstep_scene::ArtificialViscosity as Coefficients;
 use halfstep_sph::kernel::{CubicSpline, Kernel};
-use halfstep_sph::lane::{Fused, Isa, LANES, Lane, Lanes};
+use halfstep_sph::lane::{Fused, Isa, LANES, Lane, Lanes, Precision};
 use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_sph::pair;
 use proptest::prelude::*;
@@ -32,8 +32,12 @@ struct Cloud<const D: usize> {
 }
 
 fn cloud<const D: usize>(points: &[P<D>], mass: f64) -> Cloud<D> {
+    cloud_of(points, mass, Precision::Double)
+}
+
+fn cloud_of<const D: usize>(points: &[P<D>], mass: f64, precision: Precision) -> Cloud<D> {
     let n = points.len();
-    let mut shown = PairParticles::<D>::new(n, mass);
+    let mut shown = PairParticles::<D>::new(n, mass, 1000.0);
     let mut pressure = vec![0.0; n];
     for (i, p) in points.iter().enumerate() {
         for d in 0..D {
@@ -43,13 +47,14 @@ fn cloud<const D: usize>(points: &[P<D>], mass: f64) -> Cloud<D> {
         pressure[i] = p.p;
     }
     let mut id: Vec<u32> = (0..n as u32).collect();
-    let mut rows = Rows::<D>::default();
+    let mut rows = Rows::<D>::new(precision);
     rows.sort(&shown.position, &id, 2.0 * H, [-1e2; D], [1e2; D]);
     shown.permute(&mut rows);
     rows.permute(&mut pressure);
     rows.permute_ids(&mut id);
     (0..id.len()).for_each(|slot| shown.show(slot, pressure[slot]));
-    let mut list = ClusterList::new(Isa::detect());
+    shown.round_for(precision);
+    let mut list = ClusterList::with_precision(Isa::detect(), precision);
     list.build(&shown.position, &shown.position, &rows, 2.0 * H);
     let slot = (0..n as u32).map(|i| id.iter().position(|&j| j == i).unwrap()).collect();
     assert!(id.iter().filter(|&&i| i != PADDING).count() == n);
@@ -271,6 +276,48 @@ fn the_order_of_particles_does_not_matter<const D: usize>(points: &[P<D>]) {
     assert_eq!(all_effects(&cloud(points, 1000.0)), b);
 }
 
+/// Sums of the sizes of all terms of [`mixed_precision_rounds`] for a particle, each as large as its rounding makes it:
+/// velocities are rounded before their difference is taken, and the cubic spline's slope is a difference near its
+/// middle and its end.
+fn sizes<const D: usize>(points: &[P<D>], i: usize, [sound_speed, diffusion]: [f64; 2]) -> (f64, f64) {
+    let norm = |v: [f64; D]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
+    let a = &points[i];
+    let (mut push, mut fill) = (0.0, 0.0);
+    for (_, b) in points.iter().enumerate().filter(|&(j, _)| j != i) {
+        let r = norm(std::array::from_fn(|d| a.x[d] - b.x[d]));
+        let slope = -slope::<D>(0.9 * r).min(0.0) * (1.0 + H / r);
+        let (speed, s) = (norm(a.v) + norm(b.v), r * r + 0.01 * H * H);
+        let q = H * speed * r;
+        let damping = 2.0 * q * (q + sound_speed * s) / (s * s * (a.rho + b.rho));
+        push += 1000.0 * slope * r * (a.p / a.rho.powi(2) + b.p / b.rho.powi(2) + damping);
+        fill += 1000.0 / b.rho * slope * (a.rho * speed * r + 2.0 * diffusion * (a.rho - b.rho).abs());
+    }
+    (push, fill)
+}
+
+/// Pairs in single precision give what pairs in double precision give, but for rounding. What a pair gives is the same
+/// for both to the last bit; the sums round.
+fn mixed_precision_rounds<const D: usize>(points: &[P<D>]) {
+    const ROUNDING: f64 = 6e-8;
+    let (sound_speed, diffusion) = (20.0, 2.0);
+    let rates = |precision| {
+        let damping = ArtificialViscosity::new(Coefficients { linear: 1.0, quadratic: 1.0 }, sound_speed, H);
+        cloud_of(points, 1000.0, precision).rates((damping, (Simple(Strength(diffusion)), ())))
+    };
+    let [double, mixed] = [Precision::Double, Precision::Mixed].map(rates);
+    let mut pushes = 0.0;
+    for (i, (a, b)) in double.iter().zip(&mixed).enumerate() {
+        let (push, fill) = sizes(points, i, [sound_speed, diffusion]);
+        let near = |a: f64, b: f64, size: f64| (a - b).abs() <= 20.0 * ROUNDING * size;
+        assert!(
+            (0..D).all(|d| near(a.0[d], b.0[d], push)) && near(a.1, b.1, fill),
+            "{a:?} {b:?} {push} {fill}"
+        );
+        pushes += push;
+    }
+    assert!((0..D).all(|d| mixed.iter().map(|r| r.0[d]).sum::<f64>().abs() <= 20.0 * ROUNDING * pushes));
+}
+
 macro_rules! suite {
     ($($dimension:ident $D:literal),*) => {
         $(mod $dimension {
@@ -281,7 +328,8 @@ macro_rules! suite {
                 a_linear_density_is_not_diffused lone_particles_have_no_gradient
                 shear_flow_has_the_stress_of_its_rate);
             suite!(symmetries in $D: pairs_exchange_momentum a_quarter_turn_turns_the_rates
-                place_and_speed_of_the_frame_do_not_matter the_order_of_particles_does_not_matter);
+                place_and_speed_of_the_frame_do_not_matter the_order_of_particles_does_not_matter
+                mixed_precision_rounds);
         })*
     };
     (by hand in $D:literal: $($case:ident)*) => {

@@ -16,7 +16,7 @@ use halfstep_scene::geometry::WallPoint;
 use halfstep_sph::columns::bounds;
 use halfstep_sph::extrapolation::ExtrapolationSum;
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Arch, LANES, Lane, Lanes};
+use halfstep_sph::lane::{Arch, LANES, Lane, Lanes, Precision};
 use halfstep_sph::neighbours::Rows;
 use halfstep_sph::pair::{PairLaw, pair_sum};
 use halfstep_sph::state_equation::StateEquation;
@@ -50,15 +50,16 @@ impl<const D: usize> Walls<D> {
         height: f64,
         non_negative: bool,
         motions: &[Option<Motion>],
+        precision: Precision,
     ) -> Self {
         let n = points.len();
         let mut walls = Self {
             id: (0..n as u32).collect(),
-            shown: PairParticles::new(n, state.density * volume),
+            shown: PairParticles::new(n, state.density * volume, state.density),
             own_velocity: vectors(n),
             normal: vectors(n),
             reverse_all: vec![0.0; n],
-            rows: Rows::default(),
+            rows: Rows::new(precision),
             moving: Moving::new(points, motions),
             height,
             non_negative,
@@ -200,19 +201,20 @@ pub struct WallLaw<'a, K, const D: usize> {
     kernel: K,
     gravity: [f64; D],
     targets: &'a Vectors<D>,
-    sources: &'a [Source<D>],
+    sources: &'a PairParticles<D>,
     moving: bool,
 }
 
 impl<'a, K: Kernel<D>, const D: usize> WallLaw<'a, K, D> {
     /// From the fluid to the walls.
     pub fn new(kernel: K, gravity: [f64; D], walls: &'a Walls<D>, fluid: &'a Columns<D>) -> Self {
-        let (targets, sources) = (&walls.shown.position, &fluid.now.sources);
+        let (targets, sources) = (&walls.shown.position, &fluid.now);
         Self { kernel, gravity, targets, sources, moving: walls.moving.is_some() }
     }
 }
 
 impl<K: Kernel<D>, const D: usize> PairLaw<D> for WallLaw<'_, K, D> {
+    const SINGLE: bool = true;
     type Target<L: Lanes> = ();
     type Sum<L: Lanes> = WallSum<D, L>;
 
@@ -222,13 +224,17 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for WallLaw<'_, K, D> {
     }
     #[inline(always)]
     fn source_position(&self, j: usize) -> [f64; D] {
-        self.sources[j].position
+        self.sources.sources[j].position
+    }
+    #[inline(always)]
+    fn source_numbers<L: Lanes>(&self, j: usize) -> [L::Number; D] {
+        self.sources.at::<L>(j)
     }
     #[inline(always)]
     fn target<L: Lanes>(&self, _: usize) {}
     #[inline(always)]
     fn add<A: Arch, L: Lanes>(&self, _: &(), j: usize, dx: [L; D], r2: L, sum: &mut WallSum<D, L>) {
-        let fluid = &self.sources[j];
+        let fluid = self.sources.beside::<L>(j);
         let (extrapolated, pair) = (&mut sum.extrapolated, (dx, r2));
         let w = extrapolated.add_particle::<K, D, A>(
             &self.kernel,
@@ -238,10 +244,10 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for WallLaw<'_, K, D> {
             fluid.pressure,
         );
         for d in 0..D {
-            sum.velocity[d] = A::mul_add(L::splat(fluid.velocity[d]), w, sum.velocity[d]);
+            sum.velocity[d] = A::mul_add(fluid.velocity[d], w, sum.velocity[d]);
         }
         if self.moving {
-            let weight = L::splat(fluid.density) * w;
+            let weight = fluid.density * w;
             for d in 0..D {
                 sum.lever[d] = A::mul_add(weight, dx[d], sum.lever[d]);
             }

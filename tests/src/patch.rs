@@ -4,7 +4,7 @@ use halfstep_fluid::columns::PairParticles;
 use halfstep_fluid::composition::Pass;
 use halfstep_fluid::rates::{PairEffect, RateLaw, RateSum};
 use halfstep_sph::kernel::{CubicSpline, Kernel};
-use halfstep_sph::lane::Isa;
+use halfstep_sph::lane::{Isa, Precision};
 use halfstep_sph::neighbours::{ClusterList, Rows};
 use halfstep_sph::pair;
 
@@ -40,7 +40,12 @@ pub struct Patch {
 impl Patch {
     /// Sorts particles and lists all pairs within `reach`.
     pub fn new(particles: &[Particle], reach: f64, isa: Isa) -> Self {
-        let mut shown = PairParticles::<2>::new(particles.len(), 1.0);
+        Self::with_precision(particles, reach, isa, Precision::Double)
+    }
+
+    /// The same for passes of this precision.
+    pub fn with_precision(particles: &[Particle], reach: f64, isa: Isa, precision: Precision) -> Self {
+        let mut shown = PairParticles::<2>::new(particles.len(), 1.0, 1.0);
         let mut pressure: Vec<f64> = particles.iter().map(|p| p.pressure).collect();
         for (k, p) in particles.iter().enumerate() {
             for d in 0..2 {
@@ -49,13 +54,14 @@ impl Patch {
             (shown.sources[k].velocity, shown.sources[k].density) = (p.velocity, p.density);
         }
         let mut id: Vec<u32> = (0..particles.len() as u32).collect();
-        let mut rows = Rows::<2>::default();
+        let mut rows = Rows::<2>::new(precision);
         rows.sort(&shown.position, &id, 2.0, [-1e3; 2], [1e3; 2]);
         shown.permute(&mut rows);
         rows.permute(&mut pressure);
         rows.permute_ids(&mut id);
         (0..id.len()).for_each(|slot| shown.show(slot, pressure[slot]));
-        let mut list = ClusterList::new(isa);
+        shown.round_for(precision);
+        let mut list = ClusterList::with_precision(isa, precision);
         list.build(&shown.position, &shown.position, &rows, reach);
         Self { shown, list, id, isa }
     }

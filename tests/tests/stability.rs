@@ -103,6 +103,23 @@ fn renew(name: &str, text: &str) {
     }
 }
 
+/// Every case at its coarsest resolution with pairs in single precision.
+#[test]
+#[ignore = "minutes: all cases in mixed precision"]
+fn the_hard_cases_in_mixed_precision() {
+    let mut wrong = Vec::new();
+    for (_, mut family) in families() {
+        for case in &mut family.case {
+            case.set.push("numerics.precision=mixed".into());
+            case.without.clear();
+        }
+        let (text, _, not_right) = run(&family, false);
+        println!("{text}");
+        wrong.extend(not_right);
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
 #[test]
 #[ignore = "minutes: every case with larger and larger Courant numbers; a table of docs/stability.md if HALFSTEP_PAGE is set"]
 fn room_of_the_courant_number() {

@@ -195,7 +195,7 @@ fn diffuse<const D: usize, A: Arch, L: Lanes>(strength: Strength, psi: L, rates:
 
 #[inline(always)]
 fn twice_difference<const D: usize, L: Lanes>(pair: &FluidPair<D, L>) -> L {
-    L::splat(2.0) * (pair.density_i - pair.density_j)
+    L::splat(2.0) * pair.density_difference
 }
 
 impl<const D: usize> PairEffect<D> for Simple {

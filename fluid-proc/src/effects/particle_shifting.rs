@@ -167,6 +167,7 @@ struct OrderLaw<'a, K, const D: usize> {
 }
 
 impl<K: Kernel<D>, const D: usize> PairLaw<D> for OrderLaw<'_, K, D> {
+    const SINGLE: bool = true;
     type Target<L: Lanes> = ();
     type Sum<L: Lanes> = OrderSum<D, L>;
 
@@ -181,9 +182,13 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for OrderLaw<'_, K, D> {
         self.sources.sources[j].position
     }
     #[inline(always)]
+    fn source_numbers<L: Lanes>(&self, j: usize) -> [L::Number; D] {
+        self.sources.at::<L>(j)
+    }
+    #[inline(always)]
     fn add<A: Arch, L: Lanes>(&self, _: &(), j: usize, dx: [L; D], r2: L, sum: &mut OrderSum<D, L>) {
         let r = distance(r2, self.kernel.smoothing_length());
-        let vf = L::splat(self.sources.sources[j].volume) * self.kernel.gradient_over_r::<A, L>(r);
+        let vf = self.sources.beside::<L>(j).volume * self.kernel.gradient_over_r::<A, L>(r);
         let near = self.kernel.value::<A, L>(r) * L::splat(self.at_spacing);
         let near2 = near * near;
         let crowd = A::mul_add(vf * L::splat(PAIRING), near2 * near2, vf);
@@ -222,6 +227,7 @@ struct AroundLaw<'a, K, const D: usize> {
 }
 
 impl<K: Kernel<D>, const D: usize> PairLaw<D> for AroundLaw<'_, K, D> {
+    const SINGLE: bool = true;
     /// Velocity.
     type Target<L: Lanes> = [L; D];
     type Sum<L: Lanes> = Around<L>;
@@ -239,15 +245,19 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for AroundLaw<'_, K, D> {
         self.fluid.sources[j].position
     }
     #[inline(always)]
+    fn source_numbers<L: Lanes>(&self, j: usize) -> [L::Number; D] {
+        self.fluid.at::<L>(j)
+    }
+    #[inline(always)]
     fn add<A: Arch, L: Lanes>(&self, velocity: &[L; D], j: usize, _: [L; D], r2: L, sum: &mut Around<L>) {
         let reach = 2.0 * self.kernel.smoothing_length();
         // Far more than any determinant, or square of a speed, beyond the support.
-        let beyond = (r2 - L::splat(reach * reach)).max(L::ZERO) * L::splat(f64::MAX.sqrt());
+        let beyond = (r2 - L::splat(reach * reach)).max(L::ZERO) * L::splat(L::FAR);
         sum.determinant = sum.determinant.min(L::splat(self.order[j].determinant) + beyond);
-        let source = &self.fluid.sources[j];
+        let source = self.fluid.beside::<L>(j);
         let mut against = beyond;
         for d in 0..D {
-            let dv = velocity[d] - L::splat(source.velocity[d]);
+            let dv = velocity[d] - source.velocity[d];
             against = A::mul_add(-dv, dv, against);
         }
         sum.against = sum.against.min(against);

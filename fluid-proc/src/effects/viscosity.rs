@@ -35,6 +35,7 @@ pub struct GradientLaw<'a, K, const D: usize> {
 }
 
 impl<K: Kernel<D>, const D: usize> PairLaw<D> for GradientLaw<'_, K, D> {
+    const SINGLE: bool = true;
     /// Velocity.
     type Target<L: Lanes> = [L; D];
     type Sum<L: Lanes> = VelocityGradient<D, L>;
@@ -52,6 +53,10 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for GradientLaw<'_, K, D> {
         self.sources.sources[j].position
     }
     #[inline(always)]
+    fn source_numbers<L: Lanes>(&self, j: usize) -> [L::Number; D] {
+        self.sources.at::<L>(j)
+    }
+    #[inline(always)]
     fn add<A: Arch, L: Lanes>(
         &self,
         i: &Self::Target<L>,
@@ -61,10 +66,10 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for GradientLaw<'_, K, D> {
         sum: &mut VelocityGradient<D, L>,
     ) {
         let f = self.kernel.gradient_over_r::<A, L>(distance(r2, self.kernel.smoothing_length()));
-        let source = &self.sources.sources[j];
-        let vf = L::splat(source.volume) * f;
+        let source = self.sources.beside::<L>(j);
+        let vf = source.volume * f;
         for a in 0..D {
-            let row = vf * (L::splat(source.velocity[a]) - i[a]);
+            let row = vf * (source.velocity[a] - i[a]);
             for b in 0..D {
                 sum.0[a][b] = A::mul_add(row, dx[b], sum.0[a][b]);
             }

@@ -194,6 +194,7 @@ mod tests {
             approach: Lane::splat(-r),
             density_i: Lane::splat(RHO),
             density_j: Lane::splat(RHO),
+            density_difference: zero,
             pressure_term_i: zero,
             pressure_term_j: zero,
         };

@@ -12,6 +12,8 @@ const MAX_FRAMES: f64 = 1e5;
 const MAX_CHECKPOINTS: f64 = 1e5;
 const MAX_ROWS: f64 = 1e7;
 const MAX_STEPS: f64 = 1e9;
+/// Smallest resolution for pairs in single precision, m.
+const FINEST_SINGLE: f64 = 1e-6;
 
 /// The keys that can choose the phase-blind treatment.
 pub(super) const PHASE_BLIND_BY: [&str; 2] = ["interface.treatment", "preset"];
@@ -30,6 +32,7 @@ impl Check<'_> {
         self.rigid_bodies();
         self.shape_names();
         self.sizes();
+        self.precision();
         self.thin_plates();
         self.interface();
         self.times();
@@ -135,6 +138,19 @@ impl Check<'_> {
     }
 
     /// Every shape holds at least one particle.
+    /// Kernels of smaller particles leave the range of single precision.
+    fn precision(&self) {
+        let numerics = &self.scene.numerics;
+        if numerics.precision == Precision::Mixed && self.scene.resolution < FINEST_SINGLE {
+            let spacing = self.scene.resolution;
+            let reason = format!(
+                "is mixed, but with a resolution of {spacing:e} m the kernel's slopes leave the range of single \
+                precision; it goes down to {FINEST_SINGLE:e} m"
+            );
+            self.wrong("numerics.precision", reason);
+        }
+    }
+
     fn sizes(&self) {
         if self.report.has_any(&["resolution", "dimension"]) || self.coarse() {
             return;

@@ -74,6 +74,7 @@ pub use error::{Place, SceneError, SceneErrors};
 pub use frame::{Frame, Gravity};
 pub use halfstep_sph::Phase;
 pub use halfstep_sph::kernel::KernelName;
+pub use halfstep_sph::lane::Precision;
 pub use load::{load, load_with, parse, parse_with};
 pub use metric::{Metric, MetricKind, MetricReference};
 pub use motion::{Composed, Course, Motion, Part, Placement, Solitary, Spline, Turn, WaveMaker};
@@ -479,6 +480,9 @@ pub struct Numerics {
     /// Smoothing kernel.
     #[serde(with = "names::Kernel")]
     pub kernel: KernelName,
+    /// Precision of the pairs of fluid and wall particles.
+    #[serde(with = "names::PrecisionName", default)]
+    pub precision: Precision,
     /// Courant number of the fluid.
     pub cfl: f64,
     /// Courant number of the solid: dt c_P / dx.

@@ -2,6 +2,7 @@
 
 use halfstep_sph::Phase;
 use halfstep_sph::kernel::KernelName;
+use halfstep_sph::lane::Precision;
 use serde::{Deserialize, Serialize};
 
 #[derive(Serialize, Deserialize)]
@@ -17,4 +18,12 @@ pub(crate) enum PhaseName {
 pub(crate) enum Kernel {
     CubicSpline,
     WendlandC2,
+}
+
+/// Serialises [`Precision`].
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "Precision", rename_all = "kebab-case")]
+pub(crate) enum PrecisionName {
+    Double,
+    Mixed,
 }

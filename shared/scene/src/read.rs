@@ -44,6 +44,8 @@ pub(crate) const TREATMENTS: [(&str, Treatment); 2] =
     [("moving-wall", Treatment::MovingWall), ("phase-blind", Treatment::PhaseBlind)];
 pub(crate) const KERNELS: [(&str, KernelName); 2] =
     [("cubic-spline", KernelName::CubicSpline), ("wendland-c2", KernelName::WendlandC2)];
+pub(crate) const PRECISIONS: [(&str, Precision); 2] =
+    [("double", Precision::Double), ("mixed", Precision::Mixed)];
 pub(crate) const LATTICES: [(&str, Lattice); 2] = [("centred", Lattice::Centred), ("nodal", Lattice::Nodal)];
 pub(crate) const SWITCHES: [(&str, Switch); 3] =
     [("auto", Switch::Auto), ("on", Switch::On), ("off", Switch::Off)];
@@ -285,6 +287,7 @@ fn numerics(section: Section<'_>, dimension: usize, defaults: &Defaults) -> Nume
     let threads = section.section("threads");
     let numerics = Numerics {
         kernel: section.choice("kernel", Some(defaults.kernel), &KERNELS).unwrap_or(defaults.kernel),
+        precision: section.choice("precision", Some(Precision::Double), &PRECISIONS).unwrap_or_default(),
         cfl: section.number("cfl", Some(0.4)),
         solid_cfl: section.number("solid_cfl", Some(0.6)),
         max_sub_steps: section.integer("max_sub_steps", 200),

@@ -56,8 +56,8 @@ impl<L: Lanes> ExtrapolationSum<L> {
         kernel: &K,
         gravity: [f64; D],
         pair: ([L; D], L),
-        density: f64,
-        pressure: f64,
+        density: L,
+        pressure: L,
     ) -> L {
         let (w, p) = weighted::<K, D, A, L>(kernel, gravity, pair, density, pressure);
         self.add::<A>(w, p);
@@ -71,19 +71,20 @@ fn weighted<K: Kernel<D>, const D: usize, A: Arch, L: Lanes>(
     kernel: &K,
     gravity: [f64; D],
     (dx, r2): ([L; D], L),
-    density: f64,
-    pressure: f64,
+    density: L,
+    pressure: L,
 ) -> (L, L) {
     let w = kernel.value::<A, L>(distance(r2, kernel.smoothing_length()));
     let head = dot::<D, A, L>(gravity.map(L::splat), dx);
-    (w, A::mul_add(L::splat(density), head, L::splat(pressure)))
+    (w, A::mul_add(density, head, pressure))
 }
 
 impl<K: Kernel<D>, const D: usize> Extrapolation<'_, K, D> {
     /// W of source `j`, and its pressure brought to the target's height.
     #[inline(always)]
     pub fn source<A: Arch, L: Lanes>(&self, j: usize, dx: [L; D], r2: L) -> (L, L) {
-        weighted::<K, D, A, L>(&self.kernel, self.gravity, (dx, r2), self.density[j], self.pressure[j])
+        let (density, pressure) = (L::splat(self.density[j]), L::splat(self.pressure[j]));
+        weighted::<K, D, A, L>(&self.kernel, self.gravity, (dx, r2), density, pressure)
     }
 }
 

@@ -1,8 +1,8 @@
 //! Several particles at once: the vectors that the pair loop computes with.
 //!
-//! Plain arrays and plain loops: inside a function compiled for AVX2 (four numbers) or AVX-512 (eight) each operation
-//! is one instruction. Everything here must inline into that function; a call would fall back to the baseline
-//! instruction set.
+//! Plain arrays and plain loops: inside a function compiled for AVX2 (four numbers, in single precision eight) or
+//! AVX-512 (twice as many) each operation is one instruction. Everything here must inline into that function; a call
+//! would fall back to the baseline instruction set.
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
@@ -10,8 +10,11 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 /// Particles whose sums are stored together: the fewest that are computed at once.
 pub const LANES: usize = 4;
 
-/// Most particles that are computed at once; rows of particles are padded to a multiple of it.
+/// Most particles that are computed at once in double precision; rows of particles are padded to a multiple of it.
 pub const WIDEST: usize = 8;
+
+/// The same in single precision.
+pub const WIDEST_SINGLE: usize = 16;
 
 /// One number for each of several particles: four unless said otherwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,6 +23,42 @@ pub struct Lane<const N: usize = LANES>(pub [f64; N]);
 
 /// One number for each of eight particles.
 pub type Eight = Lane<WIDEST>;
+
+/// One number in single precision for each of several particles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(align(32))]
+pub struct Single<const N: usize>(pub [f32; N]);
+
+/// A number whose difference from another counts: a position, or a density. In single precision it is one number and
+/// what that leaves out.
+pub trait Number: Copy + Debug {
+    /// From a number in double precision.
+    fn of(value: f64) -> Self;
+}
+
+impl Number for f64 {
+    #[inline(always)]
+    fn of(value: f64) -> Self {
+        value
+    }
+}
+
+/// A number, and the rest of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Halves {
+    /// The number in single precision.
+    pub high: f32,
+    /// What it leaves out.
+    pub low: f32,
+}
+
+impl Number for Halves {
+    #[inline(always)]
+    fn of(value: f64) -> Self {
+        let high = value as f32;
+        Self { high, low: (value - f64::from(high)) as f32 }
+    }
+}
 
 /// What the pair loop computes with: one number for each target, a whole number of fours.
 pub trait Lanes:
@@ -40,6 +79,15 @@ pub trait Lanes:
     const TARGETS: usize;
     /// All zero.
     const ZERO: Self;
+    /// In single precision.
+    const SINGLE: bool;
+    /// Larger than whatever is compared with it, and finite times any of that.
+    const FAR: f64;
+
+    /// A number of a source whose difference from the targets' counts.
+    type Number: Number;
+    /// The targets' own.
+    type Numbers: Copy;
 
     /// The same number for all targets.
     fn splat(value: f64) -> Self;
@@ -47,6 +95,14 @@ pub trait Lanes:
     fn each(value: impl Fn(usize) -> f64) -> Self;
     /// Consecutive entries of a column.
     fn load(column: &[f64], slot: usize) -> Self;
+    /// The same number in single precision for all targets.
+    fn splat_single(value: f32) -> Self;
+    /// A source's number that is kept in halves.
+    fn of_halves(halves: Halves) -> Self::Number;
+    /// Numbers of the targets.
+    fn numbers(value: impl Fn(usize) -> f64) -> Self::Numbers;
+    /// Differences of the targets' numbers from a source's.
+    fn difference(numbers: Self::Numbers, from: Self::Number) -> Self;
     /// From fours.
     fn of_fours(four: impl Fn(usize) -> Lane) -> Self;
     /// The k-th four.
@@ -91,16 +147,10 @@ impl Arch for Unfused {
     }
 }
 
-impl<const N: usize> Default for Lane<N> {
-    fn default() -> Self {
-        Self::ZERO
-    }
-}
-
 /// Each number by itself: a plain loop, which inlines whatever surrounds it, unlike `std::array::from_fn`.
 macro_rules! each {
     ($k:ident => $number:expr) => {{
-        let mut lane = Self::ZERO;
+        let mut lane = Self([0.0; N]);
         for $k in 0..N {
             lane.0[$k] = $number;
         }
@@ -108,18 +158,100 @@ macro_rules! each {
     }};
 }
 
-impl<const N: usize> Lanes for Lane<N> {
-    const TARGETS: usize = N;
-    const ZERO: Self = Self([0.0; N]);
+macro_rules! operator {
+    ($lanes:ident, $trait:ident, $method:ident, $op:tt) => {
+        impl<const N: usize> $trait for $lanes<N> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                each!(k => self.0[k] $op other.0[k])
+            }
+        }
+    };
+}
 
-    #[inline(always)]
-    fn splat(value: f64) -> Self {
-        Self([value; N])
-    }
-    #[inline(always)]
-    fn each(value: impl Fn(usize) -> f64) -> Self {
-        each!(k => value(k))
-    }
+/// What lanes do alike in both precisions.
+macro_rules! arithmetic {
+    ($lanes:ident) => {
+        impl<const N: usize> Default for $lanes<N> {
+            fn default() -> Self {
+                Self([0.0; N])
+            }
+        }
+
+        operator!($lanes, Add, add, +);
+        operator!($lanes, Sub, sub, -);
+        operator!($lanes, Mul, mul, *);
+        operator!($lanes, Div, div, /);
+
+        impl<const N: usize> AddAssign for $lanes<N> {
+            #[inline(always)]
+            fn add_assign(&mut self, other: Self) {
+                *self = *self + other;
+            }
+        }
+
+        impl<const N: usize> Neg for $lanes<N> {
+            type Output = Self;
+            #[inline(always)]
+            fn neg(self) -> Self {
+                each!(k => -self.0[k])
+            }
+        }
+    };
+}
+
+/// The part of [`Lanes`] that is alike in both precisions.
+macro_rules! elementwise {
+    ($number:ty) => {
+        const TARGETS: usize = N;
+        const ZERO: Self = Self([0.0; N]);
+
+        #[inline(always)]
+        fn splat(value: f64) -> Self {
+            Self([value as $number; N])
+        }
+        #[inline(always)]
+        fn each(value: impl Fn(usize) -> f64) -> Self {
+            each!(k => value(k) as $number)
+        }
+        #[inline(always)]
+        fn splat_single(value: f32) -> Self {
+            Self([<$number>::from(value); N])
+        }
+        #[inline(always)]
+        fn sqrt(self) -> Self {
+            each!(k => self.0[k].sqrt())
+        }
+        #[inline(always)]
+        fn max(self, other: Self) -> Self {
+            each!(k => if self.0[k] > other.0[k] { self.0[k] } else { other.0[k] })
+        }
+        #[inline(always)]
+        fn min(self, other: Self) -> Self {
+            each!(k => if self.0[k] < other.0[k] { self.0[k] } else { other.0[k] })
+        }
+        #[inline(always)]
+        fn fused(self, b: Self, c: Self) -> Self {
+            each!(k => self.0[k].mul_add(b.0[k], c.0[k]))
+        }
+        #[inline(always)]
+        fn unfused(self, b: Self, c: Self) -> Self {
+            each!(k => self.0[k] * b.0[k] + c.0[k])
+        }
+    };
+}
+
+arithmetic!(Lane);
+arithmetic!(Single);
+
+impl<const N: usize> Lanes for Lane<N> {
+    elementwise!(f64);
+    const SINGLE: bool = false;
+    const FAR: f64 = 1.340_780_792_994_259_6e154;
+    type Number = f64;
+    type Numbers = Self;
+
     #[inline(always)]
     fn load(column: &[f64], slot: usize) -> Self {
         let part: &[f64; N] = column[slot..slot + N].try_into().expect("a slice of that length");
@@ -139,55 +271,72 @@ impl<const N: usize> Lanes for Lane<N> {
         Lane(*part)
     }
     #[inline(always)]
-    fn sqrt(self) -> Self {
-        each!(k => self.0[k].sqrt())
+    fn of_halves(halves: Halves) -> f64 {
+        f64::from(halves.high) + f64::from(halves.low)
     }
     #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        each!(k => if self.0[k] > other.0[k] { self.0[k] } else { other.0[k] })
+    fn numbers(value: impl Fn(usize) -> f64) -> Self {
+        Self::each(value)
     }
     #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        each!(k => if self.0[k] < other.0[k] { self.0[k] } else { other.0[k] })
-    }
-    #[inline(always)]
-    fn fused(self, b: Self, c: Self) -> Self {
-        each!(k => self.0[k].mul_add(b.0[k], c.0[k]))
-    }
-    #[inline(always)]
-    fn unfused(self, b: Self, c: Self) -> Self {
-        each!(k => self.0[k] * b.0[k] + c.0[k])
+    fn difference(numbers: Self, from: f64) -> Self {
+        numbers - Self::splat(from)
     }
 }
 
-macro_rules! operator {
-    ($trait:ident, $method:ident, $op:tt) => {
-        impl<const N: usize> $trait for Lane<N> {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                each!(k => self.0[k] $op other.0[k])
-            }
+impl<const N: usize> Lanes for Single<N> {
+    elementwise!(f32);
+    const SINGLE: bool = true;
+    const FAR: f64 = 1e30;
+    type Number = Halves;
+    type Numbers = [Self; 2];
+
+    #[inline(always)]
+    fn load(column: &[f64], slot: usize) -> Self {
+        let part: &[f64; N] = column[slot..slot + N].try_into().expect("a slice of that length");
+        each!(k => part[k] as f32)
+    }
+    #[inline(always)]
+    fn of_fours(four: impl Fn(usize) -> Lane) -> Self {
+        each!(k => four(k / LANES).0[k % LANES] as f32)
+    }
+    #[inline(always)]
+    fn four(self, k: usize) -> Lane {
+        Lane::each(|lane| f64::from(self.0[LANES * k + lane]))
+    }
+    #[inline(always)]
+    fn of_halves(halves: Halves) -> Halves {
+        halves
+    }
+    #[inline(always)]
+    fn numbers(value: impl Fn(usize) -> f64) -> [Self; 2] {
+        let high: Self = each!(k => value(k) as f32);
+        [high, each!(k => (value(k) - f64::from(high.0[k])) as f32)]
+    }
+    #[inline(always)]
+    fn difference([high, low]: [Self; 2], from: Halves) -> Self {
+        (high - Self([from.high; N])) + (low - Self([from.low; N]))
+    }
+}
+
+/// What the sums over fluid and wall particles are computed in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Precision {
+    /// All in double precision.
+    #[default]
+    Double,
+    /// What a pair gives in single precision, from differences of numbers in double precision; rates are summed up, and
+    /// states kept, in double precision.
+    Mixed,
+}
+
+impl Precision {
+    /// What rows of particles are padded to a multiple of, whatever the processor.
+    pub fn padding(self) -> usize {
+        match self {
+            Self::Double => WIDEST,
+            Self::Mixed => WIDEST_SINGLE,
         }
-    };
-}
-operator!(Add, add, +);
-operator!(Sub, sub, -);
-operator!(Mul, mul, *);
-operator!(Div, div, /);
-
-impl<const N: usize> AddAssign for Lane<N> {
-    #[inline(always)]
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
-}
-
-impl<const N: usize> Neg for Lane<N> {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        each!(k => -self.0[k])
     }
 }
 
@@ -222,10 +371,11 @@ impl Isa {
     }
 
     /// Targets that the wide passes compute at once.
-    pub fn targets(self) -> usize {
-        match self {
-            Self::Baseline | Self::Avx2 => LANES,
-            Self::Avx512vl => WIDEST,
+    pub fn targets(self, precision: Precision) -> usize {
+        match (self, precision) {
+            (Self::Baseline, _) | (Self::Avx2, Precision::Double) => LANES,
+            (Self::Avx2, Precision::Mixed) | (Self::Avx512vl, Precision::Double) => WIDEST,
+            (Self::Avx512vl, Precision::Mixed) => WIDEST_SINGLE,
         }
     }
 
@@ -263,6 +413,26 @@ mod tests {
         let c = Lane::splat(-1.0 - 2.0 * e);
         assert_eq!(Fused::mul_add(a, a, c).0[0], e * e);
         assert_eq!(Unfused::mul_add(a, a, c).0[0], 0.0);
+    }
+
+    #[test]
+    fn differences_of_singles_are_those_of_doubles() {
+        // 1000.000001 and 1000 are the same number in single precision.
+        let (x, y) = (1_000.000_001, 1000.0);
+        assert_eq!(x as f32, y as f32);
+        let apart = Single::<4>::difference(Single::<4>::numbers(|_| x), Halves::of(y));
+        assert!((f64::from(apart.0[0]) - 1e-6).abs() < 1e-6 * 1e-6, "{apart:?}");
+        let back = Single::<4>::difference(Single::<4>::numbers(|_| y), Halves::of(x));
+        assert_eq!(back, -apart, "a pair is a pair whichever of the two is the target");
+        assert_eq!(Lane::<4>::difference(Lane::splat(x), y), Lane::splat(x - y));
+    }
+
+    #[test]
+    fn singles_are_stored_as_doubles() {
+        let singles = Single::<8>::each(|k| k as f64);
+        assert_eq!(Lanes::four(singles, 1), Lane([4.0, 5.0, 6.0, 7.0]));
+        assert_eq!(Single::<8>::of_fours(|k| Lanes::four(singles, k)), singles);
+        assert_eq!(Single::<4>::splat(0.1).0, [0.1_f32; 4]);
     }
 
     #[test]

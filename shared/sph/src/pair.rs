@@ -7,8 +7,12 @@
 
 mod fixed;
 mod sum;
+#[cfg(test)]
+mod width_tests;
 
-use crate::lane::{Arch, Eight, Fused, Isa, LANES, Lane, Lanes, Unfused};
+use crate::lane::{
+    Arch, Eight, Fused, Isa, LANES, Lane, Lanes, Number, Precision, Single, Unfused, WIDEST, WIDEST_SINGLE,
+};
 use crate::neighbours::{CHUNK_FOURS, ClusterList};
 pub use crate::pair_sum;
 pub use fixed::{FixedLaw, FixedPairs, fixed_pass};
@@ -21,6 +25,8 @@ pub trait PairLaw<const D: usize>: Sync {
     /// registers gains nothing by more of them. Its list is made by [`ClusterList::new`], else by
     /// [`ClusterList::narrow`].
     const WIDE: bool = true;
+    /// The law can be computed in single precision: over a list of [`Precision::Mixed`] it is.
+    const SINGLE: bool = false;
     /// What is loaded of the targets before their neighbours are visited.
     type Target<L: Lanes>: Copy;
     /// What is summed up for the targets.
@@ -30,6 +36,11 @@ pub trait PairLaw<const D: usize>: Sync {
     fn target_positions(&self) -> &[Vec<f64>; D];
     /// Position of source `j`.
     fn source_position(&self, j: usize) -> [f64; D];
+    /// The same as the lanes have it.
+    #[inline(always)]
+    fn source_numbers<L: Lanes>(&self, j: usize) -> [L::Number; D] {
+        self.source_position(j).map(L::Number::of)
+    }
     /// Loads what else is needed of the targets from `slot` on.
     fn target<L: Lanes>(&self, slot: usize) -> Self::Target<L>;
     /// Adds the contribution of source `j`: `dx` = x_i - x_j, `r2` = |dx|².
@@ -115,6 +126,8 @@ impl<F: Copy + Send> Sink<F> for Add {
 trait Work<const D: usize>: Copy + Sync {
     /// See [`PairLaw::WIDE`].
     const WIDE: bool;
+    /// See [`PairLaw::SINGLE`].
+    const SINGLE: bool;
     /// What is summed up.
     type Sum<L: Lanes>: PairSum<L, Four = Self::Sum<Lane>> + Default;
     /// The list.
@@ -125,6 +138,7 @@ trait Work<const D: usize>: Copy + Sync {
 
 impl<const D: usize, W: PairLaw<D>> Work<D> for (&W, &ClusterList) {
     const WIDE: bool = W::WIDE;
+    const SINGLE: bool = W::SINGLE;
     type Sum<L: Lanes> = W::Sum<L>;
     fn list(&self) -> &ClusterList {
         self.1
@@ -140,16 +154,17 @@ impl<const D: usize, W: PairLaw<D>> Work<D> for (&W, &ClusterList) {
         // By way of memory: of a vector put together from scalars the compiler keeps some apart through the whole loop,
         // and one that ends in fours it computes by fours.
         let target = std::hint::black_box(law.target::<L>(slot));
-        let xi: [L; D] = std::hint::black_box(std::array::from_fn(|d| L::load(&positions[d], slot)));
+        let xi: [L::Numbers; D] =
+            std::hint::black_box(std::array::from_fn(|d| L::numbers(|k| positions[d][slot + k])));
         let mut total = *sum;
         for &j in neighbours {
             let j = j as usize;
-            let xj = law.source_position(j);
+            let xj = law.source_numbers::<L>(j);
             let mut dx = [L::ZERO; D];
             let mut r2 = L::ZERO;
             for d in 0..D {
-                dx[d] = xi[d] - L::splat(xj[d]);
-                r2 = A::mul_add(dx[d], dx[d], r2);
+                dx[d] = L::difference(xi[d], xj[d]);
+                r2 = if d == 0 { dx[d] * dx[d] } else { A::mul_add(dx[d], dx[d], r2) };
             }
             law.add::<A, L>(&target, j, dx, r2, &mut total);
         }
@@ -169,6 +184,7 @@ impl<W> Copy for Both<'_, W> {}
 
 impl<const D: usize, W: PairLaw<D>> Work<D> for Both<'_, W> {
     const WIDE: bool = W::WIDE;
+    const SINGLE: bool = W::SINGLE;
     type Sum<L: Lanes> = W::Sum<L>;
     fn list(&self) -> &ClusterList {
         let [(_, first), (_, second)] = self.0;
@@ -230,24 +246,40 @@ fn run_chunks<const D: usize, W: Work<D>, S: Sink<W::Sum<Lane>>>(
     assert_eq!(out.len(), list.fours(), "one sum for each four targets");
     // Never more than the processor has: that is what makes the calls below safe.
     let isa = isa.min(Isa::detect());
-    let width = if W::WIDE { isa.targets() } else { LANES };
+    let precision = list.precision();
+    assert!(W::SINGLE || precision == Precision::Double, "a law that can be computed in single precision");
+    let width = if W::WIDE { isa.targets(precision) } else { LANES };
     assert_eq!(list.width(), width, "the list's clusters are as wide as the passes");
     if out.len() <= CHUNK_FOURS {
         if !out.is_empty() {
-            run_chunk(isa, work, 0, sink, out);
+            run_chunk(isa, precision, work, 0, sink, out);
         }
         return;
     }
-    out.par_chunks_mut(CHUNK_FOURS).enumerate().for_each(|(c, out)| run_chunk(isa, work, c, sink, out));
+    out.par_chunks_mut(CHUNK_FOURS)
+        .enumerate()
+        .for_each(|(c, out)| run_chunk(isa, precision, work, c, sink, out));
 }
 
 fn run_chunk<const D: usize, W: Work<D>, S: Sink<W::Sum<Lane>>>(
     isa: Isa,
+    precision: Precision,
     work: W,
     chunk: usize,
     sink: S,
     out: &mut [S::Out],
 ) {
+    if W::SINGLE && precision == Precision::Mixed {
+        return match isa {
+            // SAFETY: `run_chunks` asked the processor.
+            #[cfg(target_arch = "x86_64")]
+            Isa::Avx512vl => unsafe { run_avx512::<D, W, S, Single<WIDEST_SINGLE>>(work, chunk, sink, out) },
+            // SAFETY: as above.
+            #[cfg(target_arch = "x86_64")]
+            Isa::Avx2 => unsafe { run_avx2::<D, W, S, Single<WIDEST>>(work, chunk, sink, out) },
+            _ => run::<D, W, S, Unfused, Single<LANES>>(work, chunk, sink, out),
+        };
+    }
     match isa {
         // SAFETY: `run_chunks` asked the processor.
         #[cfg(target_arch = "x86_64")]
@@ -257,7 +289,7 @@ fn run_chunk<const D: usize, W: Work<D>, S: Sink<W::Sum<Lane>>>(
         Isa::Avx512vl => unsafe { run_avx512::<D, W, S, Lane>(work, chunk, sink, out) },
         // SAFETY: as above.
         #[cfg(target_arch = "x86_64")]
-        Isa::Avx2 => unsafe { run_avx2(work, chunk, sink, out) },
+        Isa::Avx2 => unsafe { run_avx2::<D, W, S, Lane>(work, chunk, sink, out) },
         _ => run::<D, W, S, Unfused, Lane>(work, chunk, sink, out),
     }
 }
@@ -275,13 +307,13 @@ unsafe fn run_avx512<const D: usize, W: Work<D>, S: Sink<W::Sum<Lane>>, L: Lanes
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-unsafe fn run_avx2<const D: usize, W: Work<D>, S: Sink<W::Sum<Lane>>>(
+unsafe fn run_avx2<const D: usize, W: Work<D>, S: Sink<W::Sum<Lane>>, L: Lanes>(
     work: W,
     chunk: usize,
     sink: S,
     out: &mut [S::Out],
 ) {
-    run::<D, W, S, Fused, Lane>(work, chunk, sink, out);
+    run::<D, W, S, Fused, L>(work, chunk, sink, out);
 }
 
 #[inline(always)]

@@ -11,7 +11,7 @@ use halfstep_fluid::rates::{PairEffect, RateLaw, RateSum};
 use halfstep_role::role::Role;
 use halfstep_scene::{self as scene, ArtificialViscosity as Coefficients, Scene};
 use halfstep_sph::kernel::{Kernel, WendlandC2};
-use halfstep_sph::lane::{Isa, LANES};
+use halfstep_sph::lane::{Isa, LANES, Precision};
 use halfstep_sph::neighbours::PADDING;
 use halfstep_sph::pair;
 use halfstep_tests::patch;
@@ -115,6 +115,11 @@ const DIFFUSION: f64 = 1.33;
 
 impl Patch {
     pub(crate) fn new(isa: Isa) -> Self {
+        Self::with_precision(isa, Precision::Double)
+    }
+
+    /// The same for passes of this precision.
+    pub(crate) fn with_precision(isa: Isa, precision: Precision) -> Self {
         let particle = |k: usize| {
             let (i, j) = ((k % 140) as f64, (k / 140) as f64);
             patch::Particle {
@@ -134,7 +139,7 @@ impl Patch {
                 pressure: p.pressure,
             })
             .collect();
-        let sorted = patch::Patch::new(&particles, 2.3 * H, isa);
+        let sorted = patch::Patch::with_precision(&particles, 2.3 * H, isa, precision);
         let sums = vec![RateSum::default(); sorted.list.fours()];
         let grid = naive::Grid::new(&naive, 2.0 * H);
         let pass = naive::Pass { h: H, mass: 1.0, linear: LINEAR, diffusion: DIFFUSION };

@@ -29,7 +29,8 @@ pub struct GradientLaw<'a, K, const D: usize> {
 }
 
 impl<K: Kernel<D>, const D: usize> PairLaw<D> for GradientLaw<'_, K, D> {
-    /// Density.
+    const SINGLE: bool = true;
+    /// Density over the reference.
     type Target<L: Lanes> = L;
     type Sum<L: Lanes> = GradientSum<D, L>;
 
@@ -39,11 +40,15 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for GradientLaw<'_, K, D> {
     }
     #[inline(always)]
     fn target<L: Lanes>(&self, slot: usize) -> Self::Target<L> {
-        self.fluid.densities(slot)
+        self.fluid.excesses(slot)
     }
     #[inline(always)]
     fn source_position(&self, j: usize) -> [f64; D] {
         self.fluid.sources[j].position
+    }
+    #[inline(always)]
+    fn source_numbers<L: Lanes>(&self, j: usize) -> [L::Number; D] {
+        self.fluid.at::<L>(j)
     }
     #[inline(always)]
     fn add<A: Arch, L: Lanes>(
@@ -55,9 +60,9 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for GradientLaw<'_, K, D> {
         sum: &mut GradientSum<D, L>,
     ) {
         let f = self.kernel.gradient_over_r::<A, L>(distance(r2, self.kernel.smoothing_length()));
-        let source = &self.fluid.sources[j];
-        let vf = L::splat(source.volume) * f;
-        let difference = vf * (L::splat(source.density) - *i);
+        let source = self.fluid.beside::<L>(j);
+        let vf = source.volume * f;
+        let difference = vf * (source.excess - *i);
         for a in 0..D {
             sum.raw[a] = A::mul_add(difference, dx[a], sum.raw[a]);
             let row = -(vf * dx[a]);

@@ -70,6 +70,7 @@ pub(crate) fn scene() -> Scene {
         own_effects: Default::default(),
         numerics: Numerics {
             kernel: KernelName::WendlandC2,
+            precision: Precision::Double,
             cfl: 0.25,
             solid_cfl: 0.5,
             max_sub_steps: 100,

@@ -59,6 +59,7 @@ fn scene(shapes: Vec<Shape>) -> Scene {
         own_effects: BTreeMap::new(),
         numerics: Numerics {
             kernel: KernelName::CubicSpline,
+            precision: Precision::Double,
             cfl: 0.25,
             solid_cfl: 0.6,
             max_sub_steps: 200,

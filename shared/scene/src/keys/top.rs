@@ -183,6 +183,12 @@ static NUMERICS: Table = Table::new(
     &[
         Key::words("kernel", || words(&read::KERNELS), "Smoothing kernel of both phases.")
             .default("\"wendland-c2\", or the preset's"),
+        Key::words(
+            "precision",
+            || words(&read::PRECISIONS),
+            "What the pairs of fluid and wall particles are computed in.",
+        )
+        .default("\"double\""),
         Key::number(
             "cfl",
             Range::positive()

@@ -1,7 +1,7 @@
 //! Neighbour lists for clusters of consecutive slots, as many as the passes compute at once.
 
 use super::Rows;
-use crate::lane::{Isa, LANES, WIDEST};
+use crate::lane::{Isa, LANES, Precision, WIDEST, WIDEST_SINGLE};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -17,6 +17,7 @@ pub struct ClusterList {
     chunks: Vec<Chunk>,
     /// Targets of a cluster.
     width: usize,
+    precision: Precision,
     targets: usize,
 }
 
@@ -61,12 +62,17 @@ impl Chunk {
 impl ClusterList {
     /// An empty list for wide laws with an instruction set.
     pub fn new(isa: Isa) -> Self {
-        Self { width: isa.min(Isa::detect()).targets(), ..Self::narrow() }
+        Self::with_precision(isa, Precision::Double)
+    }
+
+    /// The same for laws that are computed in this precision.
+    pub fn with_precision(isa: Isa, precision: Precision) -> Self {
+        Self { width: isa.min(Isa::detect()).targets(precision), precision, ..Self::narrow() }
     }
 
     /// An empty list for laws that compute four targets at once.
     pub fn narrow() -> Self {
-        Self { chunks: Vec::new(), width: LANES, targets: 0 }
+        Self { chunks: Vec::new(), width: LANES, precision: Precision::Double, targets: 0 }
     }
 
     /// Lists all sources within `reach` of the targets. Both sets are sorted; `rows` is the order of the sources.
@@ -97,7 +103,8 @@ impl ClusterList {
                 let index = &mut chunk.index;
                 match width {
                     LANES => push_neighbours::<D, LANES>(slot, targets, sources, rows, reach, index),
-                    _ => push_neighbours::<D, WIDEST>(slot, targets, sources, rows, reach, index),
+                    WIDEST => push_neighbours::<D, WIDEST>(slot, targets, sources, rows, reach, index),
+                    _ => push_neighbours::<D, WIDEST_SINGLE>(slot, targets, sources, rows, reach, index),
                 }
                 chunk.start.push(chunk.index.len() as u32);
             }
@@ -105,9 +112,20 @@ impl ClusterList {
         });
     }
 
+    /// A list of clusters of any width for a test.
+    #[cfg(test)]
+    pub(crate) fn of_width(width: usize, precision: Precision) -> Self {
+        Self { width, precision, ..Self::narrow() }
+    }
+
     /// Number of targets of a cluster.
     pub fn width(&self) -> usize {
         self.width
+    }
+
+    /// What passes over it are computed in.
+    pub fn precision(&self) -> Precision {
+        self.precision
     }
 
     /// Number of fours of targets.
@@ -186,14 +204,14 @@ mod tests {
     fn every_pair_within_reach_is_listed<const D: usize>(points: &[[f64; 3]]) {
         let mut x: [Vec<f64>; D] = std::array::from_fn(|d| points.iter().map(|p| p[d]).collect());
         let mut id: Vec<u32> = (0..points.len() as u32).collect();
-        let mut rows = Rows::<D>::default();
+        let mut rows = Rows::<D>::new(Precision::Mixed);
         rows.sort(&x, &id, 1.0, [0.0; D], [4.0; D]);
         for column in &mut x {
             rows.permute(column);
         }
         rows.permute_ids(&mut id);
-        for isa in [Isa::Avx2, Isa::Avx512vl] {
-            let mut list = ClusterList::new(isa);
+        for width in [LANES, WIDEST, WIDEST_SINGLE] {
+            let mut list = ClusterList { width, ..ClusterList::narrow() };
             list.build(&x, &x, &rows, 1.0);
             holds_every_pair(&list, &x, &id);
         }

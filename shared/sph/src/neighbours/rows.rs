@@ -6,7 +6,7 @@
 
 use super::PADDING;
 use crate::columns::fit;
-use crate::lane::WIDEST;
+use crate::lane::Precision;
 use std::cmp::Ordering;
 
 /// The order of one set of particles.
@@ -27,9 +27,15 @@ pub struct Rows<const D: usize> {
     id_scratch: Vec<u32>,
     /// Slots that every column has memory for.
     room: usize,
+    precision: Precision,
 }
 
 impl<const D: usize> Rows<D> {
+    /// For lists of laws that are computed in this precision.
+    pub fn new(precision: Precision) -> Self {
+        Self { precision, ..Self::default() }
+    }
+
     /// Sorts the particles of `x` whose `id` is not [`PADDING`] into rows of at least `height` inside the box
     /// `[low, high]` (particles outside belong to the nearest row). Afterwards [`Rows::permute`] each column.
     pub fn sort(&mut self, x: &[Vec<f64>; D], id: &[u32], height: f64, low: [f64; D], high: [f64; D]) {
@@ -51,18 +57,18 @@ impl<const D: usize> Rows<D> {
             }
             keys.push(key);
         }
-        let (mut total, mut slots) = (0, 0);
+        let (mut total, mut slots, cluster) = (0, 0, self.precision.padding());
         for row in 0..rows {
             self.cursor[row] = total;
             self.start[row] = slots;
             total += self.filled[row];
-            slots += self.filled[row].next_multiple_of(WIDEST as u32);
+            slots += self.filled[row].next_multiple_of(cluster as u32);
         }
         self.start[rows] = slots;
         // Padding comes and goes with the shape of the whole: some ahead, so that a later sort does not allocate.
         let slots = slots as usize;
         if slots > self.room {
-            self.room = slots + slots / 32 + 16 * WIDEST;
+            self.room = slots + slots / 32 + 16 * cluster;
         }
         self.permutation.clear();
         reserve(&mut self.permutation, self.room);

@@ -135,6 +135,7 @@ impl<W, const D: usize> Copy for OverFixed<'_, W, D> {}
 impl<const D: usize, W: FixedLaw<D>> Work<D> for OverFixed<'_, W, D> {
     // Eight of one row have nearly as long a list as twice four, and eight slopes to load for each entry.
     const WIDE: bool = false;
+    const SINGLE: bool = false;
     type Sum<L: Lanes> = W::Sum<L>;
     fn list(&self) -> &ClusterList {
         &self.1.list
