@@ -56,7 +56,7 @@ impl<const D: usize> Source<D> {
 /// Slots that one task rounds.
 const TASK: usize = 1024;
 
-/// A source in single precision, half as long.
+/// A source in single precision: one cache line in two and in three dimensions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
 struct SingleSource<const D: usize> {

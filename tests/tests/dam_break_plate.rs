@@ -44,9 +44,10 @@ fn stiff(curve: &Curve, (time, peak): (f64, f64), expected: f64) {
     assert!(curve.between(0.0, IMPACT).values.iter().all(|x| x.abs() < 0.01), "it moved before it was hit");
     assert!((peak / expected - 1.0).abs() < 0.1, "{peak} mm, measured {expected} mm");
     assert!((0.15..0.2).contains(&time), "{time} s");
-    // A plate that the jet holds bent, and not one that rings about its place: 0.6 to 0.7 measured.
+    // A plate that the jet holds bent, and not one that rings about its place, for which it would be near 0: 0.6 to 0.7
+    // measured at 4 mm, 0.81 at 2 mm.
     let mean = curve.between(0.15, 0.2).mean() / peak;
-    assert!((0.4..0.8).contains(&mean), "{mean}");
+    assert!((0.4..0.9).contains(&mean), "{mean}");
 }
 
 #[test]

@@ -29,7 +29,7 @@ pub type Eight = Lane<WIDEST>;
 #[repr(align(32))]
 pub struct Single<const N: usize>(pub [f32; N]);
 
-/// A number whose difference from another counts: a position, or a density. In single precision it is one number and
+/// A number whose difference from another counts: a component of a position. In single precision it is one number and
 /// what that leaves out.
 pub trait Number: Copy + Debug {
     /// From a number in double precision.
@@ -325,8 +325,8 @@ pub enum Precision {
     /// All in double precision.
     #[default]
     Double,
-    /// What a pair gives in single precision, from differences of numbers in double precision; rates are summed up, and
-    /// states kept, in double precision.
+    /// What a pair gives and its sums within a pass in single precision, from differences of positions and densities in
+    /// double precision; states are kept, and rates added to them, in double precision.
     Mixed,
 }
 
