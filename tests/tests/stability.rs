@@ -63,19 +63,31 @@ families! {
     time_steps "time-steps",
 }
 
+/// All cases of some families hold at their coarsest resolution with one more setting.
+fn hold_with(setting: &str, families: impl IntoIterator<Item = Family>) {
+    let mut wrong = Vec::new();
+    for mut family in families {
+        for case in &mut family.case {
+            case.set.push(setting.into());
+            case.without.clear();
+        }
+        let (text, _, not_right) = run(&family, false);
+        println!("{text}");
+        wrong.extend(not_right);
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
 /// With the wide kernel, whose guards are strong and near.
 #[test]
 fn drops_impacts_and_corners_hold_with_the_preset_for_waves() {
-    for name in ["droplets", "impact"] {
-        let mut family = family(name);
-        for case in &mut family.case {
-            case.set.push("preset=waves".into());
-            case.without.clear();
-        }
-        let (text, _, wrong) = run(&family, false);
-        println!("{text}");
-        assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    }
+    hold_with("preset=waves", ["droplets", "impact"].map(family));
+}
+
+#[test]
+#[ignore = "minutes: all cases in mixed precision"]
+fn the_hard_cases_in_mixed_precision() {
+    hold_with("numerics.precision=mixed", families().into_iter().map(|(_, family)| family));
 }
 
 #[test]
@@ -101,23 +113,6 @@ fn renew(name: &str, text: &str) {
         let old = std::fs::read_to_string(&path).expect("the page");
         std::fs::write(&path, replace_between_markers(&old, name, text).expect("markers")).expect("the page");
     }
-}
-
-/// Every case at its coarsest resolution with pairs in single precision.
-#[test]
-#[ignore = "minutes: all cases in mixed precision"]
-fn the_hard_cases_in_mixed_precision() {
-    let mut wrong = Vec::new();
-    for (_, mut family) in families() {
-        for case in &mut family.case {
-            case.set.push("numerics.precision=mixed".into());
-            case.without.clear();
-        }
-        let (text, _, not_right) = run(&family, false);
-        println!("{text}");
-        wrong.extend(not_right);
-    }
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 #[test]

@@ -114,8 +114,8 @@ impl ClusterList {
 
     /// A list of clusters of any width for a test.
     #[cfg(test)]
-    pub(crate) fn of_width(width: usize, precision: Precision) -> Self {
-        Self { width, precision, ..Self::narrow() }
+    pub(crate) fn of_width(width: usize) -> Self {
+        Self { width, ..Self::narrow() }
     }
 
     /// Number of targets of a cluster.
@@ -211,7 +211,7 @@ mod tests {
         }
         rows.permute_ids(&mut id);
         for width in [LANES, WIDEST, WIDEST_SINGLE] {
-            let mut list = ClusterList { width, ..ClusterList::narrow() };
+            let mut list = ClusterList::of_width(width);
             list.build(&x, &x, &rows, 1.0);
             holds_every_pair(&list, &x, &id);
         }

@@ -5,31 +5,8 @@ use crate::extrapolation::{Extrapolation, ExtrapolationSum};
 use crate::kernel::{Kernel, WendlandC2};
 use crate::neighbours::{PADDING, Rows};
 
-/// [`Extrapolation`] in whatever precision its list asks for.
-struct Law<'a, const D: usize>(Extrapolation<'a, WendlandC2<D>, D>);
-
-impl<const D: usize> PairLaw<D> for Law<'_, D> {
-    const SINGLE: bool = true;
-    type Target<L: Lanes> = ();
-    type Sum<L: Lanes> = ExtrapolationSum<L>;
-    #[inline(always)]
-    fn target_positions(&self) -> &[Vec<f64>; D] {
-        self.0.target_positions()
-    }
-    #[inline(always)]
-    fn source_position(&self, j: usize) -> [f64; D] {
-        self.0.source_position(j)
-    }
-    #[inline(always)]
-    fn target<L: Lanes>(&self, _: usize) {}
-    #[inline(always)]
-    fn add<A: Arch, L: Lanes>(&self, _: &(), j: usize, dx: [L; D], r2: L, sum: &mut ExtrapolationSum<L>) {
-        self.0.add::<A, L>(&(), j, dx, r2, sum);
-    }
-}
-
-/// Weight and pressure at each of 400 places in two rows and more, computed by `at_once` targets.
-fn pressures<const D: usize, A: Arch, L: Lanes>(precision: Precision) -> Vec<Option<f64>> {
+/// Pressure at each of 400 places in several rows, as many targets at once as the lanes have.
+fn pressures<const D: usize, A: Arch, L: Lanes>() -> Vec<Option<f64>> {
     let h = 1.5;
     let place = |k: usize, d: usize| match d {
         0 => (k % 40) as f64 + 0.3 * (k as f64).sin(),
@@ -43,13 +20,13 @@ fn pressures<const D: usize, A: Arch, L: Lanes>(precision: Precision) -> Vec<Opt
     x.iter_mut().for_each(|column| rows.permute(column));
     rows.permute_ids(&mut id);
     let slots = id.len();
-    let mut list = ClusterList::of_width(L::TARGETS, precision);
+    let mut list = ClusterList::of_width(L::TARGETS);
     list.build(&x, &x, &rows, 2.2 * h);
     let density: Vec<f64> = (0..slots).map(|slot| 1000.0 + (0.1 * slot as f64).sin()).collect();
     let pressure: Vec<f64> = (0..slots).map(|slot| 100.0 * (0.3 * slot as f64).cos()).collect();
     let gravity = std::array::from_fn(|d| if d == 1 { -9.81 } else { 0.0 });
     let (kernel, density, pressure) = (WendlandC2::<D>::new(h), &density[..], &pressure[..]);
-    let law = Law(Extrapolation { kernel, gravity, targets: &x, sources: &x, density, pressure });
+    let law = Extrapolation { kernel, gravity, targets: &x, sources: &x, density, pressure };
     let mut sums = vec![ExtrapolationSum::<Lane>::default(); list.fours()];
     for chunk in 0..list.chunks().len() {
         let out = &mut sums[chunk * CHUNK_FOURS..];
@@ -66,16 +43,13 @@ fn pressures<const D: usize, A: Arch, L: Lanes>(precision: Precision) -> Vec<Opt
 }
 
 fn widths_agree<const D: usize>() {
-    let doubles = pressures::<D, Unfused, Lane>(Precision::Double);
+    let doubles = pressures::<D, Unfused, Lane>();
     assert_eq!(doubles.iter().flatten().count(), 400);
-    assert_eq!(doubles, pressures::<D, Unfused, Eight>(Precision::Double));
-    let singles = pressures::<D, Unfused, Single<LANES>>(Precision::Mixed);
-    assert_eq!(singles, pressures::<D, Unfused, Single<WIDEST>>(Precision::Mixed));
-    assert_eq!(singles, pressures::<D, Unfused, Single<WIDEST_SINGLE>>(Precision::Mixed));
-    assert_eq!(
-        pressures::<D, Fused, Single<WIDEST>>(Precision::Mixed),
-        pressures::<D, Fused, Single<WIDEST_SINGLE>>(Precision::Mixed)
-    );
+    assert_eq!(doubles, pressures::<D, Unfused, Eight>());
+    let singles = pressures::<D, Unfused, Single<LANES>>();
+    assert_eq!(singles, pressures::<D, Unfused, Single<WIDEST>>());
+    assert_eq!(singles, pressures::<D, Unfused, Single<WIDEST_SINGLE>>());
+    assert_eq!(pressures::<D, Fused, Single<WIDEST>>(), pressures::<D, Fused, Single<WIDEST_SINGLE>>());
     // A rounding of single precision is 6e-8 of the sum's largest part, 1e3 times the head of 3 m.
     let apart = doubles.iter().zip(&singles).map(|(a, b)| (a.unwrap() - b.unwrap()).abs());
     let worst = apart.fold(0.0, f64::max);
