@@ -1,11 +1,13 @@
 #!/bin/sh
 # Renews docs/price-lists.md and its pictures: a coarse study of each shipped scene that has a reference. `make prices`
-# calls it with the program; further arguments are the scenes to renew. Finished runs in out/prices are used again.
+# calls it with the program; further arguments are the scenes to renew, of the others the page keeps what it has.
+# Finished runs in out/prices are used again.
 set -eu
 cd "$(dirname "$0")/.."
 program=$1
 shift
 lists=out/prices
+page=docs/price-lists.md
 mkdir -p "$lists"
 
 price() {
@@ -15,53 +17,61 @@ price() {
     echo "$scene"
     "$program" study "scenes/$scene.toml" "$@" --out "$lists/$scene" > "$lists/$scene.new"
     printf '%s' "halfstep study scenes/$scene.toml $*" > "$lists/$scene.command"
+    model=$(sed -n 's/^model name[[:space:]]*: //p' /proc/cpuinfo | head -n 1)
+    waiting=$(cut -d ' ' -f 2 /proc/loadavg)
+    printf '%s' "$(date +%F), ${model:-unknown}, $(nproc) processors, $waiting programs waiting for them at the end." \
+        > "$lists/$scene.when"
     cp "$lists/$scene/work-precision.png" "docs/images/price-$scene.png"
     # A list is whole or not there.
     mv "$lists/$scene.new" "$lists/$scene.txt"
 }
 
 all="oscillating-plate hydrostatic-tank taylor-green standing-wave dam-break hydrostatic-plate elastic-gate"
-all="$all breaking-wall wave-paddle solitary-wave-wall floating-box gate-lift rolling-tank"
+all="$all breaking-wall wave-paddle solitary-wave-wall floating-box block-wall gate-lift rolling-tank"
 wanted=${*:-$all}
 price oscillating-plate --until 0.4 --set resolution=0.004 \
     --vary resolution=0.002,0.0028571428571428571,0.0066666666666666667 \
     --vary solid.model=hypoelastic --vary solid.material=st-venant-kirchhoff --vary solid.hourglass=0.1 \
     --vary effects.clamp-face=off --vary solid.smoothing_ratio=1.33 --vary numerics.solid_cfl=0.3,0.9
 price hydrostatic-tank --set resolution=0.02 --vary resolution=0.015,0.03 \
-    --vary numerics.precision=mixed
-    --vary fluid.density_diffusion=simple,hydrostatic,none \
+    --vary numerics.precision=mixed \
+    --vary fluid.density_diffusion=delta-sph,simple,none \
     --vary fluid.artificial_viscosity.linear=1 --vary smoothing_ratio=1.5 --vary numerics.cfl=0.2
 price taylor-green --vary resolution=0.025,0.04,0.05 --vary numerics.kernel=cubic-spline \
-    --vary numerics.precision=mixed
+    --vary numerics.precision=mixed \
     --vary smoothing_ratio=1.5,2.4 --vary effects.particle-shifting=off \
-    --vary fluid.density_diffusion=none --vary numerics.cfl=0.2
+    --vary fluid.density_diffusion=delta-sph,none --vary numerics.cfl=0.2
 price standing-wave --set resolution=0.025 --vary resolution=0.0357142857142857143,0.05 \
-    --vary numerics.precision=mixed
+    --vary numerics.precision=mixed \
     --vary numerics.kernel=cubic-spline \
-    --vary smoothing_ratio=1.5,2.4 --vary effects.particle-shifting=off
+    --vary smoothing_ratio=1.5,2.4 --vary effects.particle-shifting=off --vary fluid.density_diffusion=delta-sph
 price dam-break --set resolution=0.0028575 --vary resolution=0.00408214285714285714,0.005715 \
-    --vary numerics.precision=mixed
+    --vary numerics.precision=mixed \
     --vary numerics.cfl=0.2,0.6 --vary smoothing_ratio=1.5 --vary effects.particle-shifting=off \
-    --vary numerics.kernel=cubic-spline --vary fluid.density_diffusion=simple,none
+    --vary numerics.kernel=cubic-spline --vary fluid.density_diffusion=delta-sph,none
 price hydrostatic-plate --until 0.25 --set resolution=0.01666666666666666667 --vary resolution=0.0125,0.025 \
     --vary solid.model=hypoelastic --vary fluid.density_diffusion=simple
 price elastic-gate --until 0.25 --set resolution=0.00166666666666666667 --set shape.plate.across=5 \
-    --vary numerics.precision=mixed
+    --vary numerics.precision=mixed \
     --vary resolution=0.00125,0.0025 --vary shape.plate.across=3,4 \
     --vary solid.model=hypoelastic,finite-element --vary solid.sub_steps=20 \
     --vary numerics.cfl=0.2,0.6 \
-    --vary numerics.kernel=cubic-spline --vary fluid.density_diffusion=simple \
+    --vary numerics.kernel=cubic-spline --vary fluid.density_diffusion=hydrostatic,simple \
     --vary fluid.artificial_viscosity.linear=0.02 --vary smoothing_ratio=2
 # The wall goes as deep into the floor as it is thick: whole rows of every spacing, above the floor, too.
 price breaking-wall --until 0.2 --set resolution=0.004 --set 'shape.wall.box.min=[0.286,-0.012]' \
     --vary resolution=0.0024,0.003 --vary numerics.cfl=0.2
 price wave-paddle --set resolution=0.02 --vary resolution=0.0133333333333333333,0.04 --vary smoothing_ratio=1.5 \
     --vary effects.particle-shifting=off
-price solitary-wave-wall --set resolution=0.02 --vary resolution=0.04 --vary smoothing_ratio=1.5
+price solitary-wave-wall --set resolution=0.02 --vary resolution=0.01,0.04 --vary smoothing_ratio=1.5 \
+    --vary fluid.density_diffusion=delta-sph
 price floating-box --set resolution=0.0125 --vary resolution=0.01,0.02 --vary smoothing_ratio=2 \
     --vary interface.cross_viscosity_reach=1.25 --vary effects.particle-shifting=off
-price gate-lift --until 0.45 --set resolution=0.002 --vary shape.plate.across=3,5 --vary solid.model=finite-element
-price rolling-tank --until 1.0 --set resolution=0.002 --vary solid.model=finite-element
+price block-wall --set resolution=0.02 --vary resolution=0.01 --vary effects.particle-shifting=off
+price gate-lift --until 0.45 --set resolution=0.002 --vary resolution=0.0016 --vary shape.plate.across=3,5 \
+    --vary solid.model=total-lagrangian
+price rolling-tank --until 1.0 --set resolution=0.002 --vary resolution=0.0013333333333333333 \
+    --vary solid.model=finite-element
 
 {
     cat <<'HEAD'
@@ -71,16 +81,19 @@ What accuracy costs in the shipped scenes: coarse ladders that a small machine r
 explains every number. Errors and pair evaluations do not depend on what else the machine does; wall times do, and where
 more programs waited than there are processors they say little: compare pair evaluations.
 
-Renewed by `make prices`, which runs the commands below; do not edit.
-
+Renewed by `make prices`, which runs the commands below; do not edit. Lists without a date are of before 2026-11-24.
 HEAD
-    model=$(sed -n 's/^model name[[:space:]]*: //p' /proc/cpuinfo | head -n 1)
-    waiting=$(cut -d ' ' -f 2 /proc/loadavg)
-    echo "Machine: ${model:-unknown}, $(nproc) processors, $waiting programs waiting for them on average at the end."
     for scene in $all; do
-        [ -f "$lists/$scene.txt" ] || continue
-        printf '\n## %s\n\n```\n%s\n```\n\n```\n' "$scene" "$(cat "$lists/$scene.command")"
+        case " $wanted " in *" $scene "*) ;; *)
+            awk -v head="## $scene" '/^## / { here = $0 == head; if (here) print "" } here' "$page" |
+                sed -e :a -e '/^\n*$/{$d;N;ba' -e '}'
+            continue
+            ;;
+        esac
+        printf '\n## %s\n\n%s\n\n' "$scene" "$(cat "$lists/$scene.when")"
+        printf '```\n%s\n```\n\n```\n' "$(cat "$lists/$scene.command")"
         grep -v '^study.csv' "$lists/$scene.txt" | sed -e :a -e '/^\n*$/{$d;N;ba' -e '}'
         printf '```\n\n![%s: error over cost](images/price-%s.png)\n' "$scene" "$scene"
     done
-} > docs/price-lists.md
+} > "$lists/page.md"
+mv "$lists/page.md" "$page"

@@ -133,3 +133,32 @@ fn a_point_rides_on_its_wall() {
     fluid.probes(&mut values);
     assert!(values[0] > 900.0 && (values[0] - values[1]).abs() < 1e-6 * values[1], "{values:?}");
 }
+
+#[test]
+fn a_gauge_in_the_air_feels_no_suction() {
+    // The level is at 0.2 m.
+    let at = |y: f64| probe(&format!("at-{:.0}", 1e3 * y), &format!("kind = \"pressure\"\nat = [0.2, {y}]"));
+    let line = probe("line", "kind = \"pressure\"\nfrom = [0.2, 0.0]\nto = [0.2, 0.3]");
+    let heights = [0.1, 0.195, 0.21, 0.23, 0.26];
+    let values = measured(&tank(&(WALLS.to_owned() + &heights.map(at).concat() + &line)));
+    let weight = 9810.0;
+    for (y, value) in heights.into_iter().zip(&values) {
+        let wanted = weight * (0.2 - y).max(0.0);
+        assert!((value - wanted).abs() < 1e-6 * weight * 0.2, "{y}: {value} {wanted}");
+    }
+    // Its lower two thirds are in the water.
+    let mean = weight * 0.2 * 0.2 / 2.0 / 0.3;
+    assert!((values[5] / mean - 1.0).abs() < 1e-6, "{} {mean}", values[5]);
+}
+
+#[test]
+fn front_and_centroid_of_nothing_are_no_numbers() {
+    let text =
+        probe("front", "kind = \"front\"") + &probe("centre", "kind = \"centroid\"\nphase = \"fluid\"");
+    let mut fluid = Fluid::<2>::new(&tank(&(WALLS.to_owned() + &text)), Isa::detect()).unwrap();
+    fluid.columns.id.fill(PADDING);
+    fluid.columns.particles = 0;
+    let mut values = Vec::new();
+    fluid.probes(&mut values);
+    assert!(values.iter().all(|value| value.is_nan()), "{values:?}");
+}

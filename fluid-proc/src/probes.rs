@@ -110,6 +110,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
     fn average(&self, at: [f64; D]) -> Option<Average<D>> {
         let h = self.smoothing_length;
         let (mut pressure, mut weight, mut filled, mut velocity) = (0.0, 0.0, 0.0, [0.0; D]);
+        let mut unextrapolated = 0.0;
         self.rows.candidates(&self.columns.reference[0], at, at, 2.0 * h + self.skin, |first, end| {
             for s in first..end {
                 let x = self.position(s);
@@ -120,6 +121,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
                     let head: f64 = (0..D).map(|d| self.gravity[d] * (at[d] - x[d])).sum();
                     let particle = &self.columns.now.sources[s];
                     pressure += w * (particle.pressure + particle.density * head);
+                    unextrapolated += w * particle.pressure;
                     weight += w;
                     filled += w * particle.volume;
                     for d in 0..D {
@@ -129,7 +131,8 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
             }
         });
         (weight > 0.0).then(|| Average {
-            pressure: pressure / weight,
+            // Above a surface there is air: what is extrapolated beyond it is no suction.
+            pressure: (pressure / weight).max((unextrapolated / weight).min(0.0)),
             velocity: velocity.map(|v| v / weight),
             filled,
         })
@@ -186,11 +189,13 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
                 Gauge::Front => out.push(
                     self.real_slots()
                         .map(|s| self.columns.now.position[0][s] + half)
-                        .fold(f64::NEG_INFINITY, f64::max),
+                        .reduce(f64::max)
+                        .unwrap_or(f64::NAN),
                 ),
                 Gauge::KineticEnergy => out.push(self.kinetic_energy()),
                 Gauge::Centroid => {
-                    let count = self.columns.particles.max(1) as f64;
+                    // NaN without fluid.
+                    let count = self.columns.particles as f64;
                     for d in 0..D {
                         let sum: f64 = self.real_slots().map(|s| self.columns.now.position[d][s]).sum();
                         out.push(sum / count);

@@ -18,4 +18,4 @@ pub mod stability;
 pub mod torture;
 
 pub use curve::Curve;
-pub use run::{Finished, Outcome, RunBuilder, Running, scene, scene_at};
+pub use run::{Finished, Outcome, RunBuilder, Running, repository, scene, scene_at};

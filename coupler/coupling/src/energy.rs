@@ -10,9 +10,9 @@
 //! Dissipation makes growth negative. Above [`LIMIT`] or [`SOLID_LIMIT`] for [`PATIENCE`] states the run ends: a fast
 //! blow-up leaves the bounds of a particle before that, and a particle says more.
 //!
-//! The walls of a scene must be at rest for the fluid to be judged, a solid's clamps for the solid. An external solid's
-//! energy is not known. With the
-//! phase-blind interface the fluid strains the solid as well, so both are judged as one.
+//! The walls of a scene must be at rest for the fluid to be judged, a solid's clamps and the walls that may push it for
+//! the solid. An external solid's energy is not known. With the phase-blind interface the fluid strains the solid as
+//! well, so both are judged as one.
 
 use halfstep_output::run_json::EnergyGrowth;
 use halfstep_scene::bounds::flow_speed;
@@ -103,8 +103,9 @@ pub struct EnergyBalance {
     ledgers: Vec<(Name, Phase, Ledger)>,
 }
 
-/// Names of the solids with clamps that move.
+/// Names of the solids with clamps that move, and of all where a wall that moves may push them.
 fn driven(scene: &Scene) -> Vec<String> {
+    let pushed = scene.shapes.iter().any(|s| s.phase == Phase::Wall && s.contact && s.motion.is_some());
     let moves = |k: usize| {
         let of = |s: &&halfstep_scene::Shape| s.solid == Some(k);
         scene
@@ -113,7 +114,7 @@ fn driven(scene: &Scene) -> Vec<String> {
             .filter(of)
             .any(|s| s.motion.is_some() || !s.clamp_with.is_empty() || s.load.is_some())
     };
-    let solids = scene.solids.iter().enumerate().filter(|(k, _)| moves(*k));
+    let solids = scene.solids.iter().enumerate().filter(|(k, _)| pushed || moves(*k));
     solids.map(|(_, solid)| solid.name.clone()).collect()
 }
 
@@ -308,6 +309,27 @@ mod tests {
         let told =
             (0..PATIENCE).fold(None, |_, _| balance.note(0.2, &[of_fluid(&left), of_solid(&hot, 0.0)]));
         assert_eq!(told.map(|(role, _)| role), Some(Name::SOLID));
+    }
+
+    /// A ram that touches the solid works on it; one that does not touch solids does not.
+    #[test]
+    fn a_wall_that_moves_may_push_a_solid() {
+        let of = |contact: bool| {
+            let ram = format!(
+                "[solid]\ndensity = 1000.0\nyoungs_modulus = 1e6\npoissons_ratio = 0.3\n[[shape]]\nname = \"post\"\n\
+                 phase = \"solid\"\nbox = {{ min = [2.0, 0.0], max = [2.4, 1.0] }}\n\
+                 clamp = {{ min = [2.0, 0.0], max = [2.4, 0.2] }}\n[[shape]]\nname = \"ram\"\nphase = \"wall\"\n\
+                 contact = {contact}\nbox = {{ min = [3.0, 0.0], max = [3.5, 1.0] }}\n\
+                 motion = {{ velocity = [-1.0, 0.0] }}\n"
+            );
+            let mut balance = EnergyBalance::new(&scene(&ram));
+            let (cold, hot) = (sums(0.0, 0.0), sums(0.0, 1e9));
+            balance.note(0.0, &[of_fluid(&cold), of_solid(&cold, 0.0)]);
+            let note = |_| balance.note(0.1, &[of_fluid(&cold), of_solid(&hot, 0.0)]);
+            (0..=PATIENCE).map(note).any(|told| told.is_some())
+        };
+        assert!(!of(true));
+        assert!(of(false));
     }
 
     #[test]

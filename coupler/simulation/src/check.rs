@@ -30,6 +30,8 @@ pub struct Check {
     shapes: Vec<Placed>,
     bodies: Vec<Body>,
     solids: Vec<Solid>,
+    /// How fast sound and, at most, fluid are expected to be.
+    speeds: Option<Speeds>,
     /// Largest stable step of the fluid, s.
     fluid_dt_limit: Option<f64>,
     /// Largest stable step of contact between solids, and with walls in the coupler, s; `None` where there is none.
@@ -58,6 +60,13 @@ pub struct Check {
     pairs: Option<String>,
     #[serde(skip)]
     bodies_listed: Option<String>,
+}
+
+/// m/s.
+#[derive(Clone, Debug, Serialize)]
+struct Speeds {
+    sound: f64,
+    fastest: f64,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -154,6 +163,10 @@ fn check_in<const D: usize>(scene: &Scene, isa: Isa) -> Check {
         bodies_listed: (solid > 0).then(|| remarks::bodies_listed(scene, &bodies)),
         bodies: bodies.iter().map(|body| named(scene, body)).collect(),
         solids,
+        speeds: scene
+            .fluid
+            .as_ref()
+            .map(|fluid| Speeds { sound: fluid.sound_speed, fastest: scene::expected_speed_of_fluid(scene) }),
         fluid_dt_limit: fluid_role.map(|role| role.dt_limit()),
         contact_dt_limit: contact.limit,
         pairs: pairs(scene),
@@ -253,6 +266,12 @@ impl Display for Check {
         }
         if self.fluid_dt_limit.is_some() {
             line("water's kernel", &format_args!("h / dx = {}", self.smoothing_ratio))?;
+        }
+        if let Some(Speeds { sound, fastest }) = self.speeds {
+            let mach = fastest / sound;
+            let text =
+                format_args!("{sound:.3} m/s; the fluid is expected below {fastest:.3} m/s, Mach {mach:.2}");
+            line("sound", &text)?;
         }
         let limits = self.fluid_dt_limit.map(|limit| ("fluid", limit)).into_iter();
         for (name, limit) in limits.chain(self.solids.iter().map(|solid| (&*solid.name, solid.dt_limit))) {

@@ -37,12 +37,16 @@ pub fn remarks(scene: &Scene) -> Vec<String> {
 pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Placed]) -> Vec<String> {
     let mut all = Vec::new();
     moving::clamps(scene, &mut all);
+    moving::clamps_that_leave(scene, layout, &mut all);
     moving::joints(scene, &mut all);
     moving::walls(scene, &mut all);
     let bodies = scene.bodies_of(layout);
     bodies::free(scene, &bodies, &mut all);
     bodies::parted(scene, &bodies, &mut all);
     bodies::voids(scene, &mut all);
+    bodies::idle_voids::<D>(scene, &mut all);
+    bodies::held_altogether(scene, &bodies, &mut all);
+    bodies::not_repeated(scene, layout, &mut all);
     bodies::cracks(scene, &mut all);
     loads::tractions(scene, layout, &mut all);
     bodies::touching(scene, layout, &bodies, &mut all);
@@ -54,7 +58,8 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     clamp_faces::clamp_faces(scene, &mut all);
     shapes::sizes(scene, placed, &mut all);
     shapes::nodal(scene, placed, &mut all);
-    shapes::overlaps(placed, &mut all);
+    shapes::overlaps(scene, placed, &mut all);
+    shapes::locking(scene, placed, &mut all);
     thickness::thin(scene, placed, &mut all);
     walls::thin(scene, layout, &mut all);
     water::hanging(scene, layout, &mut all);
@@ -69,15 +74,21 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     settings::beach(scene, &mut all);
     settings::checkpoints(scene, &mut all);
     settings::probes(scene, &mut all);
+    settings::fluxes(scene, &mut all);
+    settings::thin_gauges(scene, placed, &mut all);
+    settings::references(scene, &mut all);
     magnitudes::materials(scene, &mut all);
     magnitudes::gravity(scene, &mut all);
     magnitudes::viscosity(scene, &mut all);
     magnitudes::lengths(scene, &mut all);
+    magnitudes::motions(scene, &mut all);
     beams::bent(scene, placed, &mut all);
     magnitudes::parameters(scene, &mut all);
     all
 }
 
+#[cfg(test)]
+mod silence_tests;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]

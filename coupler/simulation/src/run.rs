@@ -2,6 +2,7 @@
 
 use crate::checkpoint::Checkpoint;
 use crate::options::{RunOptions, known_solid};
+use crate::remarks::Placed;
 use crate::session::Session;
 use crate::{course, effects, forecast, remarks, timeline};
 use halfstep_coupling::course::Course;
@@ -181,12 +182,12 @@ fn check_external(scene: &Scene, options: &RunOptions) -> Result<(), RunError> {
     Ok(())
 }
 
-/// What the report of a run says at its start.
+/// What the report of a run says at its start, and the shapes as they are computed.
 pub(crate) fn begin_report<const D: usize>(
     scene: &Scene,
     layout: &Layout<D>,
     isa: Isa,
-) -> Result<RunReport, RunError> {
+) -> Result<(RunReport, Vec<Placed>), RunError> {
     let counts = layout.counts();
     let placed = remarks::placed(scene, layout);
     let unwritable = |e: serde_json::Error| RunError::System(e.to_string());
@@ -200,7 +201,7 @@ pub(crate) fn begin_report<const D: usize>(
     };
     report.effects = effects::reports(scene, &counts);
     report.audit.isa = Some(isa.bits_name().into());
-    Ok(report)
+    Ok((report, placed))
 }
 
 fn execute(
@@ -224,7 +225,7 @@ fn execute_in<const D: usize>(
     resumed: Option<(Checkpoint, RunReport)>,
 ) -> Result<Ended, RunError> {
     let layout = geometry::layout::<D>(scene);
-    let mut report = begin_report(scene, &layout, options.isa)?;
+    let (mut report, placed) = begin_report(scene, &layout, options.isa)?;
     let checkpoint = resumed.map(|(checkpoint, earlier)| {
         report.resumed = earlier.resumed;
         report.resumed.push(Resumption { because: earlier.error, ..checkpoint.resumption() });
@@ -238,6 +239,9 @@ fn execute_in<const D: usize>(
     }
     if options.log {
         start_log(directory)?;
+        for shape in &placed {
+            tracing::info!("{}: {shape}", shape.name);
+        }
         for warning in &report.warnings {
             tracing::warn!("{warning}");
             // Who goes on has heard it.

@@ -301,7 +301,7 @@ impl<const D: usize> Running<D> {
 
     /// What the report says of the scene and of the program's own effect.
     fn begin_report(&self) -> Result<RunReport, Error> {
-        let mut report = run::begin_report(&self.scene, &geometry::layout::<D>(&self.scene), self.isa)?;
+        let (mut report, _) = run::begin_report(&self.scene, &geometry::layout::<D>(&self.scene), self.isa)?;
         report.effects.extend(self.own_effect.clone().map(effects::row));
         Ok(report)
     }

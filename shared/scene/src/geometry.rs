@@ -11,6 +11,7 @@
 //! first in the file. The loser has no particle inside the winner nor closer than dx / 2 (the mean where spacings
 //! differ) to one of its particles.
 
+mod at_start;
 mod cells;
 mod moved;
 mod nearest;
@@ -25,7 +26,9 @@ mod surface;
 #[cfg(test)]
 mod tests;
 
-use crate::{Block, CantileverMode, Geometry, Lattice, Motion, Phase, Scene, Shape, dispatch};
+use crate::{Block, Geometry, Lattice, Motion, Phase, Scene, Shape, dispatch};
+pub use at_start::cantilever_velocity;
+use at_start::{added, field_velocity, initial_pressure, surfaces};
 pub use cells::{Cells, cell};
 pub use moved::Moved;
 pub use nearest::nearest;
@@ -39,6 +42,7 @@ use points::Spacing;
 use polygon::Standing;
 pub(crate) use polygon::{Fault, twice_area};
 pub use polygon::{MAX_CORNERS, Polygon};
+pub use region::void_meets;
 use region::{Region, voids_before};
 pub use surface::Surface;
 
@@ -209,12 +213,20 @@ fn of_phases<const D: usize>(scene: &Scene, phases: &[Phase]) -> Layout<D> {
                     contact: shape.contact,
                     shape: index as u32,
                 })),
-                Phase::Fluid => layout.fluid.extend(kept.iter().map(|(p, _)| FluidPoint {
-                    position: p.position,
-                    velocity: added(velocity, field_velocity(scene, shape, &p.position)),
-                    pressure: initial_pressure(scene, shape, &p.position),
-                    shape: index as u32,
-                })),
+                Phase::Fluid => {
+                    let surfaces = if shape.hydrostatic { surfaces(scene, shape, &kept) } else { Vec::new() };
+                    layout.fluid.extend(kept.iter().map(|(p, copy)| FluidPoint {
+                        position: p.position,
+                        velocity: added(velocity, field_velocity(scene, shape, &p.position)),
+                        pressure: initial_pressure(
+                            scene,
+                            shape,
+                            &p.position,
+                            surfaces.get(*copy as usize).copied(),
+                        ),
+                        shape: index as u32,
+                    }));
+                }
             }
         }
     }
@@ -371,64 +383,6 @@ fn solid_point<const D: usize>(
 /// Whether a point lies in a box, its surface included, or within `tolerance` (m) of it.
 pub fn holds<const D: usize>(block: &Block, position: &[f64; D], tolerance: f64) -> bool {
     (0..D).all(|a| block.min[a] - tolerance <= position[a] && position[a] <= block.max[a] + tolerance)
-}
-
-/// First root of cos(kL) cosh(kL) = -1.
-const FIRST_MODE: f64 = 1.875_104_068_711_961_2;
-
-/// Velocity across a cantilever in its first bending mode (Landau and Lifshitz, Theory of Elasticity, section 25):
-/// fraction c_0 F(x) / F(L) with F(x) = (cos kL + cosh kL)(cosh kx - cos kx) + (sin kL - sinh kL)(sinh kx - sin kx).
-/// Zero behind the root. The crate libm's functions: the same bits on every machine.
-pub fn cantilever_velocity(mode: &CantileverMode, sound_speed: f64, x: f64) -> f64 {
-    use libm::{cos, cosh, sin, sinh};
-    let end = FIRST_MODE;
-    let shape = |kx: f64| {
-        (cos(end) + cosh(end)) * (cosh(kx) - cos(kx)) + (sin(end) - sinh(end)) * (sinh(kx) - sin(kx))
-    };
-    let along = ((x - mode.root) / mode.length * end).max(0.0);
-    mode.fraction * sound_speed * shape(along) / shape(end)
-}
-
-fn in_plane<const D: usize>(position: &[f64; D]) -> [f64; 2] {
-    [position[0], position[1]]
-}
-
-fn field_velocity<const D: usize>(scene: &Scene, shape: &Shape, position: &[f64; D]) -> [f64; 2] {
-    let gravity = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
-    shape.velocity_field.map_or([0.0; 2], |field| field.velocity(in_plane(position), gravity))
-}
-
-fn added<const D: usize>(mut velocity: [f64; D], field: [f64; 2]) -> [f64; D] {
-    velocity.iter_mut().zip(field).for_each(|(v, f)| *v += f);
-    velocity
-}
-
-fn initial_pressure<const D: usize>(scene: &Scene, shape: &Shape, position: &[f64; D]) -> f64 {
-    let at_rest = if shape.hydrostatic { hydrostatic(scene, shape, position) } else { 0.0 };
-    let density = scene.fluid.as_ref().map_or(0.0, |fluid| fluid.density);
-    at_rest + shape.velocity_field.map_or(0.0, |field| field.pressure(in_plane(position), density))
-}
-
-/// rho g times the depth below the shape's highest point.
-fn hydrostatic<const D: usize>(scene: &Scene, shape: &Shape, position: &[f64; D]) -> f64 {
-    let density = scene.fluid.as_ref().map_or(0.0, |fluid| fluid.density);
-    let g = scene.gravity;
-    // Gravity's potential falls with depth: g . x is least at the highest point.
-    let highest: f64 = match &shape.geometry {
-        Geometry::Box(block) | Geometry::Tank { cavity: block, .. } => {
-            (0..D).map(|a| (g[a] * block.min[a]).min(g[a] * block.max[a])).sum()
-        }
-        Geometry::Disc { center, radius: outer } | Geometry::Ring { center, outer, .. } => {
-            let size = (0..D).map(|a| g[a] * g[a]).sum::<f64>().sqrt();
-            (0..D).map(|a| g[a] * center[a]).sum::<f64>() - size * outer
-        }
-        Geometry::Polygon(_) | Geometry::Moved(_) => {
-            let thickness = Spacing::of(scene, shape).thickness();
-            outline::extent(&shape.geometry, D, thickness, scene.gravity)[0]
-        }
-    };
-    let here: f64 = (0..D).map(|a| g[a] * position[a]).sum();
-    density * (here - highest).max(0.0)
 }
 
 fn truncated<const D: usize>(vector: [f64; 3]) -> [f64; D] {

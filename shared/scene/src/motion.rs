@@ -129,6 +129,24 @@ impl Motion {
         }
     }
 
+    /// Whether it, or a part of it, goes on at a rate.
+    pub fn is_steady(&self) -> bool {
+        match self {
+            Self::Steady { .. } => true,
+            Self::Oscillating { .. } => false,
+            Self::Composed(composed) => {
+                composed.parts.iter().any(|part| matches!(part.course, Course::Steady { .. }))
+            }
+        }
+    }
+
+    /// Sum of the largest angles of its swings about a middle position, rad; steady turns and files do not count.
+    pub fn swings_by(&self) -> f64 {
+        let Self::Composed(composed) = self else { return 0.0 };
+        let sines = composed.parts.iter().filter(|part| matches!(part.course, Course::Sine { .. }));
+        sines.map(|part| part.angle.abs()).sum()
+    }
+
     /// What it makes as a wave maker.
     pub fn makes(&self) -> Option<&WaveMaker> {
         match self {

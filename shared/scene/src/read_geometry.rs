@@ -96,7 +96,11 @@ fn from_file(section: &Section<'_>, folder: &Path) -> Option<Region> {
     let found = if drawing {
         file::read(&file).and_then(|text| drawing::read(&text, id))
     } else {
-        read_csv(&file, "x", "y").map(|outline| Region { outline, holes: Vec::new() })
+        read_csv(&file, "x", "y").map(|outline| Region { outline, holes: Vec::new() }).map_err(|reason| {
+            let table = file.extension().is_none_or(|extension| extension.eq_ignore_ascii_case("csv"));
+            let other = "; what does not end in .svg is read as a table with the columns `x` and `y`";
+            format!("{reason}{}", if table { "" } else { other })
+        })
     };
     let found = found.and_then(|Region { outline, holes }| {
         let scaled =

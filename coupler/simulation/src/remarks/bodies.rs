@@ -1,7 +1,10 @@
 //! Remarks on bodies: what holds them, what they stand on, what they touch.
 
 use halfstep_scene::geometry::Layout;
-use halfstep_scene::{Block, Body, EffectName, Phase, Scene, Shape, SolidModelName, Switch, Void, geometry};
+use halfstep_scene::{
+    Block, Body, EffectName, Geometry, Phase, Scene, Shape, SolidModelName, Switch, Void, geometry,
+};
+use std::collections::BTreeSet;
 
 /// Most bodies that are listed.
 const MOST_LISTED: usize = 8;
@@ -87,6 +90,69 @@ pub(super) fn voids(scene: &Scene, all: &mut Vec<String>) {
             all.push(format!(
                 "`{}` may take a part of `{}`, and rigid bodies touch the whole of that shape: they know no voids",
                 void.name, shape.name
+            ));
+        }
+    }
+}
+
+/// Voids that take no place, because what they are in stands before them in the file.
+pub(super) fn idle_voids<const D: usize>(scene: &Scene, all: &mut Vec<String>) {
+    for void in &scene.voids {
+        let meets = |index: &usize| geometry::void_meets::<D>(scene, void, *index);
+        if (void.before..scene.shapes.len()).any(|index| meets(&index)) {
+            continue;
+        }
+        let why = match (0..void.before.min(scene.shapes.len())).find(meets) {
+            Some(index) => format!(
+                "`{}`, in which it lies, stands before it, and a void takes places of what comes after it",
+                scene.shapes[index].name
+            ),
+            None => "no shape has a place in it".to_owned(),
+        };
+        all.push(format!("the void `{}` takes nothing: {why}", void.name));
+    }
+}
+
+/// Bodies of which nothing can move.
+pub(super) fn held_altogether(scene: &Scene, bodies: &[Body], all: &mut Vec<String>) {
+    let moves = |body: &Body| {
+        body.shapes.iter().any(|&k| {
+            let shape = &scene.shapes[k];
+            shape.motion.is_some() || !shape.clamp_with.is_empty()
+        })
+    };
+    for body in bodies.iter().filter(|body| body.clamped == body.particles && !moves(body)) {
+        all.push(format!(
+            "all {} particles of {} are clamped: it neither moves nor bends (a wall that does not is cheaper)",
+            body.particles,
+            names(scene, body)
+        ));
+    }
+}
+
+/// Loads and cracks of shapes that are repeated, which are in one place.
+pub(super) fn not_repeated<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
+    for (index, shape) in scene.shapes.iter().enumerate() {
+        let Geometry::Moved(moved) = &shape.geometry else { continue };
+        if moved.count < 2 {
+            continue;
+        }
+        if shape.load.is_some() {
+            let loaded = layout.solid.iter().filter(|p| p.body as usize == index && p.is_in_load(scene));
+            let copies: BTreeSet<u32> = loaded.map(|p| p.copy).collect();
+            if copies.len() < moved.count as usize {
+                all.push(format!(
+                    "the load of `{}` acts on {} of its {} copies: `repeat` does not take its box along",
+                    shape.name,
+                    copies.len(),
+                    moved.count
+                ));
+            }
+        }
+        if shape.crack.is_some() {
+            all.push(format!(
+                "the crack of `{}` is in one place: `repeat` does not take it along to its {} copies",
+                shape.name, moved.count
             ));
         }
     }

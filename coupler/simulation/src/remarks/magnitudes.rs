@@ -14,6 +14,8 @@ const WATER: [f64; 2] = [980.0, 1040.0];
 const VISCOUS: f64 = 0.1;
 /// Smaller than a drop, larger than a harbour, m.
 const SIZE: [f64; 2] = [1e-3, 1e3];
+/// Of a way over the size of the scene.
+const FAR: f64 = 5.0;
 
 /// Materials that hardly exist.
 pub(super) fn materials(scene: &Scene, all: &mut Vec<String>) {
@@ -55,6 +57,39 @@ pub(super) fn viscosity(scene: &Scene, all: &mut Vec<String>) {
             "fluid.viscosity = {} Pa s in a fluid of the density of water, which has 0.001 Pa s: is the unit right?",
             fluid.viscosity
         ));
+    }
+}
+
+/// Motions that swing further than a quarter of a turn, or lead far away: their units are hardly those meant.
+pub(super) fn motions(scene: &Scene, all: &mut Vec<String>) {
+    let boxes = scene.shapes.iter().map(|shape| geometry::bounding_box(shape, scene));
+    let Some(around) = geometry::around(boxes) else { return };
+    let extent = (0..scene.dimension).map(|a| around.max[a] - around.min[a]).fold(0.0, f64::max);
+    for shape in &scene.shapes {
+        let Some(motion) = &shape.motion else { continue };
+        let angle = motion.swings_by();
+        if angle > std::f64::consts::FRAC_PI_2 {
+            all.push(format!(
+                "the motion of `{}` swings by {} rad, {:.0} degrees: angles are in radians",
+                shape.name,
+                angle as f32,
+                angle.to_degrees()
+            ));
+        }
+        // What goes on at a rate goes away: a gate for instance.
+        if motion.is_steady() {
+            continue;
+        }
+        let reach = motion.reach(scene.end_time);
+        let way = reach.iter().map(|(low, high)| high.max(-low)).fold(0.0, f64::max);
+        if way > FAR * extent {
+            all.push(format!(
+                "the motion of `{}` leads {} m away, {:.0} times the size of the scene: lengths are in metres",
+                shape.name,
+                way as f32,
+                way / extent
+            ));
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Remarks on tanks that move: clamps, joints and walls in them that do not go along.
 
-use halfstep_scene::{Block, Geometry, Joint, JointKind, Motion, Phase, Scene, Shape, geometry};
+use halfstep_scene::geometry::{self, Layout, SolidPoint};
+use halfstep_scene::{Block, Geometry, Joint, JointKind, Motion, Phase, Scene, Shape};
 
 /// Walls that move, with the boxes around them.
 fn moving(scene: &Scene) -> Vec<(&Shape, Block)> {
@@ -61,6 +62,49 @@ pub(super) fn clamps(scene: &Scene, all: &mut Vec<String>) {
             ));
         }
     }
+}
+
+/// Clamps that move out of a wall that stays.
+pub(super) fn clamps_that_leave<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
+    for (index, shape) in scene.shapes.iter().enumerate().filter(|(_, s)| s.phase == Phase::Solid) {
+        let own = layout.solid.iter().filter(|p| p.body as usize == index && p.clamped);
+        let moves = |p: &&SolidPoint<D>| {
+            let at = Block { min: lifted(&p.position), max: lifted(&p.position) };
+            geometry::clamp_motion(scene, p).is_some_and(|motion| {
+                let swept = motion.swept(&at, scene.end_time);
+                (0..D).any(|a| swept.max[a] - swept.min[a] > 0.5 * scene.resolution)
+            })
+        };
+        let clamped: Vec<[f64; D]> = own.filter(moves).map(|p| p.position).collect();
+        for (wall, of_wall) in scene.shapes.iter().enumerate() {
+            if of_wall.phase != Phase::Wall || of_wall.motion.is_some() {
+                continue;
+            }
+            // A wall on both sides of the clamp: it stands in it.
+            let reach = 1.2 * scene.resolution;
+            let beside = |axis: usize, side: f64| {
+                layout.wall.iter().filter(|w| w.shape as usize == wall).any(|w| {
+                    clamped.iter().any(|p| {
+                        let apart = (w.position[axis] - p[axis]) * side;
+                        let near =
+                            |a: usize| a == axis || (w.position[a] - p[a]).abs() < 0.6 * scene.resolution;
+                        0.0 < apart && apart < reach && (0..D).all(near)
+                    })
+                })
+            };
+            if (0..D).any(|axis| beside(axis, -1.0) && beside(axis, 1.0)) {
+                all.push(format!(
+                    "the clamp of `{}` moves, and `{}`, in which it stands, does not: it leaves a gap in the wall (the \
+                     same `motion` at the wall takes it along)",
+                    shape.name, of_wall.name
+                ));
+            }
+        }
+    }
+}
+
+fn lifted<const D: usize>(x: &[f64; D]) -> [f64; 3] {
+    std::array::from_fn(|a| if a < D { x[a] } else { 0.0 })
 }
 
 /// Joints in tanks that move, tied to what does not go along.

@@ -1,7 +1,8 @@
 //! Remarks on settings that cannot act in their scene, or act the other way around.
 
+use super::shapes::Placed;
 use super::water::{INSTANTS, depth};
-use halfstep_scene::{EffectName, Motion, ProbeKind, Scene, Switch, geometry};
+use halfstep_scene::{EffectName, Motion, Phase, ProbeKind, Scene, Switch, geometry};
 
 /// Part of a wave's amplitude from which on a beach takes nothing.
 const KEPT: f64 = 0.9;
@@ -85,6 +86,63 @@ pub(super) fn checkpoints(scene: &Scene, all: &mut Vec<String>) {
             "output.checkpoint_interval is {interval} s and the run ends at {} s: it makes no checkpoint",
             scene.end_time
         ));
+    }
+}
+
+/// Spacings below which a line has too few places for a stream of its width.
+const SHORT: f64 = 2.5;
+
+/// Lines that a stream crosses in so few places that it counts for nothing where it is thinner than 2h.
+pub(super) fn fluxes(scene: &Scene, all: &mut Vec<String>) {
+    for probe in &scene.probes {
+        let ProbeKind::Flux { from, to } = &probe.kind else { continue };
+        let length = (0..3).map(|a| (to[a] - from[a]).powi(2)).sum::<f64>().sqrt();
+        if length < SHORT * scene.resolution {
+            all.push(format!(
+                "the line of the probe `{}` is {:.1} spacings long: a flux counts where fluid fills half of the kernel, \
+                 which a stream of less than about three spacings does not",
+                probe.name,
+                length / scene.resolution
+            ));
+        }
+    }
+}
+
+/// Gauges on plates so thin that the kernel reaches the fluid behind them.
+pub(super) fn thin_gauges(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
+    let reach = 2.0 * scene.smoothing_ratio * scene.resolution;
+    for probe in &scene.probes {
+        let ProbeKind::Pressure { shape: Some(index), .. } = &probe.kind else { continue };
+        let (shape, placed) = (&scene.shapes[*index], &placed[*index]);
+        let Some(thickness) = placed.rows.map(|rows| rows * scene.spacing(shape)) else { continue };
+        if shape.phase == Phase::Solid && thickness < reach * (1.0 - 1e-9) {
+            all.push(format!(
+                "the gauge `{}` on `{}` averages the fluid within 2h = {} m, and the shape is {} m thick: it feels the \
+                 fluid at both faces",
+                probe.name,
+                shape.name,
+                reach as f32,
+                thickness as f32
+            ));
+        }
+    }
+}
+
+/// References of which hardly a point lies within the run.
+pub(super) fn references(scene: &Scene, all: &mut Vec<String>) {
+    for reference in &scene.references {
+        let within = |point: &&[f64; 2]| (0.0..=scene.end_time).contains(&point[0]);
+        let count = reference.points.iter().filter(within).count();
+        if count < 2 && reference.points.len() > 1 {
+            all.push(format!(
+                "{count} of the {} points of the reference `{}` of `{}` lie within the run, which ends at {} s: are its \
+                 times in seconds, and its columns the right ones?",
+                reference.points.len(),
+                reference.label,
+                reference.probe,
+                scene.end_time
+            ));
+        }
     }
 }
 

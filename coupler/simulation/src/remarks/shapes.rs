@@ -34,7 +34,7 @@ pub(crate) struct Placed {
     /// Mass, kg (2D: kg/m).
     mass: f64,
     /// Rows across a plate.
-    rows: Option<f64>,
+    pub(super) rows: Option<f64>,
     /// A prescribed motion, of a wall or of clamps.
     moves: bool,
     /// Walls that its clamps move with.
@@ -308,7 +308,7 @@ pub(super) fn sizes(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
             Geometry::Ring { .. } => "thick",
             _ => "large",
         };
-        let thin = shape.rows.is_some() && shape.asked.iter().all(|extent| *extent >= shape.asked[axis]);
+        let thin = shape.bending.is_some() && shape.asked.iter().all(|extent| *extent >= shape.asked[axis]);
         let stiffness = match thin {
             true if shape.unit == "m" => format!(": {:.2} times the bending stiffness", factor.powi(3)),
             _ => stiffer.map_or(String::new(), |factor| format!(": {factor:.2} times the bending stiffness")),
@@ -356,8 +356,37 @@ pub(super) fn nodal(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
     }
 }
 
+/// Poisson's ratio from which on few rows of the total-Lagrangian model lock, and rows that do not.
+const LOCKS: (f64, f64) = (0.45, 7.5);
+
+/// Plates of nearly incompressible solids that are too stiff because their volume cannot change.
+pub(super) fn locking(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
+    for (shape, of_scene) in placed.iter().zip(&scene.shapes) {
+        let Some(solid) = of_scene.solid.map(|k| &scene.solids[k]) else { continue };
+        let (Some(rows), Some(_)) = (shape.rows, shape.bending) else { continue };
+        let locks = solid.model.name() == SolidModelName::TotalLagrangian && solid.poissons_ratio >= LOCKS.0;
+        if locks && rows < LOCKS.1 {
+            all.push(format!(
+                "`{}` is {rows:.0} particles across, and with poissons_ratio = {} the total-Lagrangian model locks: it \
+                 bends too little (8 across, or model = \"finite-element\", bend as they should at 0.49)",
+                shape.name, solid.poissons_ratio
+            ));
+        }
+    }
+}
+
 /// Shapes that lose many of their particles to others.
-pub(super) fn overlaps(placed: &[Placed], all: &mut Vec<String>) {
+pub(super) fn overlaps(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
+    for (shape, of_scene) in placed.iter().zip(&scene.shapes) {
+        if shape.particles == 0 && shape.lost == 0 {
+            all.push(format!(
+                "`{}` has no particle, and nothing is where it stands: it is nowhere as thick as its spacing, {} m, or \
+                 a void has its place",
+                shape.name,
+                length(scene.spacing(of_scene))
+            ));
+        }
+    }
     for shape in placed.iter().filter(|shape| shape.phase != Phase::Wall) {
         let whole = shape.particles + shape.lost;
         if shape.particles == 0 && shape.lost > 0 {

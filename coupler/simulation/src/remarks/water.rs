@@ -24,26 +24,61 @@ pub(super) fn hanging<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &m
     };
     let reach = 1.5 * scene.resolution;
     for (index, shape) in shapes() {
-        let Geometry::Box(block) = &shape.geometry else {
-            if !carried(layout, index, reach, others(index), (axis, down)) {
-                all.push(format!(
-                    "`{}` hangs in the air: nothing is right below it, so it falls",
-                    shape.name
-                ));
+        let text = match &shape.geometry {
+            Geometry::Box(_) => {
+                let bare = bare_bottom(scene, layout, index, others(index), (axis, down));
+                (bare > MOSTLY).then(|| match (100.0 * bare).round() {
+                    100.0 => "nothing is right below it".to_owned(),
+                    percent => format!("nothing is right below {percent:.0} % of its bottom"),
+                })
             }
-            continue;
+            _ => (!carried(layout, index, reach, others(index), (axis, down)))
+                .then(|| "nothing is right below it".to_owned()),
         };
-        let bottom = if down < 0.0 { block.min[axis] } else { block.max[axis] };
-        let below = |x: &[f64; D]| {
-            let depth = (x[axis] - bottom) * down;
-            0.0 <= depth + 1e-9 * reach
-                && depth < reach
-                && (0..D).all(|a| a == axis || (block.min[a] <= x[a] && x[a] <= block.max[a]))
-        };
-        if !others(index).any(below) {
-            all.push(format!("`{}` hangs in the air: nothing is right below it, so it falls", shape.name));
+        if let Some(text) = text {
+            all.push(format!("`{}` hangs in the air: {text}, so it falls", shape.name));
         }
     }
+}
+
+/// Part of the bottom of a box of fluid from which on it hangs.
+const MOSTLY: f64 = 0.5;
+
+/// Part of a box's lowest row, 0 to 1, below which there is none of `others`. 0 of a box without particles.
+fn bare_bottom<'l, const D: usize>(
+    scene: &Scene,
+    layout: &'l Layout<D>,
+    shape: usize,
+    others: impl Iterator<Item = &'l [f64; D]>,
+    (axis, down): (usize, f64),
+) -> f64 {
+    let dx = scene.resolution;
+    let own = || layout.fluid.iter().filter(|p| p.shape as usize == shape);
+    let deepest = own().map(|p| p.position[axis] * down).fold(f64::NEG_INFINITY, f64::max);
+    let row: Vec<&[f64; D]> =
+        own().map(|p| &p.position).filter(|x| x[axis] * down > deepest - 0.5 * dx).collect();
+    // Columns of the width dx.
+    let mut cells: HashMap<[i64; D], Vec<[f64; D]>> = HashMap::new();
+    let column = |x: &[f64; D]| -> [i64; D] {
+        std::array::from_fn(|a| if a == axis { 0 } else { (x[a] / dx).floor() as i64 })
+    };
+    for x in others {
+        let depth = x[axis] * down - deepest;
+        if 0.1 * dx < depth && depth < 2.0 * dx {
+            cells.entry(column(x)).or_default().push(*x);
+        }
+    }
+    let is_carried = |p: &&&[f64; D]| {
+        let home = column(p);
+        (0..3_usize.pow(D as u32)).any(|code| {
+            let near: [i64; D] =
+                std::array::from_fn(|a| home[a] + (code / 3_usize.pow(a as u32) % 3) as i64 - 1);
+            let beside = |x: &[f64; D]| (0..D).all(|a| a == axis || (x[a] - p[a]).abs() < 0.75 * dx);
+            cells.get(&near).is_some_and(|there| there.iter().any(beside))
+        })
+    };
+    let carried = row.iter().filter(is_carried).count();
+    if row.is_empty() { 0.0 } else { 1.0 - carried as f64 / row.len() as f64 }
 }
 
 /// Whether one of `others` is near a particle of a shape, and rather below it than beside it. True where it has none.
@@ -220,6 +255,24 @@ pub(super) fn walls_that_meet(scene: &Scene, all: &mut Vec<String>) {
             now
         };
         let way: Vec<Block> = (0..=INSTANTS).map(at).collect();
+        if !moving.contact {
+            for solid in scene.shapes.iter().filter(|s| s.phase == Phase::Solid && s.motion.is_none()) {
+                let fixed = geometry::bounding_box(solid, scene);
+                let along = solid.clamp_with.iter().flatten().any(|with| *with == moving.name);
+                if along || overlap(&block, &fixed, scene) {
+                    continue;
+                }
+                if let Some(meets) = way.iter().position(|now| overlap(now, &fixed, scene)) {
+                    all.push(format!(
+                        "`{}` goes through `{}` from about {:.3} s on: its `contact` is false, so it does not touch \
+                         solids",
+                        moving.name,
+                        solid.name,
+                        time(meets)
+                    ));
+                }
+            }
+        }
         // Boxes that do not move: what slides along one meets nothing.
         for other in walls.iter().filter(|other| other.motion.is_none()) {
             let Geometry::Box(fixed) = &other.geometry else { continue };

@@ -1,6 +1,6 @@
 //! Which places a shape holds, prepared for questions about many points.
 
-use super::points::{Spacing, sides};
+use super::points::{self, Spacing, sides};
 use super::polygon::Edges;
 use super::{Moved, TOLERANCE, holds};
 use crate::{Block, Geometry, Scene, Void};
@@ -64,6 +64,14 @@ impl<'s> Region<'s> {
 /// The voids that a shape of that index does not fill: those before it.
 pub(super) fn voids_before(scene: &Scene, index: usize) -> Vec<&Void> {
     scene.voids.iter().filter(|void| void.before <= index).collect()
+}
+
+/// Whether a void holds a place of the shape of that index, whichever of the two comes first.
+pub fn void_meets<const D: usize>(scene: &Scene, void: &Void, index: usize) -> bool {
+    let spacing = Spacing::of(scene, &scene.shapes[index]);
+    let places = points::of_shape::<D>(&scene.shapes[index].geometry, spacing);
+    let region = Region::new(&void.geometry, spacing, &[void]);
+    places.iter().any(|p| region.is_void(&p.position))
 }
 
 /// Whether a box, disc, ring or tank, grown by `margin` (shrunk where negative), holds a point.

@@ -1,0 +1,184 @@
+//! Valid scenes that ran in silence and meant something else: what is remarked on each, and on what is near it not.
+
+use super::remarks;
+use super::tests::{PLATE, TANK, WATER, plain};
+use halfstep_scene::parse;
+use std::path::Path;
+
+/// Remarks on a whole scene of water, and of an elastic solid of this model and Poisson's ratio.
+fn with_solid(keys: &str, rest: &str) -> Vec<String> {
+    let text = format!(
+        "resolution = 0.005\nend_time = 1.0\n[fluid]\ndensity = 1000.0\n[solid]\ndensity = 1100.0\n\
+         youngs_modulus = 12e6\n{keys}\n{TANK}{WATER}{rest}"
+    );
+    remarks(&parse(&text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}")))
+}
+
+/// A shape with lines more.
+fn with(shape: &str, lines: &str) -> String {
+    shape.replacen("phase = ", &format!("{lines}phase = "), 1)
+}
+
+fn has(found: &[String], said: &str) -> bool {
+    found.iter().any(|text| text.contains(said))
+}
+
+fn wall(name: &str, geometry: &str) -> String {
+    format!("[[shape]]\nname = \"{name}\"\nphase = \"wall\"\n{geometry}\n")
+}
+
+#[test]
+fn a_wall_without_particles() {
+    let said = "`dam` has no particle, and nothing is where it stands";
+    // A slope 4.6 mm thick, its rows 5 mm apart.
+    let of = |thick: f64| {
+        let dam = wall(
+            "dam",
+            &format!(
+                "polygon = [[0.15, 0.0], [{}, 0.0], [{}, 0.1], [0.25, 0.1]]",
+                0.15 + thick,
+                0.25 + thick
+            ),
+        );
+        plain(&[TANK, &dam, WATER, PLATE])
+    };
+    assert!(has(&of(0.0065), said), "{:?}", of(0.0065));
+    assert!(!has(&of(0.06), said));
+}
+
+#[test]
+fn water_of_which_a_part_alone_stands_on_something() {
+    let water = |bottom: f64| {
+        format!(
+            "[[shape]]\nname = \"water\"\nphase = \"fluid\"\nbox = {{ min = [0.0, {bottom}], max = [0.19, 0.1] }}\n"
+        )
+    };
+    let baffle = wall("baffle", "box = { min = [0.09, -0.02], max = [0.12, 0.15] }");
+    let hanging = plain(&[TANK, &baffle, &water(0.02), PLATE]);
+    assert!(has(&hanging, "`water` hangs in the air: nothing is right below"), "{hanging:?}");
+    assert!(!has(&plain(&[TANK, &baffle, &water(0.0), PLATE]), "hangs"));
+    // Of a box that reaches below the floor the floor has the places.
+    assert_eq!(plain(&[TANK, &water(-0.01), PLATE]).iter().filter(|text| text.contains("hangs")).count(), 0);
+}
+
+#[test]
+fn a_clamp_that_leaves_its_wall() {
+    let motion = "motion = { amplitude = [0.01, 0.0], period = 1.0 }\n";
+    let rooted = PLATE
+        .replace("0.0], max = [0.22, 0.1]", "-0.02], max = [0.22, 0.1]")
+        .replace("clamp = { min = [0.2, 0.0]", "clamp = { min = [0.2, -0.02]");
+    let said =
+        "the clamp of `plate` moves, and `tank`, in which it stands, does not: it leaves a gap in the wall";
+    assert!(has(&plain(&[TANK, WATER, &with(&rooted, motion)]), said));
+    assert!(!has(&plain(&[TANK, WATER, &rooted]), "leaves a gap"));
+    assert!(!has(&plain(&[&with(TANK, motion), WATER, &with(&rooted, motion)]), "leaves a gap"));
+    // On the floor and not in it.
+    assert!(!has(&plain(&[TANK, WATER, &with(PLATE, motion)]), "leaves a gap"));
+}
+
+#[test]
+fn a_plate_that_locks() {
+    let said =
+        "`plate` is 4 particles across, and with poissons_ratio = 0.49 the total-Lagrangian model locks";
+    assert!(has(&with_solid("poissons_ratio = 0.49", PLATE), said));
+    assert!(!has(&with_solid("poissons_ratio = 0.49\nmodel = \"finite-element\"", PLATE), "locks"));
+    assert!(!has(&with_solid("poissons_ratio = 0.44", PLATE), "locks"));
+    let fine = with(PLATE, "spacing = 0.0025\n");
+    assert!(!has(&with_solid("poissons_ratio = 0.49", &fine), "locks"), "8 across");
+}
+
+#[test]
+fn a_wall_that_goes_through_a_plate() {
+    let ram = |contact: bool| {
+        let geometry =
+            "box = { min = [0.25, 0.02], max = [0.28, 0.08] }\nmotion = { velocity = [-0.5, 0.0] }\n";
+        wall("ram", &format!("{geometry}contact = {contact}"))
+    };
+    let said = "`ram` goes through `plate` from about 0.0";
+    assert!(has(&plain(&[TANK, WATER, PLATE, &ram(false)]), said));
+    assert!(!has(&plain(&[TANK, WATER, PLATE, &ram(true)]), "goes through `plate`"));
+}
+
+#[test]
+fn a_void_that_takes_nothing() {
+    let void =
+        "[[shape]]\nname = \"drain\"\nphase = \"void\"\nbox = { min = [0.3, -0.05], max = [0.33, 0.0] }\n";
+    let said = "the void `drain` takes nothing: `tank`, in which it lies, stands before it";
+    assert!(has(&plain(&[TANK, void, WATER, PLATE]), said));
+    assert!(!has(&plain(&[void, TANK, WATER, PLATE]), "takes nothing"));
+    let aside = void.replace("[0.3, -0.05], max = [0.33, 0.0]", "[0.3, 0.5], max = [0.33, 0.6]");
+    assert!(has(
+        &plain(&[&aside, TANK, WATER, PLATE]),
+        "the void `drain` takes nothing: no shape has a place in it"
+    ));
+}
+
+#[test]
+fn bodies_of_which_nothing_moves() {
+    let whole = PLATE.replace("max = [0.22, 0.01] }\n", "max = [0.22, 0.1] }\n");
+    let said = "all 80 particles of `plate` are clamped: it neither moves nor bends";
+    assert!(has(&plain(&[TANK, WATER, &whole]), said), "{:?}", plain(&[TANK, WATER, &whole]));
+    assert!(!has(&plain(&[TANK, WATER, PLATE]), "are clamped"));
+}
+
+#[test]
+fn loads_of_shapes_that_are_repeated() {
+    let load = "load = { within = { min = [0.2, 0.095], max = [0.205, 0.1] }, traction = [10.0, 0.0] }\n";
+    let repeat = "repeat = { count = 3, step = [0.05, 0.0] }\n";
+    let said = "the load of `plate` acts on 1 of its 3 copies: `repeat` does not take its box along";
+    let of = |lines: &str| plain(&[TANK, WATER, &with(PLATE, lines)]);
+    assert!(has(&of(&format!("{load}{repeat}")), said), "{:?}", of(&format!("{load}{repeat}")));
+    assert!(!has(&of(load), "copies"));
+}
+
+fn probe(lines: &str) -> String {
+    format!("[[probe]]\nname = \"p\"\n{lines}\n")
+}
+
+#[test]
+fn a_flux_through_a_short_line() {
+    let line = |length: f64| probe(&format!("kind = \"flux\"\nfrom = [0.15, 0.0]\nto = [0.15, {length}]"));
+    let said = "the line of the probe `p` is 1.0 spacings long";
+    assert!(has(&plain(&[TANK, WATER, PLATE, &line(0.005)]), said));
+    assert!(!has(&plain(&[TANK, WATER, PLATE, &line(0.015)]), "spacings long"));
+}
+
+#[test]
+fn a_gauge_that_feels_both_faces() {
+    let gauge = probe("kind = \"pressure\"\nat = [0.22, 0.05]\nshape = \"plate\"");
+    let thin = PLATE.replace("0.22", "0.21");
+    let on_thin = gauge.replace("0.22", "0.21");
+    let said =
+        "the gauge `p` on `plate` averages the fluid within 2h = 0.015 m, and the shape is 0.01 m thick";
+    assert!(has(&plain(&[TANK, WATER, &thin, &on_thin]), said));
+    assert!(!has(&plain(&[TANK, WATER, PLATE, &gauge]), "the gauge"), "0.02 m");
+}
+
+#[test]
+fn motions_in_degrees_or_millimetres() {
+    let of = |motion: &str| plain(&[&with(TANK, &format!("motion = {motion}\n")), WATER, PLATE]);
+    let swing = |angle: f64| of(&format!("{{ pivot = [0.2, 0.0], angle = {angle}, period = 1.0 }}"));
+    assert!(has(&swing(4.0), "the motion of `tank` swings by 4 rad, 229 degrees: angles are in radians"));
+    assert!(!has(&swing(0.07), "radians"));
+    let shake = |amplitude: f64| of(&format!("{{ amplitude = [{amplitude}, 0.0], period = 10.0 }}"));
+    assert!(has(&shake(10.0), "the motion of `tank` leads 10 m away, "));
+    assert!(!has(&shake(0.2), "leads"));
+}
+
+#[test]
+fn references_beside_the_run() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("ms.csv"), "t,p\n0,1\n200,2\n400,3\n").expect("a file");
+    std::fs::write(folder.path().join("s.csv"), "t,p\n0,1\n0.2,2\n0.4,3\n").expect("a file");
+    let of = |file: &str| {
+        let text = format!(
+            "resolution = 0.005\nend_time = 1.0\n[fluid]\ndensity = 1000.0\n{TANK}{WATER}{}\
+             [[reference]]\nprobe = \"p.x\"\nlabel = \"measured\"\nfile = \"{file}\"\ncolumns = [\"t\", \"p\"]\n",
+            probe("kind = \"front\"")
+        );
+        let path = folder.path().join("x.toml");
+        remarks(&parse(&text, &path, &[]).unwrap_or_else(|e| panic!("{e:?}")))
+    };
+    assert!(has(&of("ms.csv"), "1 of the 3 points of the reference `measured` of `p.x` lie within the run"));
+    assert!(!has(&of("s.csv"), "lie within the run"));
+}
