@@ -4,10 +4,12 @@ pub mod canvas;
 pub mod contact;
 #[cfg(test)]
 mod fixture;
+mod legend;
 mod panels;
 pub mod plot;
 mod stamp;
 pub mod start;
+mod strokes;
 #[cfg(test)]
 mod tests;
 pub mod timeline;

@@ -19,18 +19,23 @@ fn folder(name: &str) -> PathBuf {
     dir
 }
 
-/// Width, height and how often each RGB colour appears.
-fn decode(path: &Path) -> (u32, u32, HashMap<[u8; 3], u32>) {
+/// Width, height and the pixels.
+fn pixels(path: &Path) -> (u32, u32, Vec<[u8; 3]>) {
     let mut decoder = png::Decoder::new(BufReader::new(std::fs::File::open(path).unwrap()));
     decoder.set_transformations(png::Transformations::EXPAND);
     let mut reader = decoder.read_info().unwrap();
     let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
     let info = reader.next_frame(&mut pixels).unwrap();
+    pixels.truncate(info.buffer_size());
+    (info.width, info.height, pixels.chunks_exact(3).map(|rgb| [rgb[0], rgb[1], rgb[2]]).collect())
+}
+
+/// Width, height and how often each RGB colour appears.
+fn decode(path: &Path) -> (u32, u32, HashMap<[u8; 3], u32>) {
+    let (width, height, pixels) = pixels(path);
     let mut colors = HashMap::new();
-    for rgb in pixels[..info.buffer_size()].chunks_exact(3) {
-        *colors.entry([rgb[0], rgb[1], rgb[2]]).or_default() += 1;
-    }
-    (info.width, info.height, colors)
+    pixels.into_iter().for_each(|pixel| *colors.entry(pixel).or_default() += 1);
+    (width, height, colors)
 }
 
 fn rgb(color: plotters::style::RGBColor) -> [u8; 3] {
@@ -101,6 +106,109 @@ fn many_probes_share_a_picture_in_columns() {
     }
     let (width, height, _) = decode(&draw_plot(&scene, &dir).unwrap());
     assert_eq!((width, height), (1520, HEAD + 4 * 340), "seven panels");
+}
+
+/// Pixels of the oversampled plot that are drawn in a colour.
+fn drawn(canvas: &canvas::Canvas, color: plotters::style::RGBColor) -> Vec<(i32, i32)> {
+    let width = canvas.width as i32;
+    let pixels = (0_i32..).zip(canvas.rgb.chunks_exact(3)).filter(|(_, pixel)| **pixel == rgb(color));
+    pixels.map(|(k, _)| (k % width, k / width)).collect()
+}
+
+fn holds(rect: stamp::Rect, &(x, y): &(i32, i32)) -> bool {
+    (rect.x..=rect.x + rect.width).contains(&x) && (rect.y..=rect.y + rect.height).contains(&y)
+}
+
+/// A scene with gauges in one panel for each list, and what they measured at 400 instants.
+fn gauges(
+    lists: &[usize],
+    level: impl Fn(usize, f64) -> f64,
+) -> (halfstep_scene::Scene, crate::probes::Table) {
+    let mut scene = fixture::scene();
+    scene.references.clear();
+    let gauge = |(k, count): (usize, &usize)| halfstep_scene::Probe {
+        name: format!("gauge{k}"),
+        kind: halfstep_scene::ProbeKind::WaterLevel { x: vec![0.0; *count] },
+        solid: None,
+    };
+    scene.probes = lists.iter().enumerate().map(gauge).collect();
+    let columns = scene.probes.iter().flat_map(|probe| probe.columns(2));
+    let columns: Vec<_> = std::iter::once("time [s]".to_string()).chain(columns).collect();
+    let value = |k: usize, time: f64| if k == 0 { time } else { level(k - 1, time) };
+    let rows = (0..=400).map(|instant| f64::from(instant) * 0.001);
+    let rows = rows.map(|time| (0..columns.len()).map(|k| value(k, time)).collect()).collect();
+    (scene, crate::probes::Table { columns, rows })
+}
+
+/// Up and down at each instant, over a wave, so that turns have any angle.
+fn zigzag(k: usize, time: f64) -> f64 {
+    let instant = (time * 1e3).round();
+    let up = if (instant as usize).is_multiple_of(2) { 1.0 } else { -1.0 };
+    up * (1.0 + 0.8 * (0.3 * instant).sin() * (0.011 * instant * (k + 1) as f64).cos())
+}
+
+#[test]
+fn curves_stay_in_their_panel() {
+    let (scene, table) = gauges(&[1, 1, 1], |k, time| if k == 1 { time } else { zigzag(k, time) });
+    let (canvas, places) = plot::paint(&scene, &table).unwrap();
+    assert_eq!(places.len(), 3);
+    let pixels = drawn(&canvas, CURVES[0]);
+    assert!(pixels.len() > 10_000);
+    assert!(pixels.iter().all(|pixel| places.iter().any(|place| holds(place.plot, pixel))));
+    // The slow curve in the middle stays alone: a straight line, four pixels wide.
+    let between = pixels.iter().filter(|pixel| holds(places[1].plot, pixel)).count();
+    let [width, height] = [places[1].plot.width, places[1].plot.height].map(f64::from);
+    assert!((between as f64 / (4.0 * width.hypot(height / 1.12)) - 1.0).abs() < 0.05, "{between}");
+}
+
+#[test]
+fn curves_of_a_panel_differ_in_colour() {
+    let (scene, table) = gauges(&[CURVES.len()], |k, time| k as f64 + (9.0 * time).sin());
+    let (canvas, _) = plot::paint(&scene, &table).unwrap();
+    for color in CURVES {
+        assert!(drawn(&canvas, color).len() > 3000, "{color:?}");
+    }
+    let all = [&CURVES[..], &REFERENCES[..]].concat();
+    for (k, a) in all.iter().enumerate() {
+        for b in &all[k + 1..] {
+            let square = |a: u8, b: u8| (f64::from(a) - f64::from(b)).powi(2);
+            let distance = (square(a.0, b.0) + square(a.1, b.1) + square(a.2, b.2)).sqrt();
+            assert!(distance > 50.0, "{a:?} {b:?}");
+        }
+    }
+}
+
+#[test]
+fn ticks_tell_values_apart() {
+    let ticks = [(0.0, 9), (2.5e-11, 9), (0.2998001, 7), (12.5, 1), (2e7, 0)];
+    let ticks = ticks.map(|(value, digits)| plot::tick(value, digits));
+    assert_eq!(ticks, ["0", "2.50e-11", "0.2998001", "12.5", "2.00e7"]);
+}
+
+/// Curves go everywhere but to the lower right: the legend is there, and the axis as it was; curves that go everywhere
+/// leave it a strip above them.
+#[test]
+fn the_legend_hides_no_curve() {
+    let rises = |k: usize, time: f64| if time < 0.2 { zigzag(k, time) } else { 0.9 + 0.1 * zigzag(k, time) };
+    for everywhere in [false, true] {
+        let (scene, table) =
+            gauges(&[4], |k, time| if everywhere { zigzag(k, time) } else { rises(k, time) });
+        let (canvas, places) = plot::paint(&scene, &table).unwrap();
+        let (plot, legend) = (places[0].plot, places[0].legend.unwrap());
+        let pixels: Vec<_> = CURVES[..4].iter().flat_map(|&color| drawn(&canvas, color)).collect();
+        let highest = pixels.iter().filter(|pixel| !holds(legend, pixel)).map(|(_, y)| *y).min().unwrap();
+        let bottom = legend.y + legend.height;
+        if everywhere {
+            assert!(holds(plot, &(legend.x, legend.y)) && highest > bottom, "{highest} {bottom}");
+            assert!(f64::from(bottom - plot.y) < 0.3 * f64::from(plot.height));
+        } else {
+            assert!(legend.x > plot.x + plot.width / 2 && legend.y > plot.y + plot.height / 2);
+            assert!(f64::from(highest - plot.y) < 0.1 * f64::from(plot.height));
+        }
+        // Samples alone have a curve's colour in it: four of 60 by 4 pixels.
+        let samples = pixels.iter().filter(|pixel| holds(legend, pixel)).count();
+        assert!((900..=1100).contains(&samples), "{samples}");
+    }
 }
 
 #[test]
