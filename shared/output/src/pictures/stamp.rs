@@ -63,6 +63,14 @@ pub(crate) struct Rect {
     pub(crate) height: i32,
 }
 
+impl Rect {
+    /// Whether two rectangles have a pixel in common.
+    pub(crate) fn meets(&self, other: &Self) -> bool {
+        let along = |a: i32, length: i32, b: i32, other: i32| a < b + other && b < a + length;
+        along(self.x, self.width, other.x, other.width) && along(self.y, self.height, other.y, other.height)
+    }
+}
+
 /// A picture of palette indices, white at first.
 pub(crate) struct Sheet {
     width: i32,
@@ -112,6 +120,15 @@ impl Sheet {
                 let place = f64::from(x) / f64::from((at.width - 1).max(1));
                 self.pixels[(y * self.width + at.x + x) as usize] = scale.index(place);
             }
+        }
+    }
+
+    /// Makes what the picture has of a rectangle white.
+    pub(crate) fn blank(&mut self, at: Rect) {
+        let within = |from: i32, length: i32, all: i32| from.clamp(0, all)..(from + length).clamp(0, all);
+        let columns = within(at.x, at.width, self.width);
+        for row in within(at.y, at.height, self.height).map(|y| y * self.width) {
+            self.pixels[(row + columns.start) as usize..(row + columns.end) as usize].fill(0);
         }
     }
 

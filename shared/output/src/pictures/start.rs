@@ -1,6 +1,6 @@
 //! The picture of a scene before its run: shapes by phase, bodies by colour, clamps, moving walls, probes.
 
-use super::canvas::{Area, Canvas, Drawn};
+use super::canvas::{Area, Canvas, Drawn, FONT};
 use super::contact::{FOOT, HEAD, frame_of, label, radius, scale_bar};
 use super::plot::title;
 use super::stamp::{Rect, Scale, Sheet, WALL};
@@ -24,6 +24,11 @@ const COLOURS: usize = 7;
 const STRIDE: usize = 3;
 /// Half the size of a probe's cross, pixels.
 const CROSS: i32 = 6;
+/// Size of a probe's name, length of dashes and of the gaps between them, pixels.
+const NAME: u32 = 14;
+const DASH: (usize, usize) = (9, 6);
+/// Colour of boxes to which probes are confined.
+const WITHIN: RGBColor = RGBColor(70, 70, 70);
 
 /// A particle to draw.
 struct Dot {
@@ -60,25 +65,16 @@ pub fn draw_start(scene: &Scene, path: &Path) -> Result<(), OutputError> {
         let [x, y] = view.pixel(single(x), panel, place.scale);
         (x.round() as i32, y.round() as i32)
     };
+    let mut names = Vec::new();
     canvas
         .draw(|area| {
             label(area, &title(scene), (16, 14), 20, HPos::Left)?;
             scale_bar(area, &view, place.scale, width as i32)?;
             frame_of(area, panel)?;
             for clamp in scene.shapes.iter().flat_map(|shape| &shape.clamp) {
-                outline(area, clamp, pixel)?;
+                outline(area, clamp, panel, pixel, BLACK)?;
             }
-            for probe in &scene.probes {
-                let marks = marks(&probe.kind);
-                for &at in &marks {
-                    cross(area, pixel(at))?;
-                }
-                if let Some((x, y)) = marks.first().map(|&at| pixel(at)) {
-                    let right = x > panel.x + panel.width / 2;
-                    let (x, side) = if right { (x - 9, HPos::Right) } else { (x + 9, HPos::Left) };
-                    label(area, &probe.name, (x, y - 18), 14, side)?;
-                }
-            }
+            names = draw_probes(area, scene, panel, pixel)?;
             for (k, (_, text)) in legend(scene).iter().enumerate() {
                 let swatch = swatch(k, place.height);
                 label(area, text, (swatch.x + 20, swatch.y), 14, HPos::Left)?;
@@ -86,6 +82,8 @@ pub fn draw_start(scene: &Scene, path: &Path) -> Result<(), OutputError> {
             Ok(())
         })
         .map_err(|e| wrong(e.to_string()))?;
+    // Dark letters on blue water cannot be read.
+    names.iter().for_each(|&name| sheet.blank(name));
     sheet.overlay(&canvas);
     sheet.save(path)
 }
@@ -140,6 +138,61 @@ fn swatch(entry: usize, height: i32) -> Rect {
     Rect { x: 24 + 220 * column, y: height - FOOT + 24 + 26 * row, width: 16, height: 16 }
 }
 
+/// Draws where the probes measure, with their names; returns the ground of these.
+fn draw_probes(
+    area: &Area<'_>,
+    scene: &Scene,
+    panel: Rect,
+    pixel: impl Fn([f64; 3]) -> (i32, i32),
+) -> Result<Vec<Rect>, Box<dyn std::error::Error>> {
+    let mut names: Vec<(String, (i32, i32))> = Vec::new();
+    for probe in &scene.probes {
+        let marks = marks(&probe.kind);
+        for &at in &marks {
+            cross(area, pixel(at))?;
+        }
+        let mut name = marks.first().map(|&at| (pixel(at).0, pixel(at).1 - 18));
+        if let Some(within) = within(&probe.kind) {
+            outline(area, within, panel, &pixel, WITHIN)?;
+            let (x, y) = pixel([within.min[0], within.max[1], 0.0]);
+            name = name.or(Some((x.max(panel.x), y.max(panel.y) + 2)));
+        }
+        names.extend(name.map(|at| (probe.name.clone(), at)));
+        if let ProbeKind::WaterLevel { x } = &probe.kind {
+            for (k, &column) in x.iter().enumerate() {
+                let (x_pixel, _) = pixel([column, 0.0, 0.0]);
+                if (panel.x..panel.x + panel.width).contains(&x_pixel) {
+                    dashes(area, x_pixel, panel)?;
+                    let number = if x.len() > 1 { format!(" {}", k + 1) } else { String::new() };
+                    names.push((probe.name.clone() + &number, (x_pixel, panel.y + 4)));
+                }
+            }
+        }
+    }
+    let mut grounds: Vec<Rect> = Vec::new();
+    for (name, (x, y)) in names {
+        let right = x > panel.x + panel.width / 2;
+        let (width, height) = label_size(area, &name)?;
+        let left = if right { x - 9 - width } else { x + 9 };
+        let mut ground = Rect { x: left - 3, y: y - 4, width: width + 6, height: height + 7 };
+        // Names of probes at one place stand below each other.
+        while let Some(other) = grounds.iter().find(|other| other.meets(&ground)) {
+            ground.y = other.y + other.height;
+        }
+        let corners = [(ground.x, ground.y), (ground.x + ground.width, ground.y + ground.height)];
+        area.draw(&Rectangle::new(corners, WHITE.filled()))?;
+        label(area, &name, (left, ground.y + 4), NAME, HPos::Left)?;
+        grounds.push(ground);
+    }
+    Ok(grounds)
+}
+
+/// Width and height of a name, pixels.
+fn label_size(area: &Area<'_>, name: &str) -> Result<(i32, i32), Box<dyn std::error::Error>> {
+    let (width, height) = area.estimate_text_size(name, &(FONT, NAME).into_font().into())?;
+    Ok((width as i32, height as i32))
+}
+
 /// Points, or ends of lines, at which a probe measures, m.
 fn marks(kind: &ProbeKind) -> Vec<[f64; 3]> {
     match kind {
@@ -152,8 +205,27 @@ fn marks(kind: &ProbeKind) -> Vec<[f64; 3]> {
         | ProbeKind::Velocity { at } => vec![*at],
         ProbeKind::Pressure { at, to, .. } => [Some(*at), *to].into_iter().flatten().collect(),
         ProbeKind::Flux { from, to } => vec![*from, *to],
+        ProbeKind::Moment { about, .. } => vec![*about],
         _ => Vec::new(),
     }
+}
+
+/// The box to which a probe is confined.
+fn within(kind: &ProbeKind) -> Option<&Block> {
+    match kind {
+        ProbeKind::Force { within, .. } | ProbeKind::Moment { within, .. } => within.as_ref(),
+        _ => None,
+    }
+}
+
+/// A gauge of the water's level: a dashed line over the panel's height.
+fn dashes(area: &Area<'_>, x: i32, panel: Rect) -> Drawn {
+    let bottom = panel.y + panel.height;
+    for y in (panel.y..bottom).step_by(DASH.0 + DASH.1) {
+        let end = (y + DASH.0 as i32).min(bottom);
+        area.draw(&Rectangle::new([(x - 1, y), (x + 1, end)], BLACK.filled()))?;
+    }
+    Ok(())
 }
 
 fn cross(area: &Area<'_>, (x, y): (i32, i32)) -> Drawn {
@@ -163,6 +235,17 @@ fn cross(area: &Area<'_>, (x, y): (i32, i32)) -> Drawn {
     Ok(())
 }
 
-fn outline(area: &Area<'_>, clamp: &Block, pixel: impl Fn([f64; 3]) -> (i32, i32)) -> Drawn {
-    Ok(area.draw(&Rectangle::new([pixel(clamp.min), pixel(clamp.max)], BLACK))?)
+/// A box, as far as the panel shows it.
+fn outline(
+    area: &Area<'_>,
+    block: &Block,
+    panel: Rect,
+    pixel: impl Fn([f64; 3]) -> (i32, i32),
+    color: RGBColor,
+) -> Drawn {
+    let shown = |x| {
+        let (x, y) = pixel(x);
+        (x.clamp(panel.x, panel.x + panel.width - 1), y.clamp(panel.y, panel.y + panel.height - 1))
+    };
+    Ok(area.draw(&Rectangle::new([shown(block.min), shown(block.max)], color))?)
 }

@@ -301,6 +301,63 @@ fn a_scene_is_drawn_before_its_run() {
     assert!(draw_start(&empty, &picture).unwrap_err().to_string().ends_with("the scene has no particles"));
 }
 
+/// What gauges, axes of moments and boxes of forces change in the picture of a scene.
+#[test]
+fn probes_are_drawn_where_they_measure() {
+    use halfstep_scene::{Block, Probe, ProbeKind};
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/two-plates.toml");
+    let mut scene = halfstep_scene::load(&path, &[]).unwrap();
+    let dir = folder("start-probes");
+    let mut draw = |name: &str, kinds: Vec<ProbeKind>| {
+        let probe = |kind| Probe { name: "tide".into(), kind, solid: None };
+        scene.probes = kinds.into_iter().map(probe).collect();
+        let picture = dir.join(name);
+        draw_start(&scene, &picture).unwrap();
+        pixels(&picture)
+    };
+    let (width, _, plain) = draw("none.png", Vec::new());
+    let changed = |pixels: &[[u8; 3]]| {
+        let pairs = (0_u32..).zip(plain.iter().zip(pixels));
+        let changed = pairs.filter(|(_, (before, after))| before != after);
+        changed.map(|(k, (before, after))| (k % width, k / width, *before, *after)).collect::<Vec<_>>()
+    };
+    let (black, white) = ([0; 3], [255; 3]);
+    let water = [0, 1, 2].map(|c| palette()[3 * usize::from(start::water()) + c]);
+
+    let (_, height, gauges) = draw("gauges.png", vec![ProbeKind::WaterLevel { x: vec![0.05, 0.5, 77.0] }]);
+    let gauges = changed(&gauges);
+    let mut columns: HashMap<u32, u32> = HashMap::new();
+    let lines = gauges.iter().filter(|pixel| pixel.3 == black);
+    lines.for_each(|pixel| *columns.entry(pixel.0).or_default() += 1);
+    let lines = columns.values().filter(|&&count| count > height / 3).count();
+    assert_eq!(lines, 4, "two lines, each two pixels wide; the third gauge is outside");
+
+    let about = [0.05, 0.1, 0.0];
+    let within = Block { min: [0.2, 0.1, 0.0], max: [0.5, 0.2, 0.0] };
+    let force = ProbeKind::Force { within: Some(within), shape: None };
+    let (.., boxed) = draw("within.png", vec![force]);
+    // The lines that no label covers are grey.
+    let grey = changed(&boxed).into_iter().filter(|pixel| pixel.3 == [85; 3]).collect::<Vec<_>>();
+    let extent = |along: fn(u32, u32) -> u32| {
+        let all = || grey.iter().map(|pixel| along(pixel.0, pixel.1));
+        f64::from(all().max().unwrap() - all().min().unwrap())
+    };
+    let share = extent(|x, _| x) / extent(|_, y| y);
+    assert!((share - 3.0).abs() < 0.1, "{share}");
+
+    let (.., moment) = draw("moment.png", vec![ProbeKind::Moment { about, within: None, shape: None }]);
+    let on_water = |color| changed(&moment).iter().filter(|p| p.2 == water && p.3 == color).count();
+    assert!((40..200).contains(&on_water(black)), "a cross and letters");
+    assert!(on_water(white) > 200, "the name has a ground of its own");
+
+    // Two names at one place stand below each other: twice the ground.
+    let ground = |pixels: &[[u8; 3]]| changed(pixels).iter().filter(|pixel| pixel.3 == white).count() as f64;
+    let one = ProbeKind::Velocity { at: about };
+    let (.., both) = draw("both.png", vec![one.clone(), one]);
+    let share = ground(&both) / ground(&moment);
+    assert!((1.8..2.1).contains(&share), "{share}");
+}
+
 #[test]
 fn the_timeline_shows_each_phase_as_long_as_it_was() {
     let span = |name: &str, category: &str, stage, start, duration| Span {
