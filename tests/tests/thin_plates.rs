@@ -168,3 +168,53 @@ fn one_row_is_refused_because_it_leaks() {
     println!("{through} of 200 particles of the deep side are beyond the plate after 1 s");
     assert!(through > 0);
 }
+
+/// Two rows that turn under water: the screen goes along, and no particle gets between the rows.
+#[test]
+fn water_stays_out_of_a_blade_that_turns() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("blade.toml");
+    let (long, thick) = (0.2, 2.0 * DX);
+    std::fs::write(
+        &path,
+        format!(
+            "resolution = {DX}\nend_time = 0.8\n[fluid]\ndensity = 1000.0\n[solid]\nmodel = \"rigid\"\n\
+             density = 1000.0\n[output]\nframe_interval = 0.1\n[[shape]]\nname = \"tank\"\nphase = \"wall\"\n\
+             tank = {{ min = [0.0, 0.0], max = [0.4, 0.4], open = [\"top\"] }}\n[[shape]]\nname = \"blade\"\n\
+             phase = \"solid\"\nbox = {{ min = [0.1, 0.14], max = [0.3, 0.16] }}\nrotate = {{ angle = 30 }}\n\
+             motion = {{ angular_velocity = 3.14, ramp = 0.3, pivot = [0.2, 0.15] }}\n[[shape]]\nname = \"water\"\n\
+             phase = \"fluid\"\nbox = {{ min = [0.0, 0.0], max = [0.4, 0.3] }}\npressure = \"hydrostatic\"\n"
+        ),
+    )
+    .unwrap();
+    let run = scene_at(&path).in_process().run();
+    let gap = run.report.audit.min_gap.expect("water beside the blade");
+    assert!(gap > 0.3, "{gap}");
+    let frame = run.outcome.frames("fluid").pop().expect("a last frame");
+    let solid = run.outcome.frames("solid").pop().expect("a last frame");
+    let centre = [0.2, 0.15];
+    // Along the blade: toward its farthest particle, which is half a thickness beside its middle line.
+    let arms = solid.points.iter().map(|p| [f64::from(p[0]) - centre[0], f64::from(p[1]) - centre[1]]);
+    let far = arms.max_by(|a, b| a[0].hypot(a[1]).total_cmp(&b[0].hypot(b[1]))).expect("a blade");
+    let (end, side) = (0.5 * (long - DX), 0.5 * (thick - DX));
+    let angle = far[1].atan2(far[0]);
+    let turned = |sign: f64| angle - sign * side.atan2(end);
+    // Of the two angles that this may be, the one at which all of the blade lies in its box.
+    let inside = |angle: f64, p: &[f32; 3], margin: f64| {
+        let arm = [f64::from(p[0]) - centre[0], f64::from(p[1]) - centre[1]];
+        let (sin, cos) = angle.sin_cos();
+        let (along, across) = (cos * arm[0] + sin * arm[1], cos * arm[1] - sin * arm[0]);
+        along.abs() < 0.5 * long + margin && across.abs() < 0.5 * thick + margin
+    };
+    let angle = [turned(1.0), turned(-1.0)]
+        .into_iter()
+        .find(|&angle| solid.points.iter().all(|p| inside(angle, p, 0.1 * DX)))
+        .expect("the blade keeps its shape");
+    let within = (0..frame.len())
+        .filter(|&k| frame.phase[k] == FLUID && inside(angle, &frame.points[k], -0.3 * DX))
+        .count();
+    assert_eq!(within, 0, "particles in the blade");
+    // It has turned, and the water went along and around it.
+    let turned = angle - 30_f64.to_radians();
+    assert!(turned.rem_euclid(std::f64::consts::PI) > 0.3, "{turned}");
+}
