@@ -144,11 +144,12 @@ fn a_gauge_in_the_air_feels_no_suction() {
     let weight = 9810.0;
     for (y, value) in heights.into_iter().zip(&values) {
         let wanted = weight * (0.2 - y).max(0.0);
-        assert!((value - wanted).abs() < 1e-6 * weight * 0.2, "{y}: {value} {wanted}");
+        // The water is compressed by up to 2.5e-4 of its density.
+        assert!((value - wanted).abs() < 2.5e-4 * weight * 0.2, "{y}: {value} {wanted}");
     }
     // Its lower two thirds are in the water.
     let mean = weight * 0.2 * 0.2 / 2.0 / 0.3;
-    assert!((values[5] / mean - 1.0).abs() < 1e-6, "{} {mean}", values[5]);
+    assert!((values[5] / mean - 1.0).abs() < 2.5e-4, "{} {mean}", values[5]);
 }
 
 #[test]
