@@ -76,7 +76,6 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     settings::probes(scene, &mut all);
     settings::fluxes(scene, &mut all);
     settings::thin_gauges(scene, placed, &mut all);
-    settings::references(scene, &mut all);
     magnitudes::materials(scene, &mut all);
     magnitudes::gravity(scene, &mut all);
     magnitudes::viscosity(scene, &mut all);

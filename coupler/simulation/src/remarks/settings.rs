@@ -128,24 +128,6 @@ pub(super) fn thin_gauges(scene: &Scene, placed: &[Placed], all: &mut Vec<String
     }
 }
 
-/// References of which hardly a point lies within the run.
-pub(super) fn references(scene: &Scene, all: &mut Vec<String>) {
-    for reference in &scene.references {
-        let within = |point: &&[f64; 2]| (0.0..=scene.end_time).contains(&point[0]);
-        let count = reference.points.iter().filter(within).count();
-        if count < 2 && reference.points.len() > 1 {
-            all.push(format!(
-                "{count} of the {} points of the reference `{}` of `{}` lie within the run, which ends at {} s: are its \
-                 times in seconds, and its columns the right ones?",
-                reference.points.len(),
-                reference.label,
-                reference.probe,
-                scene.end_time
-            ));
-        }
-    }
-}
-
 /// Probes of the fluid beside everything.
 pub(super) fn probes(scene: &Scene, all: &mut Vec<String>) {
     if scene.shapes.iter().any(|shape| shape.motion.is_some()) {

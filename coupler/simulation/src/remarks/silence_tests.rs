@@ -164,21 +164,3 @@ fn motions_in_degrees_or_millimetres() {
     assert!(has(&shake(10.0), "the motion of `tank` leads 10 m away, "));
     assert!(!has(&shake(0.2), "leads"));
 }
-
-#[test]
-fn references_beside_the_run() {
-    let folder = tempfile::tempdir().expect("a folder");
-    std::fs::write(folder.path().join("ms.csv"), "t,p\n0,1\n200,2\n400,3\n").expect("a file");
-    std::fs::write(folder.path().join("s.csv"), "t,p\n0,1\n0.2,2\n0.4,3\n").expect("a file");
-    let of = |file: &str| {
-        let text = format!(
-            "resolution = 0.005\nend_time = 1.0\n[fluid]\ndensity = 1000.0\n{TANK}{WATER}{}\
-             [[reference]]\nprobe = \"p.x\"\nlabel = \"measured\"\nfile = \"{file}\"\ncolumns = [\"t\", \"p\"]\n",
-            probe("kind = \"front\"")
-        );
-        let path = folder.path().join("x.toml");
-        remarks(&parse(&text, &path, &[]).unwrap_or_else(|e| panic!("{e:?}")))
-    };
-    assert!(has(&of("ms.csv"), "1 of the 3 points of the reference `measured` of `p.x` lie within the run"));
-    assert!(!has(&of("s.csv"), "lie within the run"));
-}
