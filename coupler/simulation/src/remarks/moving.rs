@@ -1,7 +1,8 @@
 //! Remarks on tanks that move: clamps, joints and walls in them that do not go along.
 
-use halfstep_scene::geometry::{self, Layout, SolidPoint};
+use halfstep_scene::geometry::{self, Cells, Layout, SolidPoint};
 use halfstep_scene::{Block, Geometry, Joint, JointKind, Motion, Phase, Scene, Shape};
+use halfstep_wire::wide;
 
 /// Walls that move, with the boxes around them.
 fn moving(scene: &Scene) -> Vec<(&Shape, Block)> {
@@ -69,22 +70,23 @@ pub(super) fn clamps_that_leave<const D: usize>(scene: &Scene, layout: &Layout<D
     for (index, shape) in scene.shapes.iter().enumerate().filter(|(_, s)| s.phase == Phase::Solid) {
         let own = layout.solid.iter().filter(|p| p.body as usize == index && p.clamped);
         let moves = |p: &&SolidPoint<D>| {
-            let at = Block { min: lifted(&p.position), max: lifted(&p.position) };
+            let at = Block { min: wide(p.position), max: wide(p.position) };
             geometry::clamp_motion(scene, p).is_some_and(|motion| {
                 let swept = motion.swept(&at, scene.end_time);
                 (0..D).any(|a| swept.max[a] - swept.min[a] > 0.5 * scene.resolution)
             })
         };
-        let clamped: Vec<[f64; D]> = own.filter(moves).map(|p| p.position).collect();
+        let reach = 1.2 * scene.resolution;
+        let mut clamped = Cells::new(reach);
+        own.filter(moves).for_each(|p| clamped.add(&p.position, p.position));
         for (wall, of_wall) in scene.shapes.iter().enumerate() {
             if of_wall.phase != Phase::Wall || of_wall.motion.is_some() {
                 continue;
             }
             // A wall on both sides of the clamp: it stands in it.
-            let reach = 1.2 * scene.resolution;
             let beside = |axis: usize, side: f64| {
                 layout.wall.iter().filter(|w| w.shape as usize == wall).any(|w| {
-                    clamped.iter().any(|p| {
+                    clamped.around(&w.position).any(|p| {
                         let apart = (w.position[axis] - p[axis]) * side;
                         let near =
                             |a: usize| a == axis || (w.position[a] - p[a]).abs() < 0.6 * scene.resolution;
@@ -101,10 +103,6 @@ pub(super) fn clamps_that_leave<const D: usize>(scene: &Scene, layout: &Layout<D
             }
         }
     }
-}
-
-fn lifted<const D: usize>(x: &[f64; D]) -> [f64; 3] {
-    std::array::from_fn(|a| if a < D { x[a] } else { 0.0 })
 }
 
 /// Joints in tanks that move, tied to what does not go along.

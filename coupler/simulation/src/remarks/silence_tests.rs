@@ -2,6 +2,7 @@
 
 use super::remarks;
 use super::tests::{PLATE, TANK, WATER, plain};
+use super::trap_tests::{has, with};
 use halfstep_scene::parse;
 use std::path::Path;
 
@@ -12,15 +13,6 @@ fn with_solid(keys: &str, rest: &str) -> Vec<String> {
          youngs_modulus = 12e6\n{keys}\n{TANK}{WATER}{rest}"
     );
     remarks(&parse(&text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}")))
-}
-
-/// A shape with lines more.
-fn with(shape: &str, lines: &str) -> String {
-    shape.replacen("phase = ", &format!("{lines}phase = "), 1)
-}
-
-fn has(found: &[String], said: &str) -> bool {
-    found.iter().any(|text| text.contains(said))
 }
 
 fn wall(name: &str, geometry: &str) -> String {

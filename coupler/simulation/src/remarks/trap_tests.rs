@@ -8,8 +8,8 @@ use std::path::Path;
 const MOTION: &str = "motion = { amplitude = [0.01, 0.0], period = 1.0 }\n";
 const OTHER: &str = "motion = { amplitude = [0.02, 0.0], period = 1.0 }\n";
 
-/// A shape with a line more.
-fn with(shape: &str, line: &str) -> String {
+/// A shape with lines more.
+pub(super) fn with(shape: &str, line: &str) -> String {
     shape.replacen("phase = ", &format!("{line}phase = "), 1)
 }
 
@@ -18,7 +18,7 @@ fn on(text: &str) -> Vec<String> {
     remarks(&parse(text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}")))
 }
 
-fn has(found: &[String], said: &str) -> bool {
+pub(super) fn has(found: &[String], said: &str) -> bool {
     found.iter().any(|text| text.contains(said))
 }
 

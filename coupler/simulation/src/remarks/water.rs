@@ -57,25 +57,18 @@ fn bare_bottom<'l, const D: usize>(
     let deepest = own().map(|p| p.position[axis] * down).fold(f64::NEG_INFINITY, f64::max);
     let row: Vec<&[f64; D]> =
         own().map(|p| &p.position).filter(|x| x[axis] * down > deepest - 0.5 * dx).collect();
-    // Columns of the width dx.
-    let mut cells: HashMap<[i64; D], Vec<[f64; D]>> = HashMap::new();
-    let column = |x: &[f64; D]| -> [i64; D] {
-        std::array::from_fn(|a| if a == axis { 0 } else { (x[a] / dx).floor() as i64 })
-    };
+    // What is right below, whatever its depth.
+    let column = |x: &[f64; D]| -> [f64; D] { std::array::from_fn(|a| if a == axis { 0.0 } else { x[a] }) };
+    let mut below = Cells::new(dx);
     for x in others {
         let depth = x[axis] * down - deepest;
         if 0.1 * dx < depth && depth < 2.0 * dx {
-            cells.entry(column(x)).or_default().push(*x);
+            below.add(&column(x), *x);
         }
     }
     let is_carried = |p: &&&[f64; D]| {
-        let home = column(p);
-        (0..3_usize.pow(D as u32)).any(|code| {
-            let near: [i64; D] =
-                std::array::from_fn(|a| home[a] + (code / 3_usize.pow(a as u32) % 3) as i64 - 1);
-            let beside = |x: &[f64; D]| (0..D).all(|a| a == axis || (x[a] - p[a]).abs() < 0.75 * dx);
-            cells.get(&near).is_some_and(|there| there.iter().any(beside))
-        })
+        let beside = |x: &[f64; D]| (0..D).all(|a| a == axis || (x[a] - p[a]).abs() < 0.75 * dx);
+        below.around(&column(p)).any(beside)
     };
     let carried = row.iter().filter(is_carried).count();
     if row.is_empty() { 0.0 } else { 1.0 - carried as f64 / row.len() as f64 }
