@@ -106,7 +106,7 @@ fn the_total_lagrangian_period_from_3_to_10_across() {
 #[test]
 #[ignore = "minutes: 20 particles across"]
 fn the_period_converges() {
-    // Measured: 19 and 10 % with the paper's kernel, 23 and 15 % with the default.
+    // Measured: 19 and 9 % with the paper's kernel, 23 and 15 % with the default.
     for (kernel, most, rate) in [("cubic-spline", 0.105, 0.6), ("wendland-c2", 0.16, 0.7)] {
         let [coarse, fine] = [10, 20].map(|across| hypoelastic_error(across, kernel));
         assert!((0.0..most).contains(&fine), "{kernel}: {fine}");
