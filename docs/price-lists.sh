@@ -35,20 +35,20 @@ price oscillating-plate --until 0.4 --set resolution=0.004 \
     --vary effects.clamp-face=off --vary solid.smoothing_ratio=1.33 --vary numerics.solid_cfl=0.3,0.9
 price hydrostatic-tank --set resolution=0.02 --vary resolution=0.015,0.03 \
     --vary numerics.precision=mixed \
-    --vary fluid.density_diffusion=simple,hydrostatic,none \
+    --vary fluid.density_diffusion=delta-sph,simple,none \
     --vary fluid.artificial_viscosity.linear=1 --vary smoothing_ratio=1.5 --vary numerics.cfl=0.2
 price taylor-green --vary resolution=0.025,0.04,0.05 --vary numerics.kernel=cubic-spline \
     --vary numerics.precision=mixed \
     --vary smoothing_ratio=1.5,2.4 --vary effects.particle-shifting=off \
-    --vary fluid.density_diffusion=hydrostatic,none --vary numerics.cfl=0.2
+    --vary fluid.density_diffusion=delta-sph,none --vary numerics.cfl=0.2
 price standing-wave --set resolution=0.025 --vary resolution=0.0357142857142857143,0.05 \
     --vary numerics.precision=mixed \
     --vary numerics.kernel=cubic-spline \
-    --vary smoothing_ratio=1.5,2.4 --vary effects.particle-shifting=off --vary fluid.density_diffusion=hydrostatic
+    --vary smoothing_ratio=1.5,2.4 --vary effects.particle-shifting=off --vary fluid.density_diffusion=delta-sph
 price dam-break --set resolution=0.0028575 --vary resolution=0.00408214285714285714,0.005715 \
     --vary numerics.precision=mixed \
     --vary numerics.cfl=0.2,0.6 --vary smoothing_ratio=1.5 --vary effects.particle-shifting=off \
-    --vary numerics.kernel=cubic-spline --vary fluid.density_diffusion=hydrostatic,none
+    --vary numerics.kernel=cubic-spline --vary fluid.density_diffusion=delta-sph,none
 price hydrostatic-plate --until 0.25 --set resolution=0.01666666666666666667 --vary resolution=0.0125,0.025 \
     --vary solid.model=hypoelastic --vary fluid.density_diffusion=simple
 price elastic-gate --until 0.25 --set resolution=0.00166666666666666667 --set shape.plate.across=5 \
@@ -64,7 +64,7 @@ price breaking-wall --until 0.2 --set resolution=0.004 --set 'shape.wall.box.min
 price wave-paddle --set resolution=0.02 --vary resolution=0.0133333333333333333,0.04 --vary smoothing_ratio=1.5 \
     --vary effects.particle-shifting=off
 price solitary-wave-wall --set resolution=0.02 --vary resolution=0.01,0.04 --vary smoothing_ratio=1.5 \
-    --vary fluid.density_diffusion=hydrostatic
+    --vary fluid.density_diffusion=delta-sph
 price floating-box --set resolution=0.0125 --vary resolution=0.01,0.02 --vary smoothing_ratio=2 \
     --vary interface.cross_viscosity_reach=1.25 --vary effects.particle-shifting=off
 price block-wall --set resolution=0.02 --vary resolution=0.01 --vary effects.particle-shifting=off

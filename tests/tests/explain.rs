@@ -104,7 +104,7 @@ fn the_reason_is_the_key_or_the_fact() {
     let viscosity = row(&forced, "viscosity");
     assert!(viscosity["on"] == true && viscosity["why"] == "effects.viscosity is \"on\"", "{viscosity}");
     assert_eq!(viscosity["bytes_per_particle"], 32.0);
-    assert_eq!(forced["composition"], "artificial viscosity, delta-SPH diffusion, viscosity");
+    assert_eq!(forced["composition"], "artificial viscosity, hydrostatic diffusion, viscosity");
     assert_eq!(row(&forced, "solid")["on"], false);
 
     let bare = effects("hydrostatic-tank", &["fluid.density_diffusion=none"]);

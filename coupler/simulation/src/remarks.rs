@@ -6,6 +6,7 @@ mod beams;
 mod bodies;
 mod clamp_faces;
 mod contacts;
+mod enclosed;
 mod frame;
 mod loads;
 mod magnitudes;
@@ -40,6 +41,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     moving::clamps_that_leave(scene, layout, &mut all);
     moving::joints(scene, &mut all);
     moving::walls(scene, &mut all);
+    moving::forgotten(scene, &mut all);
     let bodies = scene.bodies_of(layout);
     bodies::free(scene, &bodies, &mut all);
     bodies::parted(scene, &bodies, &mut all);
@@ -62,9 +64,12 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     shapes::locking(scene, placed, &mut all);
     thickness::thin(scene, placed, &mut all);
     walls::thin(scene, layout, &mut all);
+    walls::across(scene, layout, &mut all);
     water::hanging(scene, layout, &mut all);
     water::outside(scene, layout, &mut all);
     water::stacked(scene, layout, &mut all);
+    enclosed::enclosed(scene, layout, &mut all);
+    settings::background_pressure(scene, layout, &mut all);
     water::expected_speed(scene, &mut all);
     water::wave_makers(scene, &mut all);
     water::walls_that_meet(scene, &mut all);

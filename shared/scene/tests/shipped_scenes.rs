@@ -1,7 +1,7 @@
 //! The scenes that come with the program load, and their particles are where their comments say.
 
 use halfstep_scene::geometry::{estimate, layout};
-use halfstep_scene::{EffectName, Scene, Switch, Treatment, load, parse};
+use halfstep_scene::{DensityDiffusion, EffectName, Scene, Switch, Treatment, load, parse};
 use std::path::{Path, PathBuf};
 
 fn scenes() -> PathBuf {
@@ -113,6 +113,20 @@ fn the_kernels_width_follows_from_solids_and_the_rest_from_the_width() {
     assert_eq!(values("floating-box", &["interface.cross_viscosity_reach=1.5"])[3], 1.5);
     assert_eq!(values("hydrostatic-tank", &["preset=kayaki"]), [1.33, 1.0, 1.0, 1.25]);
     assert_eq!(values("hydrostatic-tank", &["preset=kayaki", "smoothing_ratio=2.0"]), [2.0, 1.0, 1.0, 1.0]);
+    let diffusion = |name: &str, overrides: &[&str]| {
+        shipped(name, overrides).fluid.as_ref().expect("water").density_diffusion
+    };
+    for (name, overrides) in
+        [("dam-break", &[][..]), ("floating-box", &[]), ("elastic-gate", &["preset=waves"])]
+    {
+        assert_eq!(diffusion(name, overrides), DensityDiffusion::Hydrostatic, "{name}");
+    }
+    let kayaki = &["preset=kayaki", "smoothing_ratio=2.0"][..];
+    for (name, overrides) in
+        [("elastic-gate", &[][..]), ("dam-break", &["smoothing_ratio=1.5"]), ("dam-break", kayaki)]
+    {
+        assert_eq!(diffusion(name, overrides), DensityDiffusion::DeltaSph, "{name}");
+    }
 }
 
 #[test]

@@ -13,17 +13,47 @@ fn moving(scene: &Scene) -> Vec<(&Shape, Block)> {
 
 /// Those of them that are around fluid.
 fn tanks(scene: &Scene) -> Vec<(&Shape, Block)> {
-    let fluid = geometry::fluid_boxes(scene);
-    let holds = |around: &Block| {
-        fluid.iter().any(|b| {
-            (0..scene.dimension).all(|a| {
-                let middle = 0.5 * (b.min[a] + b.max[a]);
-                around.min[a] < middle && middle < around.max[a]
-            })
-        })
-    };
     let hollow = |wall: &Shape| !matches!(wall.geometry.unmoved(), Geometry::Box(_) | Geometry::Disc { .. });
-    moving(scene).into_iter().filter(|(wall, around)| hollow(wall) && holds(around)).collect()
+    moving(scene).into_iter().filter(|(wall, around)| hollow(wall) && holds_fluid(scene, around)).collect()
+}
+
+/// Whether the middle of a shape of fluid lies in a box.
+fn holds_fluid(scene: &Scene, around: &Block) -> bool {
+    geometry::fluid_boxes(scene).iter().any(|b| {
+        (0..scene.dimension).all(|a| {
+            let middle = 0.5 * (b.min[a] + b.max[a]);
+            around.min[a] < middle && middle < around.max[a]
+        })
+    })
+}
+
+/// Walls that stay beside several that move together around fluid: a tank of boxes, one of which was forgotten.
+pub(super) fn forgotten(scene: &Scene, all: &mut Vec<String>) {
+    let moving = moving(scene);
+    let mut told: Vec<&str> = Vec::new();
+    for (first, _) in &moving {
+        let group: Vec<_> = moving.iter().filter(|(wall, _)| wall.motion == first.motion).collect();
+        let Some(around) = geometry::around(group.iter().map(|(_, around)| *around)) else { continue };
+        if group.len() < 2 || group[0].0.name != first.name || !holds_fluid(scene, &around) {
+            continue;
+        }
+        let stays = scene.shapes.iter().filter(|s| s.phase == Phase::Wall && s.motion.is_none());
+        for wall in stays {
+            let block = geometry::bounding_box(wall, scene);
+            let touched = group.iter().find(|(_, of)| meet(of, &block, scene));
+            if let (Some((beside, _)), false) = (touched, told.contains(&wall.name.as_str())) {
+                told.push(&wall.name);
+                all.push(format!(
+                    "`{}` stays where it is, and `{}`, which it touches, moves with {} more wall{} around the fluid: \
+                     fluid gets out between them (the same `motion` at all takes it along)",
+                    wall.name,
+                    beside.name,
+                    group.len() - 1,
+                    if group.len() == 2 { "" } else { "s" }
+                ));
+            }
+        }
+    }
 }
 
 fn meet(a: &Block, b: &Block, scene: &Scene) -> bool {

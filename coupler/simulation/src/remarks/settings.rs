@@ -2,6 +2,7 @@
 
 use super::shapes::Placed;
 use super::water::{INSTANTS, depth};
+use halfstep_scene::geometry::{Cells, Layout};
 use halfstep_scene::{EffectName, Motion, Phase, ProbeKind, Scene, Switch, geometry};
 
 /// Part of a wave's amplitude from which on a beach takes nothing.
@@ -74,6 +75,39 @@ pub(super) fn beach(scene: &Scene, all: &mut Vec<String>) {
         all.push(format!(
             "the beach leaves long waves {kept:.2} of their amplitude, there and back: a larger fluid.beach.rate, or a \
              longer beach, takes more"
+        ));
+    }
+}
+
+/// Widths of the kernel's support along which a surface may be open before a background pressure is remarked.
+const OPEN: f64 = 2.0;
+
+/// A background pressure where a surface of the fluid is free: nothing balances it there.
+pub(super) fn background_pressure<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
+    let Some(fluid) = scene.fluid.as_ref().filter(|fluid| fluid.background_pressure > 0.0) else { return };
+    let dx = scene.resolution;
+    let solids = layout.solid.iter().map(|p| &p.position);
+    let others = layout.wall.iter().map(|p| &p.position).chain(solids);
+    let mut cells = Cells::new(dx);
+    layout.fluid.iter().map(|p| &p.position).chain(others).for_each(|x| cells.add(x, *x));
+    // No particle within a spacing of the place beside it.
+    let open = |at: &[f64; D]| {
+        (0..2 * D).any(|k| {
+            let beside: [f64; D] = std::array::from_fn(|a| match k / 2 == a {
+                true => at[a] + dx * (2.0 * (k % 2) as f64 - 1.0),
+                false => at[a],
+            });
+            !cells
+                .around(&beside)
+                .any(|x| (0..D).map(|a| (x[a] - beside[a]).powi(2)).sum::<f64>() < (0.9 * dx).powi(2))
+        })
+    };
+    let count = layout.fluid.iter().filter(|p| open(&p.position)).count();
+    if count as f64 > (OPEN * 4.0 * scene.smoothing_ratio).powi(D as i32 - 1) {
+        all.push(format!(
+            "fluid.background_pressure = {} Pa drives the fluid apart at its free surface, where nothing balances it: \
+             it belongs to fluid that walls enclose",
+            fluid.background_pressure
         ));
     }
 }

@@ -3,7 +3,7 @@
 use super::beams;
 use super::thickness::{self, Thinnest};
 use halfstep_scene::geometry::{self, Layout, Plate};
-use halfstep_scene::{Geometry, Lattice, Phase, Scene, Shape, SolidModelName};
+use halfstep_scene::{Geometry, Lattice, Phase, Plane, Scene, Shape, SolidModelName};
 use serde::{Serialize, Serializer};
 use std::fmt;
 
@@ -364,7 +364,10 @@ pub(super) fn locking(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
     for (shape, of_scene) in placed.iter().zip(&scene.shapes) {
         let Some(solid) = of_scene.solid.map(|k| &scene.solids[k]) else { continue };
         let (Some(rows), Some(_)) = (shape.rows, shape.bending) else { continue };
-        let locks = solid.model.name() == SolidModelName::TotalLagrangian && solid.poissons_ratio >= LOCKS.0;
+        // Where nothing holds the faces across the plane, thickness makes up for what bending squeezes.
+        let locks = solid.model.name() == SolidModelName::TotalLagrangian
+            && solid.plane() == Plane::Strain
+            && solid.poissons_ratio >= LOCKS.0;
         if locks && rows < LOCKS.1 {
             all.push(format!(
                 "`{}` is {rows:.0} particles across, and with poissons_ratio = {} the total-Lagrangian model locks: it \

@@ -75,6 +75,7 @@ fn a_plate_that_locks() {
     assert!(has(&with_solid("poissons_ratio = 0.49", PLATE), said));
     assert!(!has(&with_solid("poissons_ratio = 0.49\nmodel = \"finite-element\"", PLATE), "locks"));
     assert!(!has(&with_solid("poissons_ratio = 0.44", PLATE), "locks"));
+    assert!(!has(&with_solid("poissons_ratio = 0.49\nplane = \"stress\"", PLATE), "locks"));
     let fine = with(PLATE, "spacing = 0.0025\n");
     assert!(!has(&with_solid("poissons_ratio = 0.49", &fine), "locks"), "8 across");
 }
@@ -155,4 +156,96 @@ fn motions_in_degrees_or_millimetres() {
     let shake = |amplitude: f64| of(&format!("{{ amplitude = [{amplitude}, 0.0], period = 10.0 }}"));
     assert!(has(&shake(10.0), "the motion of `tank` leads 10 m away, "));
     assert!(!has(&shake(0.2), "leads"));
+}
+
+#[test]
+fn a_hull_that_begins_full_of_water() {
+    let water = |top: f64| {
+        format!(
+            "[[shape]]\nname = \"water\"\nphase = \"fluid\"\nbox = {{ min = [0.0, 0.0], max = [0.4, {top}] }}\n"
+        )
+    };
+    // Hollow, 0.2 m x 0.1 m, of four rows, open where `open` says.
+    let hull = |y: f64, open: bool| {
+        let lid = if open { y + 0.1 } else { y + 0.08 };
+        let hole = format!("[[0.12, {}], [0.28, {}], [0.28, {lid}], [0.12, {lid}]]", y + 0.02, y + 0.02);
+        let outline = match open {
+            false => format!(
+                "polygon = [[0.1, {y}], [0.3, {y}], [0.3, {t}], [0.1, {t}]]\nholes = [{hole}]",
+                t = y + 0.1
+            ),
+            true => format!(
+                "polygon = [[0.1, {y}], [0.3, {y}], [0.3, {t}], [0.28, {t}], [0.28, {i}], [0.12, {i}], [0.12, {t}], \
+                 [0.1, {t}]]",
+                t = y + 0.1,
+                i = y + 0.02
+            ),
+        };
+        format!("[[shape]]\nname = \"hull\"\nphase = \"solid\"\n{outline}\n")
+    };
+    let void =
+        "[[shape]]\nname = \"air\"\nphase = \"void\"\nbox = { min = [0.11, 0.09], max = [0.29, 0.3] }\n";
+    let said = "of the particles of `water` begin inside of `hull`, parted from the rest";
+    let of = |water: &str, hull: &str, before: &str| plain(&[TANK, before, hull, water]);
+    // Closed under water, and open above it.
+    let under = of(&water(0.25), &hull(0.08, false), "");
+    assert!(has(&under, said), "{under:?}");
+    let afloat = of(&water(0.14), &hull(0.08, true), "");
+    assert!(has(&afloat, said), "{afloat:?}");
+    // Below the surface the open hull's water is one with the rest.
+    let sunk = of(&water(0.25), &hull(0.08, true), "");
+    assert!(!has(&sunk, "begin inside"), "{sunk:?}");
+    let dry = plain(&[TANK, &hull(0.08, true), void, &water(0.14)]);
+    assert!(!has(&dry, "begin inside"), "{dry:?}");
+    // A plate parts a basin: on both sides the water stands on the floor.
+    let weir = plain(&[TANK, PLATE, &water(0.08)]);
+    assert!(!has(&weir, "begin inside"), "{weir:?}");
+}
+
+#[test]
+fn a_background_pressure_under_a_free_surface() {
+    let said = "fluid.background_pressure = 3000 Pa drives the fluid apart";
+    let of = |walls: &str, water: &str| {
+        let text = format!(
+            "resolution = 0.005\nend_time = 1.0\n[fluid]\ndensity = 1000.0\nbackground_pressure = 3000.0\n\
+             {walls}{water}"
+        );
+        remarks(&parse(&text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}")))
+    };
+    assert!(has(&of(TANK, WATER), said), "{:?}", of(TANK, WATER));
+    let closed = TANK.replace(", open = [\"top\"]", "");
+    let full = WATER.replace("max = [0.1, 0.1]", "max = [0.4, 0.3]");
+    assert!(!has(&of(&closed, &full), "drives the fluid apart"), "{:?}", of(&closed, &full));
+}
+
+#[test]
+fn a_wall_that_pushes_and_stays() {
+    let of = |velocity: &str| {
+        let belt = format!("box = {{ min = [0.1, 0.0], max = [0.13, 0.2] }}\nvelocity = {velocity}");
+        plain(&[TANK, &wall("belt", &belt), WATER, PLATE])
+    };
+    assert!(
+        has(&of("[1.0, 0.0]"), "`belt` has a velocity of 1 m/s across its face at [0.1025"),
+        "{:?}",
+        of("[1.0, 0.0]")
+    );
+    assert!(!has(&of("[0.0, 1.0]"), "across its face"), "{:?}", of("[0.0, 1.0]"));
+}
+
+#[test]
+fn a_wall_of_a_tank_of_boxes_that_does_not_go_along() {
+    let motion = "motion = { amplitude = [0.01, 0.0], period = 1.0 }";
+    let of = |left: &str, right: &str| {
+        let shapes = [
+            ("floor", "box = { min = [-0.03, -0.03], max = [0.43, 0.0] }", motion),
+            ("left", "box = { min = [-0.03, 0.0], max = [0.0, 0.3] }", left),
+            ("right", "box = { min = [0.4, 0.0], max = [0.43, 0.3] }", right),
+        ];
+        let walls = shapes.map(|(name, geometry, motion)| wall(name, &format!("{geometry}\n{motion}")));
+        plain(&[&walls.concat(), PLATE, &WATER.replace("[0.1, 0.1]", "[0.4, 0.1]")])
+    };
+    let said =
+        "`right` stays where it is, and `floor`, which it touches, moves with 1 more wall around the fluid";
+    assert!(has(&of(motion, ""), said), "{:?}", of(motion, ""));
+    assert!(!has(&of(motion, motion), "`right` stays"));
 }

@@ -1,7 +1,7 @@
-//! Remarks on walls: how thick they are where the fluid can come.
+//! Remarks on walls: how thick they are where the fluid can come, and which way their surface goes.
 
-use halfstep_scene::Scene;
 use halfstep_scene::geometry::{self, Cells, Layout, cell};
+use halfstep_scene::{Phase, Scene};
 use std::collections::HashSet;
 
 /// Distance within which a place counts as filled by a particle, in spacings: half the diagonal of a cell and some
@@ -51,6 +51,41 @@ fn reached<const D: usize>(scene: &Scene, layout: &Layout<D>, walls: &Walls<D>) 
         }
     }
     seen
+}
+
+/// Part of a wall's velocity across its face from which on it is no belt's.
+const ACROSS: f64 = 0.5;
+
+/// Walls with a velocity across a face that the fluid touches: the surface pushes and does not move.
+pub(super) fn across<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
+    let reach = 1.1 * scene.resolution;
+    for (index, shape) in scene.shapes.iter().enumerate() {
+        let speed = shape.velocity.iter().map(|v| v * v).sum::<f64>().sqrt();
+        if shape.phase != Phase::Wall || speed == 0.0 {
+            continue;
+        }
+        let across = |p: &geometry::WallPoint<D>| {
+            (0..D).map(|a| shape.velocity[a] * p.normal[a]).sum::<f64>().abs() > ACROSS * speed
+        };
+        let mut faces = Cells::new(reach);
+        let own = layout.wall.iter().filter(|p| p.shape as usize == index && !p.corner);
+        own.filter(|p| across(p)).for_each(|p| faces.add(&p.position, p.position));
+        let r2 = |x: &[f64; D], y: &[f64; D]| (0..D).map(|a| (x[a] - y[a]).powi(2)).sum::<f64>();
+        let wet = layout
+            .fluid
+            .iter()
+            .find_map(|f| faces.around(&f.position).find(|x| r2(x, &f.position) < reach * reach).copied());
+        if let Some(at) = wet {
+            let at: Vec<String> = at.iter().map(|x| (*x as f32).to_string()).collect();
+            all.push(format!(
+                "`{}` has a velocity of {} m/s across its face at [{}]: a wall's `velocity` is that of a belt, whose \
+                 surface stays where it is, and fluid that is pushed there goes nowhere (`motion` moves a wall)",
+                shape.name,
+                speed as f32,
+                at.join(", ")
+            ));
+        }
+    }
 }
 
 /// Walls that are thinner than the kernel's support where the fluid can come.

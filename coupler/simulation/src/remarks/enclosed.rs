@@ -1,0 +1,87 @@
+//! Remarks on fluid inside of solids: a hull that an author thinks dry begins full, because a box of fluid leaves out
+//! only the places that the solid itself has.
+
+use halfstep_scene::geometry::{self, Cells, FluidPoint, Layout};
+use halfstep_scene::{Phase, Scene};
+use std::collections::BTreeSet;
+
+/// Fluid of a shape that solids part from the rest of it, where it touches no wall.
+pub(super) fn enclosed<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
+    let reach = 1.1 * scene.resolution;
+    let boxes = |phase: Phase| {
+        let own = scene.shapes.iter().filter(move |shape| shape.phase == phase);
+        own.map(|shape| geometry::bounding_box(shape, scene))
+    };
+    let meet = boxes(Phase::Solid).any(|solid| {
+        boxes(Phase::Fluid)
+            .any(|fluid| (0..D).all(|a| solid.min[a] < fluid.max[a] && fluid.min[a] < solid.max[a]))
+    });
+    if !meet {
+        return;
+    }
+    let near = |a: &[f64; D], b: &[f64; D], reach: f64| {
+        (0..D).map(|d| (a[d] - b[d]).powi(2)).sum::<f64>() < reach * reach
+    };
+    let mut walls = Cells::new(2.0 * reach);
+    layout.wall.iter().for_each(|wall| walls.add(&wall.position, wall.position));
+    let at_wall = |p: &FluidPoint<D>| walls.around(&p.position).any(|w| near(w, &p.position, 2.0 * reach));
+    let parts = connected(&layout.fluid, reach);
+    for (index, shape) in scene.shapes.iter().enumerate().filter(|(_, shape)| shape.phase == Phase::Fluid) {
+        let of_shape = |part: &&Vec<usize>| part.iter().any(|&k| layout.fluid[k].shape as usize == index);
+        if parts.iter().filter(of_shape).count() < 2 {
+            continue;
+        }
+        let own = |k: &usize| layout.fluid[*k].shape as usize == index;
+        for part in parts.iter().filter(of_shape).filter(|part| part.iter().all(own)) {
+            if part.iter().any(|&k| at_wall(&layout.fluid[k])) {
+                continue;
+            }
+            let mut inside = Cells::new(2.0 * reach);
+            part.iter().for_each(|&k| inside.add(&layout.fluid[k].position, layout.fluid[k].position));
+            let beside = layout
+                .solid
+                .iter()
+                .filter(|p| inside.around(&p.position).any(|x| near(x, &p.position, 2.0 * reach)));
+            let names: BTreeSet<&str> = beside.map(|p| scene.shapes[p.body as usize].name.as_str()).collect();
+            if names.is_empty() {
+                continue;
+            }
+            let names: Vec<String> = names.into_iter().map(|name| format!("`{name}`")).collect();
+            all.push(format!(
+                "{} of the particles of `{}` begin inside of {}, parted from the rest (a void listed before `{}` leaves \
+                 them out)",
+                part.len(),
+                shape.name,
+                names.join(" and "),
+                shape.name
+            ));
+        }
+    }
+}
+
+/// Sets of particles that are joined by steps shorter than `reach`.
+fn connected<const D: usize>(fluid: &[FluidPoint<D>], reach: f64) -> Vec<Vec<usize>> {
+    let mut cells = Cells::new(reach);
+    fluid.iter().enumerate().for_each(|(k, p)| cells.add(&p.position, k));
+    let mut seen = vec![false; fluid.len()];
+    let mut parts = Vec::new();
+    for first in 0..fluid.len() {
+        if std::mem::replace(&mut seen[first], true) {
+            continue;
+        }
+        let mut part = vec![first];
+        let mut next = 0;
+        while let Some(&k) = part.get(next) {
+            next += 1;
+            let at = &fluid[k].position;
+            for &other in cells.around(at) {
+                let apart: f64 = (0..D).map(|d| (fluid[other].position[d] - at[d]).powi(2)).sum();
+                if apart < reach * reach && !std::mem::replace(&mut seen[other], true) {
+                    part.push(other);
+                }
+            }
+        }
+        parts.push(part);
+    }
+    parts
+}
