@@ -95,9 +95,9 @@ fn the_ledger_of_shifted_water_closes() {
     let folder = tempfile::tempdir().expect("a folder");
     let wave = with_ledgers(folder.path(), &shipped("standing-wave"), &["fluid"]);
     let run = wave.set("resolution", 0.05).until(0.5).in_process().run();
-    // Shifting moves water down: half of the kinetic energy.
+    // Shifting moves water down: three fifths of the largest kinetic energy.
     closes("standing wave, shifted, 50 mm", &run, 1.5e-3);
-    within("shifting", joules(&run, "fluid", EnergyPart::ParticleShifting), -0.639, 0.02);
+    within("shifting", joules(&run, "fluid", EnergyPart::ParticleShifting), -0.584, 0.02);
 }
 
 /// Phase-blind, with the hypoelastic solid, whose stress has a part of its own.
@@ -114,7 +114,7 @@ fn the_papers_gate_closes() {
 
 /// Taylor and Green's vortex loses 4 nu k² of its kinetic energy in a second to viscosity. The ledger says what the
 /// decay alone does not: viscosity takes 6 % less than that, since the stress of a wall's neighbour is that of a
-/// gradient which the wall's particles show, and the walls' pressure takes 7 % of it.
+/// gradient which the wall's particles show, and the walls' pressure takes 7.5 % of it.
 #[test]
 fn taylor_and_greens_vortex_loses_its_energy_to_viscosity() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -125,7 +125,7 @@ fn taylor_and_greens_vortex_loses_its_energy_to_viscosity() {
     let by = |part| -joules(&run, "fluid", part);
     let theory = 4.0 * nu * k * k * kinetic * run.report.time;
     within("viscosity", by(EnergyPart::Viscosity), 0.943 * theory, 0.005);
-    within("pressure of the walls", by(EnergyPart::WallPressure), 0.0715 * theory, 0.02);
+    within("pressure of the walls", by(EnergyPart::WallPressure), 0.0752 * theory, 0.02);
 }
 
 /// A piston that goes 0.1 m in 2 s turns 0.5 m x 0.2 m of water into 0.4 m x 0.25 m: its work is what the water weighs
