@@ -1,6 +1,6 @@
 //! Walls and a solid of another program: the coupler holds it against them from its records, unless it does so itself.
 
-use halfstep_output::run_json::ContactReport;
+use halfstep_output::run_json::{ContactReport, ForceKind};
 use halfstep_tests::python::python;
 use halfstep_tests::run::{Finished, RunBuilder, repository, scene_at};
 use std::path::PathBuf;
@@ -139,6 +139,10 @@ fn a_falling_block_stops_on_the_floor() {
     assert!((depth / sunk - 1.0).abs() < 0.01, "{depth:e} {sunk:e}");
     assert!((largest_penetration / deepest - 1.0).abs() < 0.005, "{largest_penetration:e} {deepest:e}");
     assert!((normal / (-WEIGHT * (0.01 + depth)) - 1.0).abs() < 0.01, "{normal}");
+    // At the end it rests: the floor's impulse is that of its weight over the whole run.
+    let by = run.report.forces.iter().find(|by| by.kind == ForceKind::Walls).expect("the floor's force");
+    assert!((by.impulse[1] / (WEIGHT * 0.5) - 1.0).abs() < 1e-3, "{by:?}");
+    assert!((by.work / normal - 1.0).abs() < 1e-9, "{by:?} {normal}");
     let said = log(&run);
     assert!(
         said.contains("contact of the solid with walls: by the coupler, friction 0, restitution 0"),
@@ -199,6 +203,7 @@ fn an_interrupted_block_goes_on_to_the_same_bits_and_says_the_same_of_walls() {
     assert!(resumed.report.resumed[0].step > 0);
     assert_eq!(resumed.probes, whole.probes);
     assert_eq!(resumed.report.contacts, whole.report.contacts);
+    assert_eq!(resumed.report.forces, whole.report.forces);
 }
 
 /// The floor goes up with 0.1 m/s: it lifts the block, and gives it m g times the way and its kinetic energy.

@@ -2,6 +2,8 @@
 //! other one feels.
 
 use halfstep::{RunReport, Simulation, scene};
+use halfstep_output::run_json::ForceKind;
+use halfstep_scene::EnergyPart;
 use std::path::Path;
 
 /// A drop that hits the middle of a free plate and one that hits its end, without gravity, walls and clamps.
@@ -60,6 +62,29 @@ fn a_free_impact_keeps_the_total_momentum() {
             report.audit
         );
         assert!(drift < 1e-12, "{overrides:?}: {drift:e}");
+    }
+}
+
+/// The solid keeps its own ledger, by the ways of its particles in sub-steps; the coupler books what it sends.
+#[test]
+fn work_by_kind_is_that_of_the_solids_ledger() {
+    let probe = "\n[[probe]]\nname = \"plate\"\nkind = \"energy\"\nphase = \"solid\"\n";
+    for overrides in [&[][..], &["interface.cross_viscosity_far=1.0"], &["numerics.max_sub_steps=1"]] {
+        let overrides: Vec<String> = overrides.iter().map(|&o| o.into()).collect();
+        let text = format!("{FREE}{probe}");
+        let scene =
+            scene::parse(&text, Path::new("free.toml"), &overrides).unwrap_or_else(|e| panic!("{e:?}"));
+        let report = Simulation::new(scene).run().expect("a run");
+        let energy = report.energy.as_ref().expect("a ledger");
+        for (kind, part) in [
+            (ForceKind::Stress, EnergyPart::InterfacePressure),
+            (ForceKind::CrossViscosity, EnergyPart::CrossViscosity),
+        ] {
+            let sent = report.forces.iter().find(|by| by.kind == kind).expect("it acts");
+            let own = energy.joules("solid", part).expect("a part");
+            println!("{overrides:?} {kind}: {sent:?}, ledger {own}");
+            assert!(own.abs() > 1e-6 && (sent.work / own - 1.0).abs() < 1e-9, "{sent:?} {own}");
+        }
     }
 }
 

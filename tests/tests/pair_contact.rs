@@ -1,7 +1,7 @@
 //! Contact between two solids through real runs: law, bits, interruptions.
 
 use halfstep_output::RunReport;
-use halfstep_output::run_json::ContactReport;
+use halfstep_output::run_json::{ContactReport, ForceKind};
 use halfstep_tests::run::scene_at;
 use halfstep_tests::{Finished, RunBuilder};
 use std::path::PathBuf;
@@ -89,6 +89,17 @@ fn a_block_of_one_solid_slides_on_another_as_coulomb_says() {
     assert!(run.curve("tilt.angle").at(0.5).abs() < 1e-3);
     // Kinetic energy of 10 kg/m at 1 m/s.
     assert!((contact(&run.report).friction / 5.0 + 1.0).abs() < 0.01, "{:?}", contact(&run.report));
+    // Contact alone acts: it stops 10 N s/m, and carries the weight for 0.5 s.
+    let [on_block, on_slab] = &run.report.forces[..] else { panic!("{:?}", run.report.forces) };
+    for (name, by, sign) in [("block", on_block, 1.0), ("slab", on_slab, -1.0)] {
+        assert_eq!((by.solid.as_str(), by.kind), (name, ForceKind::Contact));
+        let [x, y, z] = by.impulse.map(|p| sign * p);
+        assert!((x / -10.0 - 1.0).abs() < 0.01 && (y / 49.05 - 1.0).abs() < 0.01 && z == 0.0, "{by:?}");
+    }
+    assert!((on_block.work / -5.0 - 1.0).abs() < 0.01 && on_slab.work == 0.0, "{:?}", run.report.forces);
+    // At least weight and friction.
+    let least = 98.1 * (1.0_f64 + 0.3 * 0.3).sqrt();
+    assert!(on_block.largest > 0.99 * least, "{on_block:?}");
 }
 
 /// A rigid block runs into a free elastic one.
@@ -228,6 +239,7 @@ fn processes_do_not_matter_and_an_interrupted_run_goes_on() {
     let resumed = together.run().resume(&dir).until(0.2).run();
     assert_eq!(resumed.state_hash(), whole.state_hash());
     assert_eq!(resumed.report.contacts, whole.report.contacts);
+    assert_eq!(resumed.report.forces, whole.report.forces);
 }
 
 /// A slab that a ram of 10 m/s crushes against an anvil: 380 fragments of single particles.

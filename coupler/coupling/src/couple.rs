@@ -6,10 +6,10 @@ use crate::energy::Account;
 use crate::error::RunError;
 use crate::external::ExternalSolid;
 use crate::recorder::Measured;
-pub use crate::solids::ContactSummary;
+pub use crate::solids::{ContactSummary, Done};
 use crate::solids::{Jump, Solids, Work};
 use halfstep_link::{CouplerPort, Expect, StateMessage};
-use halfstep_output::run_json::RoleSeconds;
+use halfstep_output::run_json::{ForceKind, RoleSeconds};
 use halfstep_role::balance::Balance;
 use halfstep_role::timeline::{self, Kind, Watch};
 use halfstep_scene::Scene;
@@ -45,6 +45,8 @@ pub struct Outcome {
     pub pair_evaluations: u64,
     /// What contact did to each pair of solids.
     pub contacts: Vec<ContactSummary>,
+    /// What each kind of force did to each solid, by its index in the scene.
+    pub forces: Vec<(usize, ForceKind, Done)>,
 }
 
 /// The coupler of a run, whatever carries its messages. A step is [`Self::first`], [`Self::note`], [`Self::second`].
@@ -430,6 +432,7 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
             checks: self.checks,
             pair_evaluations: self.pair_evaluations,
             contacts: self.solids.contacts(),
+            forces: self.solids.forces_by_kind(),
         }
     }
 }

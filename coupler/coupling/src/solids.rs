@@ -2,6 +2,7 @@
 //! these do.
 
 mod expected;
+mod kinds;
 mod walls;
 
 use crate::error::RunError;
@@ -12,6 +13,7 @@ use halfstep_interface::cross_viscosity::CrossViscosity;
 use halfstep_interface::{Interface, Parameters};
 use halfstep_link::{FLUID, StateMessage};
 use halfstep_output::FirstMessage;
+use halfstep_output::run_json::ForceKind;
 use halfstep_role::balance::Balance;
 use halfstep_role::timeline;
 use halfstep_scene::{Gravity, Scene, geometry};
@@ -20,6 +22,8 @@ use halfstep_wire::half_step::Stage;
 use halfstep_wire::protocol::{ForceRecord, StateRecord};
 use halfstep_wire::state::{Fields, State, StateError};
 use halfstep_wire::wide;
+use kinds::ByKind;
+pub use kinds::Done;
 use xxhash_rust::xxh3::Xxh3;
 
 /// Part of the smoothing length that a particle of a solid may move between two states: more, and the fluid's interface
@@ -74,6 +78,7 @@ struct CoupledSolid<const D: usize> {
     /// `None` where there is no fluid.
     interface: Option<Interface<D>>,
     forces: Vec<ForceRecord>,
+    by_kind: ByKind,
     /// Positions at n, m.
     at_n: Vec<[f64; 3]>,
     /// Number of its interface particles, once known.
@@ -108,6 +113,7 @@ impl<const D: usize> Solids<D> {
         let side = |(solid, external): (usize, Option<ExternalSolid>)| CoupledSolid {
             interface: Parameters::new(scene, solid, isa).map(Interface::new),
             forces: Vec::new(),
+            by_kind: ByKind::default(),
             at_n: Vec::new(),
             count: None,
             before: Vec::new(),
@@ -177,6 +183,12 @@ impl<const D: usize> Solids<D> {
             Some(ContactSummary { solids: [Some(solid), None], stiffness, booked })
         });
         self.contact.iter().flat_map(Contact::booked).map(of).chain(walls).collect()
+    }
+
+    /// What each kind of force did to each solid, by its index in the scene.
+    pub(crate) fn forces_by_kind(&self) -> Vec<(usize, ForceKind, Done)> {
+        let solids = self.solids.iter().enumerate();
+        solids.flat_map(|(solid, side)| side.by_kind.done().map(move |(k, done)| (solid, k, done))).collect()
     }
 
     /// Notes the states that a checkpoint is made of.
@@ -256,20 +268,29 @@ impl<const D: usize> Solids<D> {
             };
             for (solid, done) in contact.work(way).into_iter().enumerate() {
                 work[solid + self.first].contact = done;
+                self.solids[solid].by_kind.work(ForceKind::Contact, done);
             }
         }
         for (place, side) in self.solids.iter_mut().enumerate() {
             let records = states[place + self.first].records();
             if let Some(walls) = &mut side.walls {
-                work[place + self.first].contact += walls.work(|record| way(records, &side.at_n, record));
+                let done = walls.work(|record| way(records, &side.at_n, record));
+                work[place + self.first].contact += done;
+                side.by_kind.work(ForceKind::Walls, done);
             }
-            let ways = records.iter().zip(&side.at_n).zip(&side.forces);
-            let done = ways.map(|((record, from), force)| {
-                let force = force.force(record.mass);
+            let ways = || records.iter().zip(&side.at_n).zip(&side.forces);
+            let along = |force: [f64; 3], record: &StateRecord, from: &[f64; 3]| {
                 (0..3).map(|d| force[d] * (record.position[d] - from[d])).sum::<f64>()
-            });
+            };
+            let done = ways().map(|((record, from), force)| along(force.force(record.mass), record, from));
             let work = &mut work[place + self.first];
             work.fluid = done.sum::<f64>() - work.contact;
+            let cross = ways().map(|((record, from), force)| {
+                along(force.cross_viscosity.map(|a| a * record.mass), record, from)
+            });
+            let cross = cross.sum::<f64>();
+            side.by_kind.work(ForceKind::CrossViscosity, cross);
+            side.by_kind.work(ForceKind::Stress, work.fluid - cross);
             side.at_n.clear();
             side.at_n.extend(records.iter().map(|r| r.position));
         }
@@ -295,6 +316,7 @@ impl<const D: usize> Solids<D> {
         }
         for (place, side) in self.solids.iter_mut().enumerate() {
             let solid = &states[place + self.first];
+            side.by_kind.clear();
             side.forces.clear();
             side.forces.extend(solid.records().iter().map(|r| blank(r.id)));
             let Some(interface) = &mut side.interface else { continue };
@@ -318,7 +340,10 @@ impl<const D: usize> Solids<D> {
             });
             interface.drag_on_fluid(|record, a| more(&mut forces[record], a));
             for (slot, record) in interface.solid.slots() {
-                self.by_fluid.add(side.forces[record].force(interface.solid.own_mass[slot]));
+                let (force, mass) = (&side.forces[record], interface.solid.own_mass[slot]);
+                self.by_fluid.add(force.force(mass));
+                side.by_kind.add(ForceKind::Stress, force.stress_force);
+                side.by_kind.add(ForceKind::CrossViscosity, force.cross_viscosity.map(|a| a * mass));
             }
         }
         if touching {
@@ -327,9 +352,10 @@ impl<const D: usize> Solids<D> {
         pairs
     }
 
-    /// Books the fluid's forces as last evaluated as those of a whole step of this length, s.
+    /// Books the forces as last evaluated as those of a whole step of this length, s.
     pub(crate) fn book(&mut self, dt: f64) {
         self.impulse.add_all(&self.by_fluid, dt);
+        self.solids.iter_mut().for_each(|side| side.by_kind.book(dt));
     }
 
     /// Adds the forces of contacts at the states' instant, s, in a time step `dt`, s, to those of the fluid.
@@ -342,13 +368,16 @@ impl<const D: usize> Solids<D> {
             for (record, force) in side.forces.iter_mut().enumerate() {
                 let on = walls.on(record);
                 (0..2).for_each(|d| force.stress_force[d] += on[d]);
+                side.by_kind.add(ForceKind::Walls, wide(on));
             }
         }
         let Some(contact) = &mut self.contact else { return };
         contact.evaluate(|solid| states[solid + self.first].records(), whole, dt);
         contact.forces(|solid, record, force| {
-            let sum = &mut self.solids[solid].forces[record].stress_force;
+            let side = &mut self.solids[solid];
+            let sum = &mut side.forces[record].stress_force;
             (0..2).for_each(|d| sum[d] += force[d]);
+            side.by_kind.add(ForceKind::Contact, wide(force));
         });
     }
 
@@ -398,6 +427,7 @@ impl<const D: usize> State for Solids<D> {
 
 impl<const D: usize> State for CoupledSolid<D> {
     fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
+        fields.part("by_kind", &mut self.by_kind)?;
         fields.optional_count("count", &mut self.count)?;
         fields.count("published", &mut self.saved)?;
         fields.points("position", &mut self.at_n)?;

@@ -2,13 +2,14 @@
 
 use crate::effects;
 use crate::options::{SolidSource, source};
-use halfstep_coupling::couple::{ContactSummary, Outcome, combined_hash};
+use halfstep_coupling::couple::{ContactSummary, Done, Outcome, combined_hash};
 use halfstep_coupling::error::RunError;
 use halfstep_coupling::roles;
 use halfstep_link::{FLUID, LinkConfig, Participant};
 use halfstep_output::RunReport;
 use halfstep_output::run_json::{
-    ContactReport, EnergyReport, ParticipantEnergy, ParticipantReport, RoleSeconds, WALLS,
+    ContactReport, EnergyReport, ForceKind, ForceReport, ParticipantEnergy, ParticipantReport, RoleSeconds,
+    WALLS,
 };
 use halfstep_role::report::Report;
 use halfstep_scene::geometry::Layout;
@@ -88,6 +89,15 @@ pub(crate) fn report_outcome(scene: &Scene, outcome: &Outcome, report: &mut RunR
         largest_penetration: booked.largest_penetration,
     };
     report.contacts = outcome.contacts.iter().map(contact).collect();
+    let acted = outcome.forces.iter().filter(|(_, _, done)| done.largest > 0.0);
+    let force = |(solid, kind, done): &(usize, ForceKind, Done)| ForceReport {
+        solid: scene.solids[*solid].name.clone(),
+        kind: *kind,
+        impulse: done.impulse,
+        work: done.work,
+        largest: done.largest,
+    };
+    report.forces = acted.map(force).collect();
     if scene.fluid.is_some() && !scene.solids.is_empty() {
         report.audit.action_reaction = Some(outcome.action_reaction);
         report.audit.checks = outcome.checks;

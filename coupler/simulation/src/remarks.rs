@@ -23,7 +23,18 @@ pub use outcome::outcome;
 pub(crate) use shapes::{Placed, placed};
 
 use halfstep_scene::geometry::{self, Layout};
-use halfstep_scene::{Scene, dispatch};
+use halfstep_scene::{Block, Scene, dispatch};
+
+/// Whether two boxes have a place in common, be it a point.
+fn meet(a: &Block, b: &Block, scene: &Scene) -> bool {
+    (0..scene.dimension).all(|d| a.min[d] <= b.max[d] && b.min[d] <= a.max[d])
+}
+
+/// Whether two boxes have more in common than a face: half a spacing in each direction.
+fn overlap(a: &Block, b: &Block, scene: &Scene) -> bool {
+    let common = |k: usize| a.max[k].min(b.max[k]) - a.min[k].max(b.min[k]);
+    (0..scene.dimension).all(|k| common(k) > 0.5 * scene.resolution)
+}
 
 /// The remarks on a scene, most telling first.
 pub fn remarks(scene: &Scene) -> Vec<String> {

@@ -233,7 +233,10 @@ impl Check<'_> {
             let corners = [format!("{place}.min"), format!("{place}.max")];
             let others: Vec<&str> = corners.iter().map(String::as_str).chain(others).collect();
             let has = match shape.spacing {
-                None => format!("has {} of at least {least} particles across", rows.round()),
+                // Rounded to a whole number it may look enough.
+                None => {
+                    format!("has {} of at least {least} particles across", (100.0 * rows).round() / 100.0)
+                }
                 Some(_) => {
                     let thickness = thickness as f32;
                     format!("is {thickness} of at least {least} spacings of the fluid thick")

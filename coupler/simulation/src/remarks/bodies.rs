@@ -1,5 +1,6 @@
 //! Remarks on bodies: what holds them, what they stand on, what they touch.
 
+use super::meet;
 use halfstep_scene::geometry::Layout;
 use halfstep_scene::{
     Block, Body, EffectName, Geometry, Phase, Scene, Shape, SolidModelName, Switch, Void, geometry,
@@ -8,10 +9,6 @@ use std::collections::BTreeSet;
 
 /// Most bodies that are listed.
 const MOST_LISTED: usize = 8;
-
-fn meet(a: &Block, b: &Block, scene: &Scene) -> bool {
-    (0..scene.dimension).all(|d| a.min[d] <= b.max[d] && b.min[d] <= a.max[d])
-}
 
 /// Bodies that no clamp holds, where walls do not stop them.
 pub(super) fn free(scene: &Scene, bodies: &[Body], all: &mut Vec<String>) {
@@ -251,6 +248,9 @@ pub(super) fn standing<const D: usize>(
 pub(crate) fn listed(scene: &Scene, bodies: &[Body]) -> String {
     let one = |body: &Body| {
         let held = match body.clamped {
+            0 if body.held && body.shapes.iter().any(|&k| scene.shapes[k].motion.is_some()) => {
+                "moves as prescribed".to_owned()
+            }
             0 if body.held => "held by joints".to_owned(),
             0 => "free".to_owned(),
             n => format!("{n} clamped"),

@@ -1,5 +1,6 @@
 //! Remarks on tanks that move: clamps, joints and walls in them that do not go along.
 
+use super::{meet, overlap};
 use halfstep_scene::geometry::{self, Cells, Layout, SolidPoint};
 use halfstep_scene::{Block, Geometry, Joint, JointKind, Motion, Phase, Scene, Shape};
 use halfstep_wire::wide;
@@ -54,16 +55,6 @@ pub(super) fn forgotten(scene: &Scene, all: &mut Vec<String>) {
             }
         }
     }
-}
-
-fn meet(a: &Block, b: &Block, scene: &Scene) -> bool {
-    (0..scene.dimension).all(|d| a.min[d] <= b.max[d] && b.min[d] <= a.max[d])
-}
-
-/// More than half a spacing in each other.
-fn overlap(a: &Block, b: &Block, scene: &Scene) -> bool {
-    let common = |k: usize| a.max[k].min(b.max[k]) - a.min[k].max(b.min[k]);
-    (0..scene.dimension).all(|k| common(k) > 0.5 * scene.resolution)
 }
 
 /// How the wall of a name moves.

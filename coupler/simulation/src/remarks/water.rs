@@ -1,5 +1,6 @@
 //! Remarks on the fluid: what carries it, how fast it may become.
 
+use super::overlap;
 use halfstep_scene::geometry::{self, Cells, FluidPoint, Layout};
 use halfstep_scene::{Block, Geometry, Motion, Phase, Scene, expected_speed_of_fluid as fastest};
 use std::collections::HashMap;
@@ -288,9 +289,3 @@ pub(super) fn walls_that_meet(scene: &Scene, all: &mut Vec<String>) {
 
 /// Instants of a run at which walls are looked at.
 pub(super) const INSTANTS: usize = 1000;
-
-/// Whether two boxes have more in common than a face: half a spacing in each direction.
-fn overlap(a: &Block, b: &Block, scene: &Scene) -> bool {
-    let common = |k: usize| a.max[k].min(b.max[k]) - a.min[k].max(b.min[k]);
-    (0..scene.dimension).all(|k| common(k) > 0.5 * scene.resolution)
-}
