@@ -1,7 +1,7 @@
 //! Remarks on fluid inside of solids: a hull that an author thinks dry begins full, because a box of fluid leaves out
 //! only the places that the solid itself has.
 
-use halfstep_scene::geometry::{self, Cells, FluidPoint, Layout};
+use halfstep_scene::geometry::{self, Cells, FluidPoint, Layout, SolidPoint};
 use halfstep_scene::{Phase, Scene};
 use std::collections::BTreeSet;
 
@@ -38,14 +38,26 @@ pub(super) fn enclosed<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &
             }
             let mut inside = Cells::new(2.0 * reach);
             part.iter().for_each(|&k| inside.add(&layout.fluid[k].position, layout.fluid[k].position));
-            let beside = layout
+            let beside: Vec<&SolidPoint<D>> = layout
                 .solid
                 .iter()
-                .filter(|p| inside.around(&p.position).any(|x| near(x, &p.position, 2.0 * reach)));
-            let names: BTreeSet<&str> = beside.map(|p| scene.shapes[p.body as usize].name.as_str()).collect();
-            if names.is_empty() {
+                .filter(|p| inside.around(&p.position).any(|x| near(x, &p.position, 2.0 * reach)))
+                .collect();
+            // Drops beside a plate have it on one side.
+            let on = |side: f64| {
+                beside.iter().any(|p| {
+                    inside.around(&p.position).any(|x| {
+                        let level = (1..D).all(|d| (x[d] - p.position[d]).abs() < 0.6 * scene.resolution);
+                        let apart = (p.position[0] - x[0]) * side;
+                        level && 0.0 < apart && apart < 2.0 * reach
+                    })
+                })
+            };
+            if !(on(-1.0) && on(1.0)) {
                 continue;
             }
+            let names: BTreeSet<&str> =
+                beside.iter().map(|p| scene.shapes[p.body as usize].name.as_str()).collect();
             let names: Vec<String> = names.into_iter().map(|name| format!("`{name}`")).collect();
             all.push(format!(
                 "{} of the particles of `{}` begin inside of {}, parted from the rest (a void listed before `{}` leaves \

@@ -197,6 +197,11 @@ fn a_hull_that_begins_full_of_water() {
     assert!(!has(&sunk, "begin inside"), "{sunk:?}");
     let dry = plain(&[TANK, &hull(0.08, true), void, &water(0.14)]);
     assert!(!has(&dry, "begin inside"), "{dry:?}");
+    // Drops, one of which falls beside a plate.
+    let drop = "[[shape]]\nname = \"water\"\nphase = \"fluid\"\nbox = { min = [0.17, 0.05], max = [0.2, 0.08] }\n\
+                repeat = { count = 2, step = [-0.05, 0.0] }\n";
+    let drops = plain(&[TANK, PLATE, drop]);
+    assert!(!has(&drops, "begin inside"), "{drops:?}");
     // A plate parts a basin: on both sides the water stands on the floor.
     let weir = plain(&[TANK, PLATE, &water(0.08)]);
     assert!(!has(&weir, "begin inside"), "{weir:?}");
