@@ -3,7 +3,7 @@
 use super::meet;
 use halfstep_scene::geometry::Layout;
 use halfstep_scene::{
-    Block, Body, EffectName, Geometry, Phase, Scene, Shape, SolidModelName, Switch, Void, geometry,
+    Body, EffectName, Geometry, Phase, Scene, Shape, SolidModelName, Switch, Void, geometry,
 };
 use std::collections::BTreeSet;
 
