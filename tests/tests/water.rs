@@ -210,34 +210,48 @@ fn jet(frame: &Frame, dx: f64) -> f64 {
     whole as f64 * dx
 }
 
-/// Highest jet, m, and mean pressure at the foot of the far wall after the impact, over rho g H.
-fn run_up(dx: f64, guard: &str) -> (f64, f64) {
+/// Highest jet, m, and mean pressure at the foot of the far wall after the impact, over rho g H, of water so wide, m.
+fn run_up(dx: f64, guard: &str, width: f64) -> [f64; 2] {
     let folder = tempfile::tempdir().unwrap();
-    let found: Finished = run(folder.path(), RUN_UP, dx).set("effects.wall-guard", guard).run();
+    let run = run(folder.path(), RUN_UP, dx).set("effects.wall-guard", guard);
+    let found: Finished = run.set("shape.water.box.max", format!("[{width}, 0.3]")).run();
     let highest = found.outcome.frames("fluid").iter().map(|f| jet(f, dx)).fold(0.0, f64::max);
     // As the literature counts time: t sqrt(g / H) from 3.2 to 4.5, after the first blow (Lobovsky et al. 2014).
     let unit = (0.3 / GRAVITY).sqrt();
     let pressure =
         found.curve("foot.pressure").between(3.2 * unit, 4.5 * unit).mean() / (1000.0 * GRAVITY * 0.3);
-    println!("run-up at {dx} m, guard {guard}: jet {highest:.3} m, pressure {pressure:.3}");
-    (highest, pressure)
+    println!("run-up at {dx} m, {width} m wide, guard {guard}: jet {highest:.3} m, pressure {pressure:.3}");
+    [highest, pressure]
+}
+
+/// Jet and pressure with the guard over those without, means over so many widths of the water, a spacing apart: where
+/// the jet comes apart hangs on single particles.
+fn guard_over_none(dx: f64, widths: i32) -> [f64; 2] {
+    let mean = |guard: &str| {
+        let all = (0..widths).map(|k| run_up(dx, guard, 0.6 + dx * f64::from(k - widths / 2)));
+        all.fold([0.0; 2], |sum, found| [sum[0] + found[0], sum[1] + found[1]])
+    };
+    let (guarded, free) = (mean("auto"), mean("off"));
+    [guarded[0] / free[0], guarded[1] / free[1]]
 }
 
 #[test]
 fn the_guard_does_not_brake_a_run_up() {
-    let (guarded, free) = (run_up(0.02, "auto"), run_up(0.02, "off"));
-    within("jet over that without guard at 20 mm", guarded.0 / free.0, 0.82..=0.91);
-    within("pressure over that without guard at 20 mm", guarded.1 / free.1, 0.82..=0.845);
+    let [jet, pressure] = guard_over_none(0.02, 1);
+    within("jet over that without guard at 20 mm", jet, 0.88..=0.93);
+    within("pressure over that without guard at 20 mm", pressure, 0.855..=0.885);
 }
 
-/// Without guard the water at the wall comes apart on its way up: the jet that holds together is lower.
+/// The target is 5 %.
 #[test]
 #[ignore = "long: make validate"]
 fn the_guard_does_not_brake_a_run_up_finer() {
-    for (dx, jets, pressures) in [(0.01, 1.04..=1.13, 0.95..=1.05), (0.005, 1.14..=1.23, 0.95..=1.05)] {
-        let (guarded, free) = (run_up(dx, "auto"), run_up(dx, "off"));
-        within(&format!("jet over that without guard at {dx} m"), guarded.0 / free.0, jets);
-        within(&format!("pressure over that without guard at {dx} m"), guarded.1 / free.1, pressures);
+    for (dx, widths, jets, pressures) in
+        [(0.01, 5, 1.0..=1.05, 0.96..=1.0), (0.005, 3, 1.0..=1.2, 0.95..=1.05)]
+    {
+        let [jet, pressure] = guard_over_none(dx, widths);
+        within(&format!("jet over that without guard at {dx} m"), jet, jets);
+        within(&format!("pressure over that without guard at {dx} m"), pressure, pressures);
     }
 }
 
@@ -266,7 +280,7 @@ fn standing_wave(dx: f64) -> (f64, f64) {
 fn a_standing_wave_has_its_period() {
     let (period, decay) = standing_wave(0.025);
     within("standing wave at 25 mm, period over theory", period, 0.993..=1.0);
-    within("its decay over 2 k² nu", decay, 0.945..=0.975);
+    within("its decay over 2 k² nu", decay, 0.96..=0.99);
 }
 
 #[test]
@@ -294,7 +308,7 @@ fn paddle(dx: f64) -> f64 {
 
 #[test]
 fn a_paddle_makes_its_waves() {
-    within("paddle at 20 mm, height over theory", paddle(0.02), 0.89..=0.91);
+    within("paddle at 20 mm, height over theory", paddle(0.02), 0.875..=0.89);
 }
 
 #[test]
