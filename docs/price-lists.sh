@@ -61,10 +61,11 @@ price elastic-gate --until 0.25 --set resolution=0.00166666666666666667 --set sh
 # The wall goes as deep into the floor as it is thick: whole rows of every spacing, above the floor, too.
 price breaking-wall --until 0.2 --set resolution=0.004 --set 'shape.wall.box.min=[0.286,-0.012]' \
     --vary resolution=0.0024,0.003 --vary numerics.cfl=0.2
-price wave-paddle --set resolution=0.02 --vary resolution=0.0133333333333333333,0.04 --vary smoothing_ratio=1.5 \
-    --vary effects.particle-shifting=off
-price solitary-wave-wall --set resolution=0.02 --vary resolution=0.01,0.04 --vary smoothing_ratio=1.5 \
-    --vary fluid.density_diffusion=delta-sph
+# A piston as thick as the widest kernel reaches: water would get past it.
+price wave-paddle --set resolution=0.02 --set 'shape.paddle.box.min=[-0.16,0.0]' \
+    --vary resolution=0.0133333333333333333,0.04 --vary smoothing_ratio=1.5 --vary effects.particle-shifting=off
+price solitary-wave-wall --set resolution=0.02 --set 'shape.piston.box.min=[-0.16,0.0]' \
+    --vary resolution=0.01,0.04 --vary smoothing_ratio=1.5 --vary fluid.density_diffusion=delta-sph
 price floating-box --set resolution=0.0125 --vary resolution=0.01,0.02 --vary smoothing_ratio=2 \
     --vary interface.cross_viscosity_reach=1.25 --vary effects.particle-shifting=off
 price block-wall --set resolution=0.02 --vary resolution=0.01 --vary effects.particle-shifting=off

@@ -247,7 +247,7 @@ fn the_guard_does_not_brake_a_run_up() {
 #[ignore = "long: make validate"]
 fn the_guard_does_not_brake_a_run_up_finer() {
     for (dx, widths, jets, pressures) in
-        [(0.01, 5, 1.0..=1.05, 0.96..=1.0), (0.005, 3, 1.0..=1.2, 0.95..=1.05)]
+        [(0.01, 5, 0.95..=1.05, 0.97..=0.99), (0.005, 3, 0.95..=1.05, 0.985..=1.01)]
     {
         let [jet, pressure] = guard_over_none(dx, widths);
         within(&format!("jet over that without guard at {dx} m"), jet, jets);
@@ -296,7 +296,10 @@ fn a_standing_wave_has_its_period_finer() {
 /// Height of the waves over linear theory: of the gauge's part at the paddle's frequency, from 2.3 s over three
 /// periods.
 fn paddle(dx: f64) -> f64 {
-    let run = scene("wave-paddle").set("resolution", dx).in_process().run();
+    // As thick as the kernel reaches: water would get past it.
+    let behind = format!("[{}, 0.0]", -4.0 * dx);
+    let run =
+        scene("wave-paddle").set("resolution", dx).set("shape.paddle.box.min", behind).in_process().run();
     let level = run.curve("gauge.level").between(2.3, 5.0);
     let omega = std::f64::consts::TAU / 0.9;
     let part = |f: fn(f64) -> f64| -> f64 {
@@ -308,7 +311,7 @@ fn paddle(dx: f64) -> f64 {
 
 #[test]
 fn a_paddle_makes_its_waves() {
-    within("paddle at 20 mm, height over theory", paddle(0.02), 0.875..=0.89);
+    within("paddle at 20 mm, height over theory", paddle(0.02), 0.89..=0.915);
 }
 
 #[test]
