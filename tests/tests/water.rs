@@ -227,11 +227,11 @@ fn run_up(dx: f64, guard: &str, width: f64) -> [f64; 2] {
 /// Jet and pressure with the guard over those without, means over so many widths of the water, a spacing apart: where
 /// the jet comes apart hangs on single particles.
 fn guard_over_none(dx: f64, widths: i32) -> [f64; 2] {
-    let mean = |guard: &str| {
+    let sums = |guard: &str| {
         let all = (0..widths).map(|k| run_up(dx, guard, 0.6 + dx * f64::from(k - widths / 2)));
         all.fold([0.0; 2], |sum, found| [sum[0] + found[0], sum[1] + found[1]])
     };
-    let (guarded, free) = (mean("auto"), mean("off"));
+    let (guarded, free) = (sums("auto"), sums("off"));
     [guarded[0] / free[0], guarded[1] / free[1]]
 }
 

@@ -36,6 +36,11 @@ fn overlap(a: &Block, b: &Block, scene: &Scene) -> bool {
     (0..scene.dimension).all(|k| common(k) > 0.5 * scene.resolution)
 }
 
+/// Whether two places are nearer to each other than `reach`.
+fn near<const D: usize>(a: &[f64; D], b: &[f64; D], reach: f64) -> bool {
+    (0..D).map(|d| (a[d] - b[d]).powi(2)).sum::<f64>() < reach * reach
+}
+
 /// The remarks on a scene, most telling first.
 pub fn remarks(scene: &Scene) -> Vec<String> {
     let all = dispatch!(scene.dimension, D => {

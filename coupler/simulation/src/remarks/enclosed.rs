@@ -1,6 +1,7 @@
 //! Remarks on fluid inside of solids: a hull that an author thinks dry begins full, because a box of fluid leaves out
 //! only the places that the solid itself has.
 
+use super::{meet, near};
 use halfstep_scene::geometry::{self, Cells, FluidPoint, Layout, SolidPoint};
 use halfstep_scene::{Phase, Scene};
 use std::collections::BTreeSet;
@@ -12,16 +13,9 @@ pub(super) fn enclosed<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &
         let own = scene.shapes.iter().filter(move |shape| shape.phase == phase);
         own.map(|shape| geometry::bounding_box(shape, scene))
     };
-    let meet = boxes(Phase::Solid).any(|solid| {
-        boxes(Phase::Fluid)
-            .any(|fluid| (0..D).all(|a| solid.min[a] < fluid.max[a] && fluid.min[a] < solid.max[a]))
-    });
-    if !meet {
+    if !boxes(Phase::Solid).any(|solid| boxes(Phase::Fluid).any(|fluid| meet(&solid, &fluid, scene))) {
         return;
     }
-    let near = |a: &[f64; D], b: &[f64; D], reach: f64| {
-        (0..D).map(|d| (a[d] - b[d]).powi(2)).sum::<f64>() < reach * reach
-    };
     let mut walls = Cells::new(2.0 * reach);
     layout.wall.iter().for_each(|wall| walls.add(&wall.position, wall.position));
     let at_wall = |p: &FluidPoint<D>| walls.around(&p.position).any(|w| near(w, &p.position, 2.0 * reach));
@@ -87,8 +81,7 @@ fn connected<const D: usize>(fluid: &[FluidPoint<D>], reach: f64) -> Vec<Vec<usi
             next += 1;
             let at = &fluid[k].position;
             for &other in cells.around(at) {
-                let apart: f64 = (0..D).map(|d| (fluid[other].position[d] - at[d]).powi(2)).sum();
-                if apart < reach * reach && !std::mem::replace(&mut seen[other], true) {
+                if near(&fluid[other].position, at, reach) && !std::mem::replace(&mut seen[other], true) {
                     part.push(other);
                 }
             }

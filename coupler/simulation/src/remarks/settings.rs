@@ -1,5 +1,6 @@
 //! Remarks on settings that cannot act in their scene, or act the other way around.
 
+use super::near;
 use super::shapes::Placed;
 use super::water::{INSTANTS, depth};
 use halfstep_scene::geometry::{Cells, Layout};
@@ -97,9 +98,7 @@ pub(super) fn background_pressure<const D: usize>(scene: &Scene, layout: &Layout
                 true => at[a] + dx * (2.0 * (k % 2) as f64 - 1.0),
                 false => at[a],
             });
-            !cells
-                .around(&beside)
-                .any(|x| (0..D).map(|a| (x[a] - beside[a]).powi(2)).sum::<f64>() < (0.9 * dx).powi(2))
+            !cells.around(&beside).any(|x| near(x, &beside, 0.9 * dx))
         })
     };
     let count = layout.fluid.iter().filter(|p| open(&p.position)).count();

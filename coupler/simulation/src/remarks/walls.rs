@@ -1,5 +1,6 @@
 //! Remarks on walls: how thick they are where the fluid can come, and which way their surface goes.
 
+use super::near;
 use halfstep_scene::geometry::{self, Cells, Layout, cell};
 use halfstep_scene::{Phase, Scene};
 use std::collections::HashSet;
@@ -17,8 +18,7 @@ struct Walls<const D: usize> {
 impl<const D: usize> Walls<D> {
     /// Whether a particle is near a place.
     fn fill(&self, at: &[f64; D]) -> bool {
-        let r2 = |x: &[f64; D]| (0..D).map(|a| (x[a] - at[a]).powi(2)).sum::<f64>();
-        self.cells.around(at).any(|x| r2(x) < (FILLED * self.dx).powi(2))
+        self.cells.around(at).any(|x| near(x, at, FILLED * self.dx))
     }
 }
 
@@ -70,11 +70,10 @@ pub(super) fn across<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mu
         let mut faces = Cells::new(reach);
         let own = layout.wall.iter().filter(|p| p.shape as usize == index && !p.corner);
         own.filter(|p| across(p)).for_each(|p| faces.add(&p.position, p.position));
-        let r2 = |x: &[f64; D], y: &[f64; D]| (0..D).map(|a| (x[a] - y[a]).powi(2)).sum::<f64>();
         let wet = layout
             .fluid
             .iter()
-            .find_map(|f| faces.around(&f.position).find(|x| r2(x, &f.position) < reach * reach).copied());
+            .find_map(|f| faces.around(&f.position).find(|x| near(x, &f.position, reach)).copied());
         if let Some(at) = wet {
             let at: Vec<String> = at.iter().map(|x| (*x as f32).to_string()).collect();
             all.push(format!(
