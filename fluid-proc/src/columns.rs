@@ -3,7 +3,7 @@
 use halfstep_scene::geometry::FluidPoint;
 use halfstep_sph::columns::copy;
 pub use halfstep_sph::columns::{Vectors, fit, vectors};
-use halfstep_sph::lane::{Halves, LANES, Lanes, Number, Precision};
+use halfstep_sph::lane::{Halves, LANES, Lanes, Number, Precision, components};
 use halfstep_sph::neighbours::{PADDING, Rows};
 use halfstep_sph::state_equation::StateEquation;
 use rayon::prelude::*;
@@ -174,9 +174,9 @@ impl<const D: usize> PairParticles<D> {
     #[inline(always)]
     pub fn at<L: Lanes>(&self, j: usize) -> [L::Number; D] {
         if L::SINGLE {
-            self.single[j].position.map(L::of_halves)
+            components(|d| L::of_halves(self.single[j].position[d]))
         } else {
-            self.sources[j].position.map(L::Number::of)
+            components(|d| L::Number::of(self.sources[j].position[d]))
         }
     }
 
@@ -186,7 +186,7 @@ impl<const D: usize> PairParticles<D> {
         if L::SINGLE {
             let s = &self.single[j];
             Beside {
-                velocity: std::array::from_fn(|d| L::splat_single(s.velocity[d])),
+                velocity: components(|d| L::splat_single(s.velocity[d])),
                 density: L::splat_single(s.density),
                 excess: L::splat_single(s.excess),
                 pressure: L::splat_single(s.pressure),
@@ -196,7 +196,7 @@ impl<const D: usize> PairParticles<D> {
         } else {
             let s = &self.sources[j];
             Beside {
-                velocity: std::array::from_fn(|d| L::splat(s.velocity[d])),
+                velocity: components(|d| L::splat(s.velocity[d])),
                 density: L::splat(s.density),
                 excess: L::splat(s.density),
                 pressure: L::splat(s.pressure),
@@ -214,7 +214,7 @@ impl<const D: usize> PairParticles<D> {
     /// Velocities of consecutive slots.
     #[inline(always)]
     pub fn velocities<L: Lanes>(&self, slot: usize) -> [L; D] {
-        std::array::from_fn(|d| self.each(slot, |s| s.velocity[d]))
+        components(|d| self.each(slot, |s| s.velocity[d]))
     }
 
     /// Densities of consecutive slots.

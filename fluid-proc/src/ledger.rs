@@ -15,7 +15,7 @@ use halfstep_role::ledger::Ledger;
 use halfstep_role::timeline;
 use halfstep_scene::{EnergyPart, Phase};
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Arch, Isa, LANES, Lane, Lanes};
+use halfstep_sph::lane::{Arch, Isa, LANES, Lane, Lanes, components};
 use halfstep_sph::neighbours::{ClusterList, PADDING};
 use halfstep_sph::pair::{self, PairLaw, distance, pair_sum};
 use halfstep_wire::half_step::Stage;
@@ -96,7 +96,7 @@ impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for PowerLaw<'_,
         let mut rates = PairRates { bracket: L::ZERO, density: L::ZERO, vector: [L::ZERO; D] };
         self.effect.add::<A, L>(&i.own, j, &pair, &mut rates);
         let mf = L::splat(self.sources.mass) * f;
-        let a: [L; D] = std::array::from_fn(|d| mf * (rates.bracket * dx[d] + rates.vector[d]));
+        let a: [L; D] = components(|d| mf * (rates.bracket * dx[d] + rates.vector[d]));
         let wall = |d: usize| L::splat(self.walls.map_or(0.0, |walls| walls[d][j]));
         for d in 0..D {
             sum.given += a[d] * (i.velocity[d] - wall(d));

@@ -6,7 +6,7 @@ use crate::composition::Composition;
 use crate::momentum::pressure_and_continuity;
 use halfstep_sph::artificial_viscosity::damping;
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Arch, Lane, Lanes};
+use halfstep_sph::lane::{Arch, Lane, Lanes, components};
 use halfstep_sph::pair::{PairLaw, distance, dot, pair_sum};
 
 /// Several particles with one of their neighbours.
@@ -193,7 +193,7 @@ impl<O, L: Lanes, const D: usize> Target<O, L, D> {
     /// The targets with one neighbour.
     #[inline(always)]
     pub(crate) fn with<A: Arch>(&self, s: &Beside<D, L>, dx: [L; D], r2: L) -> FluidPair<D, L> {
-        let dv = std::array::from_fn(|d| self.velocity[d] - s.velocity[d]);
+        let dv = components(|d| self.velocity[d] - s.velocity[d]);
         FluidPair {
             dx,
             r2,

@@ -19,7 +19,7 @@ use crate::walls::Walls;
 use gradient::{GradientLaw, GradientSum};
 use halfstep_scene::{Decision, DensityDiffusion as Variant, Derived, EffectName, Scene};
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Arch, LANES, Lanes};
+use halfstep_sph::lane::{Arch, LANES, Lanes, components};
 use halfstep_sph::pair::{self, dot};
 use halfstep_wire::half_step::Stage;
 
@@ -217,7 +217,7 @@ impl<const D: usize> PairEffect<D> for Hydrostatic<D> {
     fn own<L: Lanes>(&self, _: usize) {}
     #[inline(always)]
     fn add<A: Arch, L: Lanes>(&self, _: &(), _: usize, pair: &FluidPair<D, L>, rates: &mut PairRates<D, L>) {
-        let rest = dot::<D, A, L>(self.gradient.map(|g| L::splat(2.0 * g)), pair.dx);
+        let rest = dot::<D, A, L>(components(|d| L::splat(2.0 * self.gradient[d])), pair.dx);
         diffuse::<D, A, L>(self.strength, twice_difference(pair) - rest, rates);
     }
     fn labels(labels: &mut Vec<&'static str>) {
@@ -229,7 +229,7 @@ impl<const D: usize> PairEffect<D> for DeltaSph<'_, D> {
     type Own<L: Lanes> = [L; D];
     #[inline(always)]
     fn own<L: Lanes>(&self, slot: usize) -> [L; D] {
-        std::array::from_fn(|d| each(self.gradient, slot, |g| g[d]))
+        components(|d| each(self.gradient, slot, |g| g[d]))
     }
     #[inline(always)]
     fn add<A: Arch, L: Lanes>(
@@ -240,7 +240,7 @@ impl<const D: usize> PairEffect<D> for DeltaSph<'_, D> {
         rates: &mut PairRates<D, L>,
     ) {
         let gradient = &self.gradient[j];
-        let sum: [L; D] = std::array::from_fn(|d| own[d] + L::splat(gradient[d]));
+        let sum: [L; D] = components(|d| own[d] + L::splat(gradient[d]));
         diffuse::<D, A, L>(self.strength, twice_difference(pair) - dot::<D, A, L>(sum, pair.dx), rates);
     }
     fn labels(labels: &mut Vec<&'static str>) {

@@ -11,7 +11,7 @@ use crate::rates::{FluidPair, PairEffect, PairRates};
 use crate::walls::Walls;
 use halfstep_scene::{Decision, EffectName, Scene};
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Arch, LANES, Lane, Lanes};
+use halfstep_sph::lane::{Arch, LANES, Lane, Lanes, components};
 use halfstep_sph::pair::{self, PairLaw, distance, pair_sum};
 use halfstep_wire::half_step::Stage;
 
@@ -99,13 +99,13 @@ fn stress<const D: usize>(
         let isotropic = if a == b { 2.0 / 3.0 * divergence } else { 0.0 };
         scale * (gradient(a, b) + gradient(b, a) - isotropic)
     };
-    std::array::from_fn(|a| std::array::from_fn(|b| component(a.min(b), a.max(b))))
+    components(|a| components(|b| component(a.min(b), a.max(b))))
 }
 
 impl<const D: usize> StressTerm<D> {
     #[inline(always)]
     fn load<L: Lanes>(&self, slot: usize) -> [[L; D]; D] {
-        std::array::from_fn(|a| std::array::from_fn(|b| each(&self.0, slot, |stress| stress[a][b])))
+        components(|a| components(|b| each(&self.0, slot, |stress| stress[a][b])))
     }
 }
 

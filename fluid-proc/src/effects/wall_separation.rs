@@ -14,7 +14,7 @@ use crate::rates::{FluidPair, PairEffect, PairRates};
 use crate::walls::Walls;
 use halfstep_scene::{Decision, EffectName, Scene};
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Arch, Lanes};
+use halfstep_sph::lane::{Arch, Lanes, components};
 use halfstep_sph::pair::dot;
 use halfstep_wire::half_step::Stage;
 
@@ -67,7 +67,7 @@ impl<const D: usize> PairEffect<D> for Separating<'_, D> {
     fn own<L: Lanes>(&self, _: usize) {}
     #[inline(always)]
     fn add<A: Arch, L: Lanes>(&self, _: &(), j: usize, pair: &FluidPair<D, L>, rates: &mut PairRates<D, L>) {
-        let excess = self.0[j].map(L::splat);
+        let excess = components(|d| L::splat(self.0[j][d]));
         rates.density = A::mul_add(pair.density_i, dot::<D, A, L>(excess, pair.dx), rates.density);
     }
 }

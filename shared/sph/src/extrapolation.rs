@@ -2,7 +2,7 @@
 //!   p_w = sum_j [ p_j + rho_j g . (x_w - x_j) ] W_wj / sum_j W_wj.
 
 use crate::kernel::Kernel;
-use crate::lane::{Arch, Lane, Lanes};
+use crate::lane::{Arch, Lane, Lanes, components};
 use crate::pair::{PairLaw, distance, dot, pair_sum};
 
 /// The law of the pass over boundary particles.
@@ -75,7 +75,7 @@ fn weighted<K: Kernel<D>, const D: usize, A: Arch, L: Lanes>(
     pressure: L,
 ) -> (L, L) {
     let w = kernel.value::<A, L>(distance(r2, kernel.smoothing_length()));
-    let head = dot::<D, A, L>(gravity.map(L::splat), dx);
+    let head = dot::<D, A, L>(components(|d| L::splat(gravity[d])), dx);
     (w, A::mul_add(density, head, pressure))
 }
 
@@ -98,7 +98,7 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for Extrapolation<'_, K, D> {
     }
     #[inline(always)]
     fn source_position(&self, j: usize) -> [f64; D] {
-        std::array::from_fn(|d| self.sources[d][j])
+        components(|d| self.sources[d][j])
     }
     #[inline(always)]
     fn target<L: Lanes>(&self, _: usize) {}

@@ -201,6 +201,17 @@ macro_rules! arithmetic {
     };
 }
 
+/// Each component by itself: a plain loop, too, for what is computed of every pair. `from_fn` and `map` of arrays are
+/// calls there where vectors are long, and a call keeps every vector in memory.
+#[inline(always)]
+pub fn components<T: Copy, const D: usize>(of: impl Fn(usize) -> T) -> [T; D] {
+    let mut components = [of(0); D];
+    for (d, component) in components.iter_mut().enumerate().skip(1) {
+        *component = of(d);
+    }
+    components
+}
+
 /// The part of [`Lanes`] that is alike in both precisions.
 macro_rules! elementwise {
     ($number:ty) => {

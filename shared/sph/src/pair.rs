@@ -12,6 +12,7 @@ mod width_tests;
 
 use crate::lane::{
     Arch, Eight, Fused, Isa, LANES, Lane, Lanes, Number, Precision, Single, Unfused, WIDEST, WIDEST_SINGLE,
+    components,
 };
 use crate::neighbours::{CHUNK_FOURS, ClusterList};
 pub use crate::pair_sum;
@@ -39,7 +40,8 @@ pub trait PairLaw<const D: usize>: Sync {
     /// The same as the lanes have it.
     #[inline(always)]
     fn source_numbers<L: Lanes>(&self, j: usize) -> [L::Number; D] {
-        self.source_position(j).map(L::Number::of)
+        let position = self.source_position(j);
+        components(|d| L::Number::of(position[d]))
     }
     /// Loads what else is needed of the targets from `slot` on.
     fn target<L: Lanes>(&self, slot: usize) -> Self::Target<L>;
@@ -155,7 +157,7 @@ impl<const D: usize, W: PairLaw<D>> Work<D> for (&W, &ClusterList) {
         // and one that ends in fours it computes by fours.
         let target = std::hint::black_box(law.target::<L>(slot));
         let xi: [L::Numbers; D] =
-            std::hint::black_box(std::array::from_fn(|d| L::numbers(|k| positions[d][slot + k])));
+            std::hint::black_box(components(|d| L::numbers(|k| positions[d][slot + k])));
         let mut total = *sum;
         for &j in neighbours {
             let j = j as usize;

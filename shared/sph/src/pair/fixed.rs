@@ -3,7 +3,7 @@
 use super::{PairSum, Replace, Work, distance, run_chunks};
 use crate::columns::Vectors;
 use crate::kernel::Kernel;
-use crate::lane::{Arch, Fused, Isa, LANES, Lane, Lanes, Unfused};
+use crate::lane::{Arch, Fused, Isa, LANES, Lane, Lanes, Unfused, components};
 use crate::neighbours::ClusterList;
 
 /// A sum over neighbours that stay where they are to each other: what depends on their distance alone is computed once.
@@ -108,12 +108,12 @@ impl<const D: usize> FixedPairs<D> {
 
     #[inline(always)]
     fn apart<L: Lanes>(&self, xi: &[L; D], j: usize) -> [L; D] {
-        std::array::from_fn(|d| xi[d] - L::splat(self.position[d][j]))
+        components(|d| xi[d] - L::splat(self.position[d][j]))
     }
 
     #[inline(always)]
     fn at<L: Lanes>(&self, slot: usize) -> [L; D] {
-        std::array::from_fn(|d| L::load(&self.position[d], slot))
+        components(|d| L::load(&self.position[d], slot))
     }
 
     fn slope<K: Kernel<D>, A: Arch>(&self, kernel: K, slot: usize, j: u32) -> Lane {

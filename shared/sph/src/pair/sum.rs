@@ -1,6 +1,6 @@
 //! Sums of a pass, which are stored by four targets however many are computed at once.
 
-use crate::lane::{Lane, Lanes};
+use crate::lane::{Lane, Lanes, components};
 
 /// Sums of several targets, which are stored by fours; see [`pair_sum`](crate::pair_sum!).
 pub trait PairSum<L>: Copy + Send {
@@ -34,15 +34,15 @@ impl<L, S: PairSum<L>, const N: usize> PairSum<L> for [S; N] {
     type Four = [S::Four; N];
     #[inline(always)]
     fn four(&self, k: usize) -> Self::Four {
-        std::array::from_fn(|n| self[n].four(k))
+        components(|n| self[n].four(k))
     }
     #[inline(always)]
     fn of_fours(four: impl Fn(usize) -> Self::Four) -> Self {
-        std::array::from_fn(|n| S::of_fours(|k| four(k)[n]))
+        components(|n| S::of_fours(|k| four(k)[n]))
     }
     #[inline(always)]
     fn none() -> Self {
-        std::array::from_fn(|_| S::none())
+        components(|_| S::none())
     }
 }
 
