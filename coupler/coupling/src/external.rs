@@ -1,10 +1,12 @@
 //! What the coupler does for a solid process that only exchanges states: its frames and probes, from its records.
 
+mod body;
+
 use crate::roles::probes_of;
 pub use halfstep_interface::contact::WallContact;
 use halfstep_output::{Frame, FramePoint, FrameWriter, OutputError};
 use halfstep_scene::geometry::{self, holds, nearest};
-use halfstep_scene::{Geometry, ProbeKind, Scene, Spot};
+use halfstep_scene::{BodyQuantity, Geometry, ProbeKind, Scene, Spot};
 use halfstep_wire::Name;
 use halfstep_wire::frame::{body_of, mean_stress, von_mises};
 use halfstep_wire::protocol::{ForceRecord, StateRecord};
@@ -19,6 +21,12 @@ pub struct ExternalSolid {
     /// Where the scene's shapes are, and how far outside of its shape a particle may lie, m.
     bodies: Vec<Geometry>,
     margin: f64,
+    /// Which body each shape is part of.
+    body_names: Vec<String>,
+    /// The scene has it as a model that strains.
+    strains: bool,
+    /// By probe, the angle at the last row, rad.
+    turned: Vec<f64>,
     first: Vec<[f64; 3]>,
     /// The records that each probe is about, where it is not about all of them.
     chosen: Vec<Vec<usize>>,
@@ -39,6 +47,9 @@ impl ExternalSolid {
             dimension: scene.dimension,
             bodies: scene.shapes.iter().map(|shape| shape.geometry.clone()).collect(),
             margin: 0.5 * scene.resolution,
+            body_names: scene.shapes.iter().map(|shape| shape.body().to_owned()).collect(),
+            strains: scene.solids[place].rigid().is_none(),
+            turned: vec![0.0; probes_of(scene, place).count()],
             first: Vec::new(),
             chosen: Vec::new(),
             values: Vec::new(),
@@ -66,7 +77,8 @@ impl ExternalSolid {
     /// `forces` answer the same state, record by record.
     pub fn measure(&mut self, records: &[StateRecord], forces: &[ForceRecord]) -> &[f64] {
         self.values.clear();
-        for (kind, chosen) in self.kinds.iter().zip(&self.chosen) {
+        let of_probes = self.kinds.iter().zip(&self.chosen).zip(&mut self.turned);
+        for ((kind, chosen), turned) in of_probes {
             match kind {
                 ProbeKind::Displacement { .. } => {
                     for d in 0..self.dimension {
@@ -117,8 +129,19 @@ impl ExternalSolid {
                         |r: &StateRecord| 0.5 * r.mass * r.velocity.iter().map(|v| v * v).sum::<f64>();
                     self.values.push(records.iter().map(energy).sum());
                 }
-                // What another program's solid holds is not known, nor which bodies it has.
-                ProbeKind::Energy { .. } | ProbeKind::Body { .. } => {
+                ProbeKind::Body { quantity, .. } => {
+                    let body = body::Particles { chosen, records, forces, first: &self.first };
+                    let mut value = body.quantity(*quantity, self.dimension, self.strains);
+                    if let (BodyQuantity::Angle, 2, Some(value)) = (*quantity, self.dimension, &mut value) {
+                        *turned = body::beyond_turns(value.z, *turned);
+                        value.z = *turned;
+                    }
+                    let parts = kind.components(self.dimension).0.len();
+                    let value = value.map_or([f64::NAN; 3], |value| [value.x, value.y, value.z]);
+                    self.values.extend(if parts == 1 { &value[2..] } else { &value[..parts] });
+                }
+                // What another program's solid holds is not known.
+                ProbeKind::Energy { .. } => {
                     let parts = kind.components(self.dimension).0.len();
                     self.values.extend(std::iter::repeat_n(f64::NAN, parts));
                 }
@@ -155,6 +178,18 @@ impl ExternalSolid {
                     let x = &self.first[*i];
                     within.is_none_or(|b| holds(&b, x, 0.0)) && of_shape(x)
                 };
+                (0..self.first.len()).filter(inside).collect()
+            }
+            ProbeKind::Body { ref body, .. } => {
+                let of_body = || {
+                    self.bodies
+                        .iter()
+                        .zip(&self.body_names)
+                        .filter(|(_, name)| *name == body)
+                        .map(|(of, _)| of)
+                };
+                let inside =
+                    |i: &usize| of_body().any(|of| geometry::distance(of, &self.first[*i]) < self.margin);
                 (0..self.first.len()).filter(inside).collect()
             }
             _ => Vec::new(),
@@ -201,6 +236,8 @@ impl ExternalSolid {
 impl State for ExternalSolid {
     fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
         fields.points("first_position", &mut self.first)?;
+        fields.reals("turned", &mut self.turned)?;
+        fields.length("turned", self.kinds.len(), self.turned.len())?;
         fields.flag("own_walls", &mut self.own_walls)
     }
 
