@@ -48,7 +48,7 @@ impl ExternalSolid {
             bodies: scene.shapes.iter().map(|shape| shape.geometry.clone()).collect(),
             margin: 0.5 * scene.resolution,
             body_names: scene.shapes.iter().map(|shape| shape.body().to_owned()).collect(),
-            strains: scene.solids[place].rigid().is_none(),
+            strains: scene.solids[place - usize::from(scene.fluid.is_some())].rigid().is_none(),
             turned: vec![0.0; probes_of(scene, place).count()],
             first: Vec::new(),
             chosen: Vec::new(),

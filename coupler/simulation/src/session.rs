@@ -198,6 +198,7 @@ impl<'a, const D: usize> Session<'a, D> {
                 let early = watch(&mut children, &abort, &connected, &done, &stop.stop);
                 (early, Silence::new(&progress, &names).watch(&mut children, &abort, &done, stop))
             });
+            let over = Raised(&done);
             let result = CouplerLink::<Processes>::open(config, Some(Arc::clone(&abort)))
                 .map_err(RunError::from)
                 .inspect(|_| {
@@ -207,7 +208,7 @@ impl<'a, const D: usize> Session<'a, D> {
                     }
                 })
                 .and_then(|link| self.lockstep(link, course));
-            done.store(true, Ordering::Relaxed);
+            drop(over);
             let (early, later) = watcher.join().unwrap_or((None, None));
             let cause = |error, ended, at| {
                 let external = self.options.external_names();
@@ -322,11 +323,14 @@ impl<'a, const D: usize> Session<'a, D> {
                     scope.spawn(move || self.thread(process, abort))
                 })
                 .collect();
+            let failed = Raised(&abort);
             let result = CouplerLink::<Threads>::open(config, Some(Arc::clone(&abort)))
                 .map_err(RunError::from)
                 .and_then(|link| self.lockstep(link, course));
-            if result.is_err() {
-                abort.store(true, Ordering::Relaxed);
+            if result.is_ok() {
+                std::mem::forget(failed);
+            } else {
+                drop(failed);
             }
             let mut first = None;
             for thread in threads {
@@ -363,6 +367,16 @@ impl<'a, const D: usize> Session<'a, D> {
             raised.store(true, Ordering::Relaxed);
         }
         result
+    }
+}
+
+/// Raises a flag when it goes, also where a panic unwinds: the other threads of a scope, which is left only after them,
+/// look at it.
+struct Raised<'a>(&'a AtomicBool);
+
+impl Drop for Raised<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
     }
 }
 
