@@ -247,6 +247,17 @@ fn expected_seconds(roles: Vec<Box<dyn halfstep_role::role::Role>>, dt: f64, end
     costs.map(|costs| costs.into_iter().fold(0.0, f64::max) * end / dt)
 }
 
+/// A time in the unit in which it is a number of at most a few hundreds, s.
+fn duration(seconds: f64) -> String {
+    let (hour, day) = (3600.0, 86_400.0);
+    match seconds {
+        s if s < 600.0 => format!("{s:.0} s"),
+        s if s < 2.0 * hour => format!("{:.0} min", s / 60.0),
+        s if s < 10.0 * day => format!("{:.0} h", s / hour),
+        s => format!("{:.0} days", s / day),
+    }
+}
+
 impl Display for Check {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut line = |name: &str, value: &dyn Display| writeln!(f, "{name:<15} {value}");
@@ -304,7 +315,11 @@ impl Display for Check {
         let isa = self.instruction_set;
         match self.expected_seconds {
             Some(seconds) => {
-                line("expected time", &format_args!("about {seconds:.0} s, one thread a role ({isa})"))?;
+                let (time, steps) = (duration(seconds), self.steps);
+                line(
+                    "expected time",
+                    &format_args!("about {time} for {steps} steps, one thread a role ({isa})"),
+                )?;
             }
             None => line("expected time", &"unknown: the first steps leave their bounds")?,
         }

@@ -4,7 +4,7 @@
 use crate::effects::row;
 use halfstep_output::run_json::EffectReport;
 use halfstep_scene::geometry::{Counts, Layout};
-use halfstep_scene::{Decision, Phase, Scene, Shape, dispatch};
+use halfstep_scene::{Course, Decision, Motion, Phase, Scene, Shape, dispatch};
 
 /// Bytes of a real number.
 const REAL: usize = 8;
@@ -35,14 +35,19 @@ pub(crate) fn rows(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
         put("moving-walls", bytes, format!("`motion` of {names}: at each half-step {of_all}"));
     }
     for shape in &scene.shapes {
-        let Some(makes) = shape.motion.as_ref().and_then(|motion| motion.makes()) else { continue };
+        let Some(motion) = &shape.motion else { continue };
+        let Some(makes) = motion.makes() else { continue };
+        let [waves, by] = match is_solitary(motion) {
+            true => ["a solitary wave", "Goring's equation for the piston's place is solved"],
+            false => ["waves", "sums of sines"],
+        };
         put(
             "wave-maker",
             None,
             format!(
-                "`motion` of `{}` makes waves of {} m in {} m of water with a stroke of {:.3} m: sums of sines at each \
-                 half-step, within the share of `fluid`",
-                shape.name, makes.height, makes.depth, makes.stroke
+                "`motion` of `{}` makes {} of {} m in {} m of water with a stroke of {:.3} m: {} at each half-step, \
+                 within the share of `fluid`",
+                shape.name, waves, makes.height, makes.depth, makes.stroke, by
             ),
         );
     }
@@ -79,8 +84,42 @@ pub(crate) fn rows(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
     list
 }
 
+fn is_solitary(motion: &Motion) -> bool {
+    let Motion::Composed(composed) = motion else { return false };
+    composed.parts.iter().any(|part| matches!(part.course, Course::Solitary(_)))
+}
+
 /// Number of particles that the load of a shape of that index acts on.
 fn loaded<const D: usize>(scene: &Scene, shape: usize) -> usize {
     let layout: Layout<D> = halfstep_scene::geometry::solids(scene);
     layout.solid.iter().filter(|p| p.body as usize == shape && !p.clamped && p.is_in_load(scene)).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    #[test]
+    fn how_a_wave_maker_moves() {
+        let row = |wave: &str| {
+            let text = format!(
+                "resolution = 0.02\nend_time = 1.0\n[fluid]\ndensity = 1000.0\n[[shape]]\nname = \"water\"\n\
+                 phase = \"fluid\"\nbox = {{ min = [0.0, 0.0], max = [1.0, 0.2] }}\n[[shape]]\nname = \"paddle\"\n\
+                 phase = \"wall\"\nbox = {{ min = [-0.06, 0.0], max = [0.0, 0.4] }}\n\
+                 motion = {{ wave = {wave}, depth = 0.2 }}\n"
+            );
+            let scene =
+                halfstep_scene::parse(&text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}"));
+            let rows = rows(&scene, &Counts::default());
+            rows.into_iter().find(|row| row.name == "wave-maker").expect("a row").why
+        };
+        let solitary = row("\"solitary\", height = 0.06");
+        assert!(
+            solitary.contains("makes a solitary wave of 0.06 m") && solitary.contains("Goring's equation"),
+            "{solitary}"
+        );
+        let regular = row("\"regular\", height = 0.02, period = 0.9");
+        assert!(regular.contains("makes waves of 0.02 m") && regular.contains("sums of sines"), "{regular}");
+    }
 }

@@ -11,10 +11,13 @@ mod frame;
 mod loads;
 mod magnitudes;
 mod moving;
+mod nodal;
 mod outcome;
+mod reached;
 mod settings;
 mod shapes;
 mod thickness;
+mod units;
 mod walls;
 mod water;
 
@@ -58,10 +61,12 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     moving::joints(scene, &mut all);
     moving::walls(scene, &mut all);
     moving::forgotten(scene, &mut all);
+    moving::probes(scene, &mut all);
     let bodies = scene.bodies_of(layout);
     bodies::free(scene, &bodies, &mut all);
+    bodies::held_in_part(scene, &bodies, &mut all);
     bodies::parted(scene, &bodies, &mut all);
-    bodies::voids(scene, &mut all);
+    bodies::voids::<D>(scene, &mut all);
     bodies::idle_voids::<D>(scene, &mut all);
     bodies::held_altogether(scene, &bodies, &mut all);
     bodies::not_repeated(scene, layout, &mut all);
@@ -74,8 +79,10 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     contacts::of_walls(scene, &bodies, &mut all);
     contacts::debris(scene, &mut all);
     clamp_faces::clamp_faces(scene, &mut all);
+    clamp_faces::sections(scene, layout, &mut all);
     shapes::sizes(scene, placed, &mut all);
-    shapes::nodal(scene, placed, &mut all);
+    nodal::mass(scene, placed, &mut all);
+    nodal::touching(scene, layout, &bodies, &mut all);
     shapes::overlaps(scene, placed, &mut all);
     shapes::locking(scene, placed, &mut all);
     thickness::thin(scene, placed, &mut all);
@@ -102,14 +109,22 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     magnitudes::viscosity(scene, &mut all);
     magnitudes::lengths(scene, &mut all);
     magnitudes::motions(scene, &mut all);
+    units::columns(scene, &mut all);
+    units::degrees(scene, &mut all);
     beams::bent(scene, placed, &mut all);
     magnitudes::parameters(scene, &mut all);
     all
 }
 
 #[cfg(test)]
+mod beam_tests;
+#[cfg(test)]
+mod meaning_tests;
+#[cfg(test)]
 mod silence_tests;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
 mod trap_tests;
+#[cfg(test)]
+mod wall_tests;

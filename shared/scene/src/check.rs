@@ -161,21 +161,6 @@ impl Check<'_> {
                 continue;
             }
             let kind = self.geometry_key(&key, &shape.geometry);
-            let mut at = String::new();
-            let thickness = match shape.geometry.unmoved() {
-                Geometry::Disc { radius, .. } => *radius,
-                // Of walls and water an end may be as thin as it likes.
-                Geometry::Polygon(polygon) if shape.phase != Phase::Solid => polygon.area().sqrt(),
-                Geometry::Polygon(polygon) => {
-                    let (thickness, [x, y]) = polygon.thickness();
-                    at = format!(" at [{}, {}]", x as f32, y as f32);
-                    thickness
-                }
-                geometry => match joined(self.scene, shape, &shape.geometry) {
-                    Some(block) => spacing::thickness(&Geometry::Box(block), self.scene.dimension),
-                    None => spacing::thickness(geometry, self.scene.dimension),
-                },
-            };
             let nodal = self.scene.numerics.lattice == Lattice::Nodal && shape.phase != Phase::Wall;
             let model = shape.solid.and_then(|k| self.model(k));
             let rows = model.map_or(1, |model| if kind == "disc" { 1 } else { model.rules().rows });
@@ -184,6 +169,26 @@ impl Check<'_> {
                 _ => "one particle needs".to_owned(),
             };
             let least = self.scene.spacing(shape) * (f64::from(rows) + f64::from(u8::from(nodal)));
+            let mut at = String::new();
+            let thickness = match shape.geometry.unmoved() {
+                Geometry::Disc { radius, .. } => *radius,
+                Geometry::Polygon(polygon) => {
+                    let (thickness, [x, y]) = polygon.thickness();
+                    // Of walls and water an end may be as thin as it likes.
+                    let other = (shape.phase != Phase::Solid).then(|| polygon.area().sqrt());
+                    match other.filter(|size| *size >= least * (1.0 - 1e-9)) {
+                        Some(size) => size,
+                        None => {
+                            at = format!(" at [{}, {}]", x as f32, y as f32);
+                            thickness.min(other.unwrap_or(thickness))
+                        }
+                    }
+                }
+                geometry => match joined(self.scene, shape, &shape.geometry) {
+                    Some(block) => spacing::thickness(&Geometry::Box(block), self.scene.dimension),
+                    None => spacing::thickness(geometry, self.scene.dimension),
+                },
+            };
             let convention = if nodal { " in the nodal lattice" } else { "" };
             if thickness < least * (1.0 - 1e-9) {
                 let place = format!("{key}.{kind}");

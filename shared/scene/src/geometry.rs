@@ -11,6 +11,7 @@
 //! first in the file. The loser has no particle inside the winner nor closer than dx / 2 (the mean where spacings
 //! differ) to one of its particles.
 
+mod alone;
 mod at_start;
 mod cells;
 mod moved;
@@ -27,6 +28,7 @@ mod surface;
 mod tests;
 
 use crate::{Block, Geometry, Lattice, Motion, Phase, Scene, Shape, dispatch};
+pub use alone::{measure_alone, particles_alone};
 pub use at_start::cantilever_velocity;
 use at_start::{added, field_velocity, initial_pressure, surfaces};
 pub use cells::{Cells, cell};
@@ -231,15 +233,6 @@ fn of_phases<const D: usize>(scene: &Scene, phases: &[Phase]) -> Layout<D> {
         }
     }
     layout
-}
-
-/// Number of particles that the shape of that index would have if there were nothing but it and the voids before it.
-pub fn particles_alone<const D: usize>(scene: &Scene, index: usize) -> usize {
-    let shape = &scene.shapes[index];
-    let spacing = Spacing::of(scene, shape);
-    let region = Region::new(&shape.geometry, spacing, &voids_before(scene, index));
-    let points = points::of_shape::<D>(&shape.geometry, spacing);
-    points.iter().filter(|p| !region.is_void(&p.position)).count()
 }
 
 /// The numbers of particles from the shapes' sizes, without placing any: overlaps count twice, curved shapes by

@@ -77,7 +77,7 @@ pub use halfstep_sph::kernel::KernelName;
 pub use halfstep_sph::lane::Precision;
 pub use load::{load, load_with, parse, parse_with};
 pub use metric::{Metric, MetricKind, MetricReference};
-pub use motion::{Composed, Course, Motion, Part, Placement, Solitary, Spline, Turn, WaveMaker};
+pub use motion::{Column, Composed, Course, Motion, Part, Placement, Solitary, Spline, Turn, WaveMaker};
 pub use participant::Participant;
 pub use probe::{BodyQuantity, Probe, ProbeKind, Reference, Spot};
 pub use resources::{expected_speed, expected_speed_of_fluid, memory_available, memory_needed};

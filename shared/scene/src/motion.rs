@@ -7,7 +7,7 @@ mod waves;
 
 pub use course::{Composed, Course, Part};
 pub use placement::{Placement, Turn};
-pub use spline::Spline;
+pub use spline::{Column, Spline};
 pub(crate) use waves::{Paddle, Sea, breaking_height, wave_number};
 pub use waves::{Solitary, WaveMaker};
 
@@ -140,11 +140,15 @@ impl Motion {
         }
     }
 
-    /// Sum of the largest angles of its swings about a middle position, rad; steady turns and files do not count.
+    /// Sum of the largest angles of its swings about a middle position, rad; what turns one way does not count.
     pub fn swings_by(&self) -> f64 {
         let Self::Composed(composed) = self else { return 0.0 };
-        let sines = composed.parts.iter().filter(|part| matches!(part.course, Course::Sine { .. }));
-        sines.map(|part| part.angle.abs()).sum()
+        let swing = |part: &Part| match &part.course {
+            Course::Sine { .. } => part.angle.abs(),
+            Course::Points(spline) => (part.angle * spline.swings_by()).abs(),
+            Course::Steady { .. } | Course::Solitary(_) => 0.0,
+        };
+        composed.parts.iter().map(swing).sum()
     }
 
     /// What it makes as a wave maker.

@@ -16,8 +16,6 @@ pub(crate) struct Defaults {
     /// A is less by what the fluid's own viscosity is worth.
     pub(crate) own_viscosity_counts: bool,
     pub(crate) density_diffusion: DensityDiffusion,
-    /// The same where A is that of waves.
-    pub(crate) waves_diffusion: DensityDiffusion,
     pub(crate) density_diffusion_coefficient: f64,
     pub(crate) model: SolidModelName,
     pub(crate) solid_smoothing_ratio: f64,
@@ -43,8 +41,7 @@ impl Defaults {
             fluid_viscosity: ArtificialViscosity { linear: 0.05, quadratic: 0.0 },
             waves_linear: 0.02,
             own_viscosity_counts: true,
-            density_diffusion: DensityDiffusion::DeltaSph,
-            waves_diffusion: DensityDiffusion::Hydrostatic,
+            density_diffusion: DensityDiffusion::Hydrostatic,
             density_diffusion_coefficient: 0.1,
             model: SolidModelName::TotalLagrangian,
             solid_smoothing_ratio: 1.33,
@@ -70,7 +67,6 @@ impl Defaults {
                 waves_linear: 1.0,
                 own_viscosity_counts: false,
                 density_diffusion: DensityDiffusion::DeltaSph,
-                waves_diffusion: DensityDiffusion::DeltaSph,
                 density_diffusion_coefficient: 0.1,
                 model: SolidModelName::Hypoelastic,
                 solid_smoothing_ratio: 1.33,

@@ -1,7 +1,7 @@
 //! `motion` of a wall or of a solid's clamps.
 
 use super::document::Value;
-use super::motion::{Composed, Course, Part, Spline};
+use super::motion::{Column, Composed, Course, Part, Spline};
 use super::read_probe::read_columns;
 use super::section::{Range, Section};
 use super::*;
@@ -190,7 +190,8 @@ fn from_file(table: &Section<'_>, dimension: usize, folder: &Path) -> Option<Vec
         columns.whole("names no column that moves anything: `x`, `y` (m) or `angle` (rad)");
     }
     columns.finish();
-    let (node, file) = (table.node("file")?, folder.join(table.string("file")?));
+    let (node, path) = (table.node("file")?, table.string("file")?);
+    let file = folder.join(path);
     let titles: Vec<&str> = [time?].into_iter().chain(found.iter().map(|(title, _)| *title)).collect();
     let wrong = |reason: String| table.wrong("file", node, format!("{}: {reason}", file.display()));
     let read = read_columns(&file, &titles).and_then(|rows| match rows.len() {
@@ -204,9 +205,10 @@ fn from_file(table: &Section<'_>, dimension: usize, folder: &Path) -> Option<Vec
         wrong(format!("goes back in time: {} s follows {} s", times[k], times[k - 1]));
         return None;
     }
-    let part = |(column, (_, axis)): (usize, &(&str, Option<usize>))| {
+    let part = |(column, (title, axis)): (usize, &(&str, Option<usize>))| {
         let values: Vec<f64> = rows.iter().map(|row| scale * row[column + 1]).collect();
-        let spline = Spline::new(times.clone(), values);
+        let of = Column { file: path.to_owned(), title: (*title).to_owned(), scale };
+        let spline = Spline::new(times.clone(), values).from_column(of);
         let mut part = Part { course: Course::Points(spline), translation: [0.0; 3], angle: 0.0 };
         match axis {
             Some(axis) => part.translation[*axis] = 1.0,

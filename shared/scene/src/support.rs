@@ -69,8 +69,6 @@ impl Defaults {
         let wide = is_wide(smoothing_ratio);
         if wide || company == Company::Free {
             self.fluid_viscosity.linear = self.waves_linear;
-            // With so little viscosity one-sided density gradients stir water at rest.
-            self.density_diffusion = self.waves_diffusion;
             self.cross_viscosity_reach = NEAR;
         }
         // Phase-blind, f_i is the paper's, whose C is the same everywhere.

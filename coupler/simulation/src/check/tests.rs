@@ -1,6 +1,6 @@
 //! What `halfstep check` says of scenes by hand.
 
-use super::{Check, check};
+use super::{Check, check, duration};
 use halfstep_sph::lane::Isa;
 use std::path::Path;
 
@@ -64,4 +64,14 @@ fn a_fixed_step_above_a_limit() {
     assert!(above.iter().any(said), "{above:?}");
     let within = found(&format!("{}", 0.5 * limit));
     assert!(!within.iter().any(|text| text.contains("stability limit")), "{within:?}");
+}
+
+#[test]
+fn a_time_has_a_unit_that_suits_it() {
+    assert_eq!(
+        [2.4, 599.0, 900.0, 306_695.0, 2e6].map(duration),
+        ["2 s", "599 s", "15 min", "85 h", "23 days"]
+    );
+    let said = two_blocks("").to_string();
+    assert!(said.contains(" steps, one thread a role ("), "{said}");
 }

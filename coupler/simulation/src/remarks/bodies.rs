@@ -1,9 +1,10 @@
 //! Remarks on bodies: what holds them, what they stand on, what they touch.
 
 use super::meet;
+use super::shapes::length;
 use halfstep_scene::geometry::Layout;
 use halfstep_scene::{
-    Body, EffectName, Geometry, Phase, Scene, Shape, SolidModelName, Switch, Void, geometry,
+    Body, EffectName, Geometry, Lattice, Phase, Scene, Shape, SolidModelName, Switch, Void, geometry,
 };
 use std::collections::BTreeSet;
 
@@ -14,6 +15,7 @@ const MOST_LISTED: usize = 8;
 pub(super) fn free(scene: &Scene, bodies: &[Body], all: &mut Vec<String>) {
     let walls = || scene.shapes.iter().filter(|shape| shape.phase == Phase::Wall);
     if walls().next().is_none() {
+        falling(scene, bodies, all);
         return;
     }
     for body in bodies.iter().filter(|body| !body.held) {
@@ -38,6 +40,67 @@ pub(super) fn free(scene: &Scene, bodies: &[Body], all: &mut Vec<String>) {
                 through.join(" and ")
             ));
         }
+    }
+}
+
+/// Bodies on which gravity alone acts: all of them fall as they are, and nothing bends.
+fn falling(scene: &Scene, bodies: &[Body], all: &mut Vec<String>) {
+    let size = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+    if size == 0.0 || scene.fluid.is_some() {
+        return;
+    }
+    let held = |body: &Body| body.held || on_spring(scene, body);
+    let thrown = |body: &Body| body.shapes.iter().any(|&k| scene.shapes[k].velocity != [0.0; 3]);
+    // On what is held others may fall, and what has a velocity is thrown.
+    let Some(first) = bodies.first().filter(|_| !bodies.iter().any(|body| held(body) || thrown(body))) else {
+        return;
+    };
+    let rigid = |body: &Body| {
+        let solid = scene.shapes[body.shapes[0]].solid;
+        solid.is_some_and(|k| scene.solids[k].model.name() == SolidModelName::Rigid)
+    };
+    let (what, is, it) = match bodies.len() {
+        1 => (names(scene, first), "is", "it falls"),
+        n => (format!("{} and {} more of the bodies", names(scene, first), n - 1), "are", "they fall"),
+    };
+    let (as_it_is, remedy) = match bodies.iter().all(rigid) {
+        true => ("", "`joints` and walls hold rigid bodies"),
+        false => (", without bending", "a box of `clamp` holds what is in it"),
+    };
+    all.push(format!(
+        "{what} {is} held by nothing, and the scene has no wall: {it} by {} m until {} s under gravity{as_it_is} \
+         ({remedy})",
+        length(0.5 * size * scene.end_time.powi(2)),
+        scene.end_time
+    ));
+}
+
+/// Copies and pieces of a shape that nothing holds, beside others that a clamp does.
+pub(super) fn held_in_part(scene: &Scene, bodies: &[Body], all: &mut Vec<String>) {
+    for (index, shape) in scene.shapes.iter().enumerate() {
+        let own = || bodies.iter().filter(|body| body.shapes.contains(&index));
+        let free: Vec<&Body> = own().filter(|body| !body.held).collect();
+        let pieces = own().count();
+        if free.is_empty() || free.len() == pieces {
+            continue;
+        }
+        let (is, it, them) =
+            if free.len() == 1 { ("is", "it is", "it") } else { ("are", "they are", "them") };
+        let particles: usize = free.iter().map(|body| body.particles).sum();
+        all.push(match &shape.geometry {
+            Geometry::Moved(moved) if moved.count as usize == pieces => format!(
+                "{} of the {pieces} copies of `{}` {is} free: `repeat` does not take the clamp's box along (`clamp = \
+                 [{{ .. }}, {{ .. }}]`, a box at each copy, holds {them})",
+                free.len(),
+                shape.name
+            ),
+            _ => format!(
+                "`{}` is {pieces} pieces, and no clamp reaches {} of them, {particles} particles: {it} free (one more \
+                 box of `clamp` there holds {them})",
+                shape.name,
+                free.len()
+            ),
+        });
     }
 }
 
@@ -68,7 +131,7 @@ pub(super) fn parted(scene: &Scene, bodies: &[Body], all: &mut Vec<String>) {
 }
 
 /// Contacts of rigid bodies are with whole shapes.
-pub(super) fn voids(scene: &Scene, all: &mut Vec<String>) {
+pub(super) fn voids<const D: usize>(scene: &Scene, all: &mut Vec<String>) {
     let rigid = |k: usize| scene.solids[k].model.name() == SolidModelName::Rigid;
     if scene.voids.is_empty() || !(0..scene.solids.len()).any(rigid) {
         return;
@@ -81,7 +144,9 @@ pub(super) fn voids(scene: &Scene, all: &mut Vec<String>) {
         let around = |shape: &Shape| geometry::bounding_box(shape, scene);
         let cuts = |void: &&Void| {
             let as_shape = Shape { geometry: void.geometry.clone(), ..shape.clone() };
-            index >= void.before && meet(&around(shape), &around(&as_shape), scene)
+            let close = index >= void.before && meet(&around(shape), &around(&as_shape), scene);
+            // What is within a tank's cavity takes nothing of its walls.
+            close && geometry::void_meets::<D>(scene, void, index)
         };
         if let Some(void) = scene.voids.iter().find(cuts) {
             all.push(format!(
@@ -197,9 +262,14 @@ pub(super) fn touching<const D: usize>(
         let names_body = |&&k: &&usize| !scene.shapes[k].body.is_empty();
         let named =
             body.shapes.iter().find(names_body).map_or(String::new(), |_| ", whatever `body` says".into());
+        // What the nodal lattice leaves between them is another remark.
+        let hold = match scene.numerics.lattice {
+            Lattice::Centred => ": they hold together as the material of each does",
+            Lattice::Nodal => "",
+        };
         if body.shapes.len() > 1 {
             all.push(format!(
-                "{} touch and are one continuum of the hypoelastic model{named}: they never part",
+                "{} touch and are one continuum of the hypoelastic model{named}{hold}",
                 names(scene, body)
             ));
         }

@@ -1,5 +1,6 @@
 //! Remarks on numbers that are right and yet hardly meant.
 
+use super::units;
 use halfstep_scene::{Block, Geometry, Scene, geometry};
 
 /// Softer than any gel, stiffer than diamond, Pa.
@@ -68,7 +69,8 @@ pub(super) fn motions(scene: &Scene, all: &mut Vec<String>) {
     for shape in &scene.shapes {
         let Some(motion) = &shape.motion else { continue };
         let angle = motion.swings_by();
-        if angle > std::f64::consts::FRAC_PI_2 {
+        // Of a column in degrees more is said.
+        if angle > std::f64::consts::FRAC_PI_2 && !units::has_degrees(motion) {
             all.push(format!(
                 "the motion of `{}` swings by {} rad, {:.0} degrees: angles are in radians",
                 shape.name,

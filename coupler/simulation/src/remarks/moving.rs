@@ -1,8 +1,10 @@
 //! Remarks on tanks that move: clamps, joints and walls in them that do not go along.
 
+use super::shapes::length;
+use super::water::INSTANTS;
 use super::{meet, overlap};
 use halfstep_scene::geometry::{self, Cells, Layout, SolidPoint};
-use halfstep_scene::{Block, Geometry, Joint, JointKind, Motion, Phase, Scene, Shape};
+use halfstep_scene::{Block, Geometry, Joint, JointKind, Motion, Phase, ProbeKind, Scene, Shape};
 use halfstep_wire::wide;
 
 /// Walls that move, with the boxes around them.
@@ -178,6 +180,62 @@ pub(super) fn walls(scene: &Scene, all: &mut Vec<String>) {
             all.push(format!(
                 "`{}` stands in `{}`, which moves, and {how} (the same `motion` at both takes it along)",
                 wall.name, tank.name
+            ));
+        }
+    }
+}
+
+/// Probes of the fluid that keep their place in a tank that moves.
+pub(super) fn probes(scene: &Scene, all: &mut Vec<String>) {
+    for (tank, around) in tanks(scene) {
+        let Some(motion) = &tank.motion else { continue };
+        let way = |at: [f64; 3]| {
+            let places = (0..=INSTANTS).map(|k| motion.at(scene.end_time * k as f64 / INSTANTS as f64));
+            let ways = places.map(|place| place.displacement_of(at).map(|x| x * x).iter().sum::<f64>());
+            ways.fold(0.0, f64::max).sqrt()
+        };
+        let middle = |axis: usize| 0.5 * (around.min[axis] + around.max[axis]);
+        let mut ride: Vec<(&str, f64)> = Vec::new();
+        let mut stay = ride.clone();
+        for probe in &scene.probes {
+            let (kept, places) = match &probe.kind {
+                ProbeKind::Pressure { at, to, shape: None } => {
+                    (&mut ride, [Some(*at), *to].into_iter().flatten().collect())
+                }
+                ProbeKind::Velocity { at } => (&mut stay, vec![*at]),
+                ProbeKind::WaterLevel { x } => {
+                    (&mut stay, x.iter().map(|&x| [x, middle(1), middle(2)]).collect::<Vec<_>>())
+                }
+                _ => continue,
+            };
+            let inside = |at: &&[f64; 3]| meet(&Block { min: **at, max: **at }, &around, scene);
+            let most = places.iter().filter(inside).map(|at| way(*at)).fold(0.0, f64::max);
+            if most > 0.5 * scene.resolution {
+                kept.push((&probe.name, most));
+            }
+        }
+        if motion.pivot().is_some() {
+            // A frame that turns leaves forces out: there is no better place for them.
+            stay.clear();
+        }
+        for (probes, rides) in [(ride, true), (stay, false)] {
+            let Some(most) = probes.iter().map(|(_, way)| *way).reduce(f64::max) else { continue };
+            let names: Vec<String> = probes.iter().map(|(name, _)| format!("`{name}`")).collect();
+            let (the, them) = match names.len() {
+                1 => ("the probe", "it"),
+                _ => ("the probes", "them"),
+            };
+            let remedy = match rides {
+                true => format!("`shape = \"{}\"` takes {them} along", tank.name),
+                false => format!("seen from a `[frame]` with this motion the tank rests around {them}"),
+            };
+            all.push(format!(
+                "{the} {} {} fixed in space inside of `{}`, which moves by up to {} m there: the tank slides by under \
+                 {them} ({remedy})",
+                names.join(" and "),
+                if names.len() == 1 { "is" } else { "are" },
+                tank.name,
+                length(most)
             ));
         }
     }

@@ -1,14 +1,14 @@
 //! Every shape as asked and as computed.
 
-use super::beams;
 use super::thickness::{self, Thinnest};
+use super::{beams, nodal};
 use halfstep_scene::geometry::{self, Layout, Plate};
-use halfstep_scene::{Geometry, Lattice, Phase, Plane, Scene, Shape, SolidModelName};
+use halfstep_scene::{Geometry, Phase, Plane, Scene, Shape, SolidModelName};
 use serde::{Serialize, Serializer};
 use std::fmt;
 
 /// From which relative difference on a size is remarked.
-const NOTABLE: f64 = 0.02;
+pub(super) const NOTABLE: f64 = 0.02;
 /// The same of a bending stiffness: that of a thickness that much larger.
 const NOTABLY_STIFFER: f64 = 0.06;
 /// From which share of its particles on a loss to other shapes is remarked.
@@ -22,13 +22,13 @@ pub(crate) struct Placed {
     #[serde(serialize_with = "phase_name")]
     pub(super) phase: Phase,
     /// Sizes along the axes that the scene asks for, m; a disc's diameter, a ring's thickness.
-    asked: Vec<f64>,
+    pub(super) asked: Vec<f64>,
     /// The same as computed, m.
     computed: Vec<f64>,
     /// Particles that it has.
-    particles: usize,
+    pub(super) particles: usize,
     /// Particles that lie in shapes that take their places.
-    lost: usize,
+    pub(super) lost: usize,
     /// Of its particles, those that a clamp holds.
     clamped: usize,
     /// Mass, kg (2D: kg/m).
@@ -45,13 +45,16 @@ pub(crate) struct Placed {
     body: Option<String>,
     /// Bending stiffness of a plate that can bend, asked and computed, N m.
     #[serde(skip_serializing_if = "Option::is_none")]
-    bending: Option<[f64; 2]>,
+    pub(super) bending: Option<[f64; 2]>,
     /// The computed one is that of the particles' area: they lie in no rectangle whose second moment is known.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     bending_by_area: bool,
-    /// Deflection of a clamped plate by beam theory under the fluid at rest, and its free length, m.
+    /// Deflection of a clamped plate by beam theory, and its free length, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) bends: Option<[f64; 2]>,
+    /// What bends it so.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) bends_under: Option<String>,
     /// Where it is too thin to hold fluid.
     #[serde(skip)]
     pub(super) thinnest: Option<Thinnest>,
@@ -76,6 +79,10 @@ pub(crate) fn placed<const D: usize>(scene: &Scene, layout: &Layout<D>) -> Vec<P
         let rows = thinnest.map(|thin| thin.thickness / scene.spacing(&scene.shapes[index]));
         // What voids and other shapes leave of a plate.
         shape.rows = shape.rows.map(|whole| rows.map_or(whole, |rows| rows.min(whole)));
+    }
+    for (index, shape) in all.iter_mut().enumerate() {
+        let bends = beams::deflection(scene, layout, index);
+        (shape.bends, shape.bends_under) = bends.map(|bends| (bends.way, bends.under)).unzip();
     }
     give_masses(scene, &mut all);
     all
@@ -111,16 +118,17 @@ fn of_shape<const D: usize>(scene: &Scene, index: usize, [particles, clamped]: [
         Phase::Wall => 0.0,
     };
     let whole = geometry::particles_alone::<D>(scene, index);
-    let cells = |extent: f64| (extent / dx).round() * dx;
+    // The nodal lattice has no particles on the surface of a solid.
+    let missing = f64::from(u8::from(nodal::lacks(scene, shape)));
+    let cells = |extent: f64| ((extent / dx).round() - missing) * dx;
     let copies = match &shape.geometry {
-        Geometry::Moved(moved) => moved.count as usize,
-        _ => 1,
+        Geometry::Moved(moved) => f64::from(moved.count),
+        _ => 1.0,
     };
-    let each = whole / copies;
-    let measure = each as f64 * dx.powi(D as i32);
+    let measure = || geometry::measure_alone::<D>(scene, index) / copies;
     let (asked, computed) = match shape.geometry.unmoved() {
         Geometry::Box(b) if shape.lattice_angle != 0.0 => {
-            (vec![(0..D).map(|a| b.max[a] - b.min[a]).product()], vec![measure])
+            (vec![(0..D).map(|a| b.max[a] - b.min[a]).product()], vec![measure()])
         }
         Geometry::Box(b) | Geometry::Tank { cavity: b, .. } => {
             let asked: Vec<f64> = (0..D).map(|a| b.max[a] - b.min[a]).collect();
@@ -128,17 +136,13 @@ fn of_shape<const D: usize>(scene: &Scene, index: usize, [particles, clamped]: [
             (asked, computed)
         }
         // What has the area (volume) of its particles.
-        Geometry::Disc { radius, .. } => (vec![2.0 * radius], vec![2.0 * equivalent_radius::<D>(each, dx)]),
+        Geometry::Disc { radius, .. } => (vec![2.0 * radius], vec![2.0 * equivalent_radius::<D>(measure())]),
         Geometry::Ring { inner, outer, .. } => {
             let hole = inner.powi(D as i32);
-            let radius = (equivalent_radius::<D>(each, dx).powi(D as i32) + hole).powf(1.0 / D as f64);
+            let radius = (equivalent_radius::<D>(measure()).powi(D as i32) + hole).powf(1.0 / D as f64);
             (vec![outer - inner], vec![radius - inner])
         }
-        // Of a wall's inside there are only the rows that the kernel reaches.
-        Geometry::Polygon(polygon) if shape.phase == Phase::Wall => {
-            (vec![polygon.area()], vec![polygon.area()])
-        }
-        Geometry::Polygon(polygon) => (vec![polygon.area()], vec![measure]),
+        Geometry::Polygon(polygon) => (vec![polygon.area()], vec![measure()]),
         Geometry::Moved(_) => (Vec::new(), Vec::new()),
     };
     let plate = Plate::<D>::of(scene, shape);
@@ -161,7 +165,8 @@ fn of_shape<const D: usize>(scene: &Scene, index: usize, [particles, clamped]: [
         body: (shape.phase == Phase::Solid).then(|| shape.body().to_owned()),
         bending: bending.map(|(both, _)| both),
         bending_by_area: by_area,
-        bends: beams::deflection(scene, shape),
+        bends: None,
+        bends_under: None,
         thinnest: None,
         unit: if !is_measured(shape) {
             "m"
@@ -209,10 +214,10 @@ fn bending<const D: usize>(
     }
 }
 
-/// Radius of the disc or ball that has the measure of so many particles, m.
-fn equivalent_radius<const D: usize>(particles: usize, dx: f64) -> f64 {
+/// Radius of the disc or ball of an area or volume, m.
+fn equivalent_radius<const D: usize>(measure: f64) -> f64 {
     let unit = if D == 2 { std::f64::consts::PI } else { 4.0 / 3.0 * std::f64::consts::PI };
-    dx * (particles as f64 / unit).powf(1.0 / D as f64)
+    (measure / unit).powf(1.0 / D as f64)
 }
 
 impl Placed {
@@ -250,8 +255,8 @@ impl fmt::Display for Placed {
                 write!(f, " asked, {} computed{by}", length(computed))?;
             }
         }
-        if let Some([way, free]) = self.bends {
-            write!(f, ", bends {} of {} m under the fluid at rest", length(way), length(free))?;
+        if let (Some([way, free]), Some(under)) = (self.bends, &self.bends_under) {
+            write!(f, ", bends {} of {} m under {under}", length(way), length(free))?;
         }
         if let Some(body) = self.body.as_ref().filter(|body| **body != self.name) {
             write!(f, ", of body {body}")?;
@@ -295,9 +300,9 @@ pub(super) fn sizes(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
         if (factor - 1.0).abs() < NOTABLE && !bends_otherwise {
             continue;
         }
-        let box_ = matches!(of_scene.geometry.unmoved(), Geometry::Box(_));
-        if shape.phase == Phase::Wall && box_ {
-            // A wall's thickness is nobody's question.
+        let box_or_polygon = matches!(of_scene.geometry.unmoved(), Geometry::Box(_) | Geometry::Polygon(_));
+        if shape.phase == Phase::Wall && box_or_polygon || nodal::lacks(scene, of_scene) {
+            // A wall's thickness is nobody's question; what the nodal lattice lacks is another remark.
             continue;
         }
         let (asked, computed) = (length(shape.asked[axis]), length(shape.computed[axis]));
@@ -326,33 +331,6 @@ pub(super) fn sizes(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
             shape.name,
             unit = shape.unit
         ));
-    }
-}
-
-/// Boxes of solids without a surface of their own particles' making, which the nodal lattice makes smaller: it has no
-/// particles on the surface, and what a particle stands for ends half a spacing from it.
-pub(super) fn nodal(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
-    if scene.numerics.lattice != Lattice::Nodal {
-        return;
-    }
-    let cells = |shape: &Shape| {
-        let model = shape.solid.map(|k| scene.solids[k].model.name());
-        matches!(model, Some(SolidModelName::FiniteElement | SolidModelName::Rigid))
-            && matches!(shape.geometry, Geometry::Box(_))
-    };
-    for (shape, of_scene) in placed.iter().zip(&scene.shapes).filter(|(_, of_scene)| cells(of_scene)) {
-        let dx = scene.spacing(of_scene);
-        let whole: f64 = shape.asked.iter().product();
-        let share = (shape.particles + shape.lost) as f64 * dx.powi(shape.asked.len() as i32) / whole;
-        if (share - 1.0).abs() >= NOTABLE {
-            all.push(format!(
-                "`{}` has {:.0} % of the mass that its size asks for: in the nodal lattice it lacks half a spacing, {} m, \
-                 at each side (numerics.lattice = \"centred\" fills it)",
-                shape.name,
-                100.0 * share,
-                length(0.5 * dx)
-            ));
-        }
     }
 }
 

@@ -237,7 +237,7 @@ fn debris_is_not_known_to_contact() {
     let of = |more: &str| {
         let shape = |name: &str, from: f64| {
             format!(
-                "[[shape]]\nname = \"{name}\"\nphase = \"solid\"\nsolid = \"{name}\"\n\
+                "[[shape]]\nname = \"{name}\"\nphase = \"solid\"\nsolid = \"{name}\"\nvelocity = [0.1, 0.0]\n\
                  box = {{ min = [{from}, 0.0], max = [{}, 0.1] }}\n",
                 from + 0.04
             )
@@ -333,8 +333,9 @@ fn the_face_of_a_clamp_that_cuts_a_row() {
     );
     // Nodal rows lie at whole spacings, so the boundaries between them do not.
     let nodal = "[numerics]\nlattice = \"nodal\"\n";
-    assert_eq!(plain(&[TANK, WATER, &cut, nodal]).len(), 0);
-    assert_eq!(plain(&[TANK, WATER, PLATE, nodal]).len(), 1);
+    let cuts = |parts: &[&str]| plain(parts).iter().filter(|text| text.contains("cuts a row")).count();
+    assert_eq!(cuts(&[TANK, WATER, &cut, nodal]), 0);
+    assert_eq!(cuts(&[TANK, WATER, PLATE, nodal]), 1);
     assert_eq!(plain(&[TANK, WATER, &cut, "[effects]\nclamp-face = \"off\"\n"]), [""; 0]);
 }
 
@@ -510,7 +511,8 @@ fn ballast_is_of_its_body() {
     let ballast = shape("ballast", "body = \"barge\"\ndensity = 2000.0\n", "[0.4, 0.04]");
     let of = |shapes: [&String; 2]| {
         let text = format!(
-            "resolution = 0.02\nend_time = 1.0\n[solid]\nmodel = \"rigid\"\ndensity = 500.0\n{}{}",
+            "resolution = 0.02\nend_time = 1.0\ngravity = [0.0, 0.0]\n[solid]\nmodel = \"rigid\"\n\
+             density = 500.0\n{}{}",
             shapes[0], shapes[1]
         );
         remarks(&parse(&text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}")))

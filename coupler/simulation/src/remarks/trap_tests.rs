@@ -176,8 +176,10 @@ fn what_is_hardly_meant() {
     assert_eq!(scene("", ""), [""; 0]);
     assert_eq!(
         scene("12e6", "2e3"),
-        ["the fluid at rest would bend `plate` by 1.216 m by beam theory, whose free length is 0.09 m: is \
-          solid.youngs_modulus = 2e3 Pa right?"]
+        [
+            "the fluid's full head would bend `plate` by 1.216 m by beam theory, whose free length is 0.09 m (it is dry at \
+          the start: this is fluid that stands at it as high as fluid begins): is solid.youngs_modulus = 2e3 Pa right?"
+        ]
     );
     assert_eq!(
         scene("viscosity = 0.001", "viscosity = 1.0"),

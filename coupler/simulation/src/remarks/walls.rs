@@ -1,57 +1,9 @@
 //! Remarks on walls: how thick they are where the fluid can come, and which way their surface goes.
 
 use super::near;
+use super::reached::{Places, Walls, is_driven, reached};
 use halfstep_scene::geometry::{self, Cells, Layout, cell};
 use halfstep_scene::{Phase, Scene};
-use std::collections::HashSet;
-
-/// Distance within which a place counts as filled by a particle, in spacings: half the diagonal of a cell and some
-/// more.
-const FILLED: f64 = 0.75;
-
-/// The walls' particles, by their positions, m.
-struct Walls<const D: usize> {
-    cells: Cells<[f64; D], D>,
-    dx: f64,
-}
-
-impl<const D: usize> Walls<D> {
-    /// Whether a particle is near a place.
-    fn fill(&self, at: &[f64; D]) -> bool {
-        self.cells.around(at).any(|x| near(x, at, FILLED * self.dx))
-    }
-}
-
-/// The cells of side dx that the fluid can come to without rising: from its particles through what walls leave free, in
-/// the box around all shapes.
-fn reached<const D: usize>(scene: &Scene, layout: &Layout<D>, walls: &Walls<D>) -> HashSet<[i64; D]> {
-    let dx = scene.resolution;
-    let (mut low, mut high) = ([i64::MAX; D], [i64::MIN; D]);
-    for shape in &scene.shapes {
-        let block = geometry::bounding_box(shape, scene);
-        for a in 0..D {
-            low[a] = low[a].min((block.min[a] / dx).floor() as i64);
-            high[a] = high[a].max((block.max[a] / dx).floor() as i64);
-        }
-    }
-    let height = |x: &[f64; D]| -(0..D).map(|a| scene.gravity[a] * x[a]).sum::<f64>();
-    let highest = layout.fluid.iter().map(|p| height(&p.position)).fold(f64::NEG_INFINITY, f64::max);
-    let middle = |k: &[i64; D]| -> [f64; D] { k.map(|k| (k as f64 + 0.5) * dx) };
-    let mut open: Vec<[i64; D]> = layout.fluid.iter().map(|p| cell(&p.position, dx)).collect();
-    let mut seen: HashSet<[i64; D]> = open.iter().copied().collect();
-    while let Some(at) = open.pop() {
-        for side in 0..2 * D {
-            let mut next = at;
-            next[side / 2] += if side % 2 == 0 { 1 } else { -1 };
-            let inside = (0..D).all(|a| low[a] <= next[a] && next[a] <= high[a]);
-            let free = inside && height(&middle(&next)) <= highest && !walls.fill(&middle(&next));
-            if free && seen.insert(next) {
-                open.push(next);
-            }
-        }
-    }
-    seen
-}
 
 /// Part of a wall's velocity across its face from which on it is no belt's.
 const ACROSS: f64 = 0.5;
@@ -87,47 +39,102 @@ pub(super) fn across<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mu
     }
 }
 
+/// A place where a wall is thinner than the kernel's support.
+struct Thin<const D: usize> {
+    shape: usize,
+    at: [f64; D],
+    thickness: f64,
+    /// Free places before it, where fluid would stand.
+    before: [Option<[i64; D]>; 2],
+}
+
+impl<const D: usize> Thin<D> {
+    fn is_wet(&self, reached: &Places<D>) -> bool {
+        self.before.iter().flatten().any(|place| reached.contains(place))
+    }
+}
+
+/// Where walls are thinner than the kernel's support, from either side: a single row has one normal and two faces.
+fn thin_places<const D: usize>(scene: &Scene, layout: &Layout<D>, walls: &Walls<D>) -> Vec<Thin<D>> {
+    let dx = scene.resolution;
+    let support = kernel_support(scene);
+    let mut all = Vec::new();
+    for p in layout.wall.iter().filter(|p| !p.corner) {
+        for side in [1.0, -1.0] {
+            let behind = |way: f64| -> [f64; D] {
+                std::array::from_fn(|a| p.position[a] - side * way * dx * p.normal[a])
+            };
+            // Fluid next to it stands a spacing before it, or a little more where its cell begins.
+            let before = [-1.0, -1.5].map(behind).map(|x| (!walls.fill(&x)).then(|| cell(&x, dx)));
+            if before == [None; 2] {
+                continue;
+            }
+            // Half a spacing lies before the particle, and half a one behind the last place that is filled.
+            let steps = (0..).map(|k| 0.5 * f64::from(k));
+            let filled = steps.take_while(|k| k * dx < support && walls.fill(&behind(*k)));
+            let thickness = filled.count() as f64 * 0.5 * dx;
+            if thickness < support - 0.51 * dx {
+                all.push(Thin { shape: p.shape as usize, at: p.position, thickness, before });
+            }
+        }
+    }
+    all
+}
+
+fn kernel_support(scene: &Scene) -> f64 {
+    2.0 * scene.smoothing_ratio * scene.resolution
+}
+
 /// Walls that are thinner than the kernel's support where the fluid can come.
 pub(super) fn thin<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
     if layout.fluid.is_empty() || layout.wall.is_empty() {
         return;
     }
-    let dx = scene.resolution;
-    let support = 2.0 * scene.smoothing_ratio * dx;
-    let mut walls = Walls { cells: Cells::new(dx), dx };
-    layout.wall.iter().for_each(|p| walls.cells.add(&p.position, p.position));
-    let reached = reached(scene, layout, &walls);
-    let behind = |p: &geometry::WallPoint<D>, way: f64| -> [f64; D] {
-        std::array::from_fn(|a| p.position[a] - way * p.normal[a])
+    let walls = Walls::new(scene, layout);
+    let places = thin_places(scene, layout, &walls);
+    if places.is_empty() {
+        return;
+    }
+    let level = reached(scene, layout, &walls, false);
+    let still = thinnest(scene, &places, &level);
+    let dry = |place: &Thin<D>| still[place.shape].is_none();
+    let above = match places.iter().any(dry) && is_driven(scene, layout, &level) {
+        true => thinnest(scene, &places, &reached(scene, layout, &walls, true)),
+        false => vec![None; scene.shapes.len()],
     };
+    let dx = scene.resolution;
     for (index, shape) in scene.shapes.iter().enumerate() {
-        let mut thinnest: Option<(f64, [f64; D])> = None;
-        for p in layout.wall.iter().filter(|p| p.shape as usize == index && !p.corner) {
-            // Fluid next to it stands a spacing before it, or a little more where its cell begins.
-            let before = [1.0, 1.5].map(|way| behind(p, -way * dx));
-            let wet = |x: &[f64; D]| !walls.fill(x) && reached.contains(&cell(x, dx));
-            if !before.iter().any(wet) {
-                continue;
+        let what = match (still[index], above[index]) {
+            (Some(_), _) => "fluid there is held weakly, and meets fluid behind it",
+            (None, Some(_)) => {
+                "no fluid is there at the start, and what moves the fluid may take it there: the wall holds it weakly"
             }
-            // Half a spacing lies before the particle, and half a one behind the last place that is filled.
-            let filled = (0..).take_while(|k| {
-                f64::from(*k) * 0.5 * dx < support && walls.fill(&behind(p, f64::from(*k) * 0.5 * dx))
-            });
-            let thickness = filled.count() as f64 * 0.5 * dx;
-            if thinnest.is_none_or(|(least, _)| thickness < least) {
-                thinnest = Some((thickness, p.position));
-            }
-        }
-        if let Some((thickness, at)) = thinnest.filter(|(thickness, _)| *thickness < support - 0.51 * dx) {
-            let at: Vec<String> = at.iter().map(|x| (*x as f32).to_string()).collect();
-            all.push(format!(
-                "`{}` is about {:.1} dx thick at [{}], and the fluid's kernel reaches {:.1} dx: fluid there is held \
-                 weakly, and meets fluid behind it",
-                shape.name,
-                thickness / dx,
-                at.join(", "),
-                support / dx
-            ));
+            _ => continue,
+        };
+        let Some((thickness, at)) = still[index].or(above[index]) else { continue };
+        let at: Vec<String> = at.iter().map(|x| (*x as f32).to_string()).collect();
+        all.push(format!(
+            "`{}` is about {:.1} dx thick at [{}], and the fluid's kernel reaches {:.1} dx: {what}",
+            shape.name,
+            thickness / dx,
+            at.join(", "),
+            kernel_support(scene) / dx
+        ));
+    }
+}
+
+/// Where each shape is thinnest among the places that fluid reaches, m, by the shapes' indices.
+fn thinnest<const D: usize>(
+    scene: &Scene,
+    places: &[Thin<D>],
+    reached: &Places<D>,
+) -> Vec<Option<(f64, [f64; D])>> {
+    let mut all: Vec<Option<(f64, [f64; D])>> = vec![None; scene.shapes.len()];
+    for place in places.iter().filter(|place| place.is_wet(reached)) {
+        let least = &mut all[place.shape];
+        if least.is_none_or(|(least, _)| place.thickness < least) {
+            *least = Some((place.thickness, place.at));
         }
     }
+    all
 }

@@ -79,10 +79,7 @@ static FLUID: Table = Table::new(
         .default("\"auto\""),
         VISCOSITY_KEY,
         Key::words("density_diffusion", || words(&read::DIFFUSIONS), "Variant of the density diffusion.")
-            .default(
-                "\"hydrostatic\" with `smoothing_ratio` 1.75 or more, or a free body; else \"delta-sph\"; or the \
-                 preset's",
-            ),
+            .default("\"hydrostatic\", or the preset's"),
         Key::number(
             "density_diffusion_coefficient",
             Range::at_least(0.0).up_to(1.0).why("the usual value is 0.1"),

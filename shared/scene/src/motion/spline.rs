@@ -11,6 +11,19 @@ pub struct Spline {
     values: Vec<f64>,
     /// Second derivatives at the points.
     bends: Vec<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    column: Option<Column>,
+}
+
+/// A column of a file that points come from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Column {
+    /// Path of the file, as the scene has it.
+    pub file: String,
+    /// Title of the column.
+    pub title: String,
+    /// What its numbers were multiplied by.
+    pub scale: f64,
 }
 
 impl Spline {
@@ -31,7 +44,18 @@ impl Spline {
         for k in (1..n.saturating_sub(1)).rev() {
             bends[k] -= upper[k] * bends[k + 1];
         }
-        Self { times, values, bends }
+        Self { times, values, bends, column: None }
+    }
+
+    /// The same with the column that its points come from.
+    #[must_use]
+    pub fn from_column(self, column: Column) -> Self {
+        Self { column: Some(column), ..self }
+    }
+
+    /// The column that its points come from.
+    pub fn column(&self) -> Option<&Column> {
+        self.column.as_ref()
     }
 
     /// Value, rate and second rate at a time.
@@ -82,6 +106,18 @@ impl Spline {
             }
         }
         extent
+    }
+
+    /// Largest value in size of what turns back by more than a quarter of its extent; 0 of what goes one way.
+    pub fn swings_by(&self) -> f64 {
+        let (mut highest, mut lowest) = (f64::NEG_INFINITY, f64::INFINITY);
+        let (mut fall, mut rise) = (0.0_f64, 0.0_f64);
+        for &value in &self.values {
+            (highest, lowest) = (highest.max(value), lowest.min(value));
+            (fall, rise) = (fall.max(highest - value), rise.max(value - lowest));
+        }
+        let (low, high) = self.extent();
+        if fall.min(rise) > 0.25 * (high - low) { high.max(-low) } else { 0.0 }
     }
 
     /// Largest rate in size.
@@ -151,5 +187,14 @@ mod tests {
         let spline = Spline::new(vec![1.0, 3.0], vec![0.0, 1.0]);
         assert_eq!(spline.at(2.0), [0.5, 0.5, 0.0]);
         assert_eq!((spline.extent(), spline.fastest()), ((0.0, 1.0), 0.5));
+    }
+
+    #[test]
+    fn what_turns_back_swings() {
+        let of = |values: [f64; 4]| Spline::new(vec![0.0, 1.0, 2.0, 3.0], values.into()).swings_by();
+        assert!(of([0.0, 1.0, -2.0, 0.0]) >= 2.0, "about a middle");
+        assert!(of([0.0, 3.0, 3.0, 0.0]) >= 3.0, "there and back");
+        assert_eq!(of([0.0, 1.0, 2.0, 3.0]), 0.0, "one way");
+        assert_eq!(of([0.0, 2.0, 1.9, 3.0]), 0.0, "one way with noise");
     }
 }
