@@ -50,13 +50,13 @@ price dam-break --set resolution=0.0028575 --vary resolution=0.00408214285714285
     --vary numerics.cfl=0.2,0.6 --vary smoothing_ratio=1.5 --vary effects.particle-shifting=off \
     --vary numerics.kernel=cubic-spline --vary fluid.density_diffusion=delta-sph,none
 price hydrostatic-plate --until 0.25 --set resolution=0.01666666666666666667 --vary resolution=0.0125,0.025 \
-    --vary solid.model=hypoelastic --vary fluid.density_diffusion=simple
+    --vary solid.model=hypoelastic --vary fluid.density_diffusion=delta-sph,simple
 price elastic-gate --until 0.25 --set resolution=0.00166666666666666667 --set shape.plate.across=5 \
     --vary numerics.precision=mixed \
     --vary resolution=0.00125,0.0025 --vary shape.plate.across=3,4 \
     --vary solid.model=hypoelastic,finite-element --vary solid.sub_steps=20 \
     --vary numerics.cfl=0.2,0.6 \
-    --vary numerics.kernel=cubic-spline --vary fluid.density_diffusion=hydrostatic,simple \
+    --vary numerics.kernel=cubic-spline --vary fluid.density_diffusion=delta-sph,simple \
     --vary fluid.artificial_viscosity.linear=0.02 --vary smoothing_ratio=2
 # The wall goes as deep into the floor as it is thick: whole rows of every spacing, above the floor, too.
 price breaking-wall --until 0.2 --set resolution=0.004 --set 'shape.wall.box.min=[0.286,-0.012]' \
