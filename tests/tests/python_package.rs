@@ -64,3 +64,26 @@ fn a_wheel_has_what_an_index_asks_for() {
         assert!(told.contains(part), "{part}: {told}");
     }
 }
+
+/// The page's table has each example with the lines that it has, and none has more than a hundred.
+#[test]
+fn complete_solids_have_a_hundred_lines_at_most() {
+    let page = std::fs::read_to_string(repository().join("python/README.md")).unwrap();
+    let rows: Vec<(&str, usize)> = page
+        .lines()
+        .filter_map(|line| {
+            let cells: Vec<&str> = line.split('|').map(str::trim).collect();
+            let path = cells.get(1)?.strip_prefix('`')?.strip_suffix('`')?;
+            Some((path, cells.get(3)?.parse().ok()?))
+        })
+        .collect();
+    for (path, lines) in &rows {
+        let text = std::fs::read_to_string(repository().join(path)).unwrap();
+        assert_eq!(text.lines().count(), *lines, "{path}");
+        assert!(*lines <= 100, "{path}");
+    }
+    for folder in std::fs::read_dir(repository().join("python/examples")).unwrap().flatten() {
+        let name = folder.path().strip_prefix(repository()).unwrap().display().to_string();
+        assert!(rows.iter().any(|(path, _)| path.starts_with(&name)), "{name} has no row");
+    }
+}

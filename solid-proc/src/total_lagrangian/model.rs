@@ -180,8 +180,8 @@ impl<const D: usize> TotalLagrangian<D> {
             mass,
             hourglass_modulus: alpha * material.shear_modulus(),
             rigid_clamps,
-            interface_set: match breaks {
-                // Cracks open surfaces everywhere.
+            interface_set: match breaks && (scene.fluid.is_some() || scene.solids.len() > 1) {
+                // Cracks open surfaces everywhere, to water and to other solids.
                 true => (0..points.len() as u32).collect(),
                 false => surface_set(points, &body, 2.0 * scene.smoothing_ratio * scene.resolution, dx),
             },
