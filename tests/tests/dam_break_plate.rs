@@ -3,13 +3,14 @@
 //! Beam theory: a jet of 2 m/s over the whole height of the 12 mm plate (4 kPa) moves its tip by q L^4 / (8 D), which
 //! is 0.6 mm for E = 0.22 GPa, 1.0 mm for a plate of 10 mm, and 10 mm for E = 12 MPa. The plate with E = 1 MPa of the
 //! literature goes 41-49 mm at 0.23-0.26 s (`validation/dam-break-plate/reference`). The total-Lagrangian plate does,
-//! too: 41.5, 43.0 and 42.7 mm @ 0.226-0.241 s with three, four and six particles across. The hypoelastic plate is too
+//! too: 41.4, 43.0 and 42.7 mm @ 0.241 s with three, four and six particles across. The hypoelastic plate is too
 //! soft: 83 mm @ 0.28 s with six.
 //!
 //! The paper's scheme (`preset = "kayaki"`) has a plate of five rows, 10 mm. Its time step of 1e-5 s is 1.77 dx / c_P
 //! for E = 0.22 GPa, where the plate blows up (`tests/tests/divergence.rs`): 5e-6 s there.
 
 use halfstep_tests::{Curve, Finished, RunBuilder, scene};
+use std::ops::Range;
 
 /// When the jet arrives, s: the front's 0.286 m by free fall and spreading, seen in every computation.
 const IMPACT: f64 = 0.12;
@@ -38,26 +39,28 @@ fn tip(what: &str, run: &Finished) -> (Curve, (f64, f64)) {
     (curve, peak)
 }
 
-/// Before the jet arrives nothing moves; then the tip goes downstream, as far as was measured, mm, to a tenth: an
-/// impact is that irregular. With the total-Lagrangian plate that is 0.8 to 0.9 of the jet's load at rest.
-fn stiff(curve: &Curve, (time, peak): (f64, f64), expected: f64) {
+/// Before the jet arrives nothing moves; then the tip goes downstream, as far as was measured, mm, to a part of it: an
+/// impact is that irregular. With the total-Lagrangian plate that is 0.8 of the jet's load at rest. Then the jet holds
+/// the plate bent: the mean from 0.15 to 0.2 s over the peak would be near 0 of one that rings about its place.
+fn stiff(curve: &Curve, (time, peak): (f64, f64), expected: f64, part: f64, held: Range<f64>) {
     assert!(curve.between(0.0, IMPACT).values.iter().all(|x| x.abs() < 0.01), "it moved before it was hit");
-    assert!((peak / expected - 1.0).abs() < 0.1, "{peak} mm, measured {expected} mm");
+    assert!((peak / expected - 1.0).abs() < part, "{peak} mm, measured {expected} mm");
     assert!((0.15..0.2).contains(&time), "{time} s");
-    // A plate that the jet holds bent, and not one that rings about its place, for which it would be near 0: 0.6 to 0.7
-    // measured at 4 mm, 0.81 at 2 mm.
     let mean = curve.between(0.15, 0.2).mean() / peak;
-    assert!((0.4..0.9).contains(&mean), "{mean}");
+    println!("mean over the peak {mean:.3}");
+    assert!(held.contains(&mean), "{mean}");
 }
 
 #[test]
 fn a_stiff_plate_hardly_moves_and_a_softer_one_moves_more() {
     let (curve, peak) = tip("E 0.22 GPa, 4 mm", &plate(0.004, 0.22e9).until(0.2).run());
-    stiff(&curve, peak, 0.50);
+    // 0.458 mm @ 0.178 s and 0.79 measured.
+    stiff(&curve, peak, 0.458, 0.04, 0.77..0.81);
+    assert!((0.170..0.186).contains(&peak.0), "{peak:?}");
     let (soft, soft_peak) = tip("E 12 MPa, 4 mm", &plate(0.004, 12e6).until(0.2).run());
     assert!(soft.between(0.0, IMPACT).values.iter().all(|x| x.abs() < 0.01));
-    // Eighteen times softer: 6.9 mm measured, 14 times as far, since it gives way to the jet.
-    assert!((6.5..7.5).contains(&soft_peak.1), "{soft_peak:?}");
+    // Eighteen times softer: 7.30 mm @ 0.1905 s measured, 16 times as far, since it gives way to the jet.
+    assert!((7.1..7.5).contains(&soft_peak.1) && (0.186..0.195).contains(&soft_peak.0), "{soft_peak:?}");
 }
 
 /// The literature's plate: seven computations peak at 41.4 to 49.1 mm.
@@ -65,9 +68,10 @@ fn a_stiff_plate_hardly_moves_and_a_softer_one_moves_more() {
 fn the_accurate_plate_goes_as_far_as_the_published_ones() {
     let plate = plate(0.004, 1e6).set("solid.poissons_ratio", 0.0).set("solid.model", "total-lagrangian");
     let (_, (time, peak)) = tip("total-Lagrangian, E 1 MPa, 4 mm", &plate.until(0.3).run());
-    assert!((41.4..49.1).contains(&peak), "{peak} mm");
-    // 0.226 s measured; published 0.23 to 0.26 s, and finer 0.241 s.
-    assert!((0.22..0.26).contains(&time), "{time} s");
+    // 41.41 mm measured, the least of the published ones, 41.4 to 49.1 mm; finer it is more.
+    assert!((41.4..41.9).contains(&peak), "{peak} mm");
+    // 0.241 s measured; published 0.231 to 0.255 s.
+    assert!((0.236..0.246).contains(&time), "{time} s");
 }
 
 /// The plate sleeps until the water arrives; nobody sees that in the results, but in the work.
@@ -121,7 +125,7 @@ fn plates_with_the_paper_scheme_at_full_resolution() {
     };
     let (curve, peak) = tip("paper's scheme, E 0.22 GPa, 2 mm", &paper(0.22e9, 5e-6).until(0.2).run());
     println!("beam theory {:.2} mm", beam(0.22e9, 0.01));
-    stiff(&curve, peak, 2.16);
+    stiff(&curve, peak, 2.16, 0.1, 0.4..0.9);
     let (_, peak) = tip("paper's scheme, E 12 MPa, 2 mm", &paper(12e6, 1e-5).until(0.21).run());
     println!("beam theory {:.1} mm", beam(12e6, 0.01));
     // 22.5 mm measured: the hypoelastic plate of five rows is 1.2 to 1.4 times too soft.
@@ -132,9 +136,9 @@ fn plates_with_the_paper_scheme_at_full_resolution() {
 #[ignore = "minutes: full resolution"]
 fn plates_at_full_resolution() {
     let (curve, peak) = tip("E 0.22 GPa, 2 mm", &plate(0.002, 0.22e9).until(0.25).run());
-    stiff(&curve, peak, 0.46);
+    stiff(&curve, peak, 0.46, 0.1, 0.7..0.9);
     let (_, peak) = tip("E 12 MPa, 2 mm", &plate(0.002, 12e6).until(0.25).run());
-    // 7.7 mm measured; 6.9 mm at 4 mm.
+    // 7.7 mm measured with `delta-sph`; 7.3 mm at 4 mm.
     assert!((7.2..8.2).contains(&peak.1), "{peak:?}");
     let run = plate(0.002, 1e6).set("solid.poissons_ratio", 0).until(0.3).run();
     let (curve, _) = tip("E 1 MPa, 2 mm", &run);

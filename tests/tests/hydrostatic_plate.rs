@@ -27,9 +27,10 @@ fn ratios(what: &str, run: &Finished) -> (f64, f64) {
     );
     let load = mean("load.y") / -WEIGHT;
     println!("the plate carries {load:.3} of the water");
-    assert!((load - 1.0).abs() < 0.02, "{load}");
+    // 1.013 measured over the shortest time, 1.004 over 0.15 s.
+    assert!((load - 1.0).abs() < 0.016, "{load}");
     let audit = &run.report.audit;
-    assert!(audit.action_reaction.unwrap() <= 1e-12 && audit.min_gap.unwrap() > 0.3, "{audit:?}");
+    assert!(audit.action_reaction.unwrap() <= 1e-12 && audit.min_gap.unwrap() > 0.9, "{audit:?}");
     (deflection, pressure)
 }
 
@@ -41,18 +42,19 @@ fn a_coarse_hypoelastic_plate_is_two_and_a_half_times_too_soft() {
         .until(0.2)
         .run();
     let (deflection, pressure) = ratios("hypoelastic, 2 across", &run);
-    // 2.68 measured over this time, 2.8 over a longer one: too soft, and no softer than that.
-    assert!((2.6..2.9).contains(&deflection), "{deflection}");
+    // 2.676 measured over this time, 2.8 over a longer one: too soft, and no softer than that.
+    assert!((2.65..2.70).contains(&deflection), "{deflection}");
     // 1.010 measured: what is left of the first swing.
-    assert!((pressure - 1.0).abs() < 0.02, "{pressure}");
+    assert!((1.006..1.014).contains(&pressure), "{pressure}");
 }
 
 #[test]
 fn a_plate_bends_as_theory_says() {
     let run = scene("hydrostatic-plate").set("resolution", 0.05 / 3.0).until(0.08).run();
     let (deflection, pressure) = ratios("3 across", &run);
-    assert!((1.0..1.12).contains(&deflection), "{deflection}");
-    assert!((pressure - 1.0).abs() < 0.05, "{pressure}");
+    // 1.057 and 1.021 measured, over a part of the first swing.
+    assert!((1.05..1.065).contains(&deflection), "{deflection}");
+    assert!((1.016..1.026).contains(&pressure), "{pressure}");
 }
 
 /// The plate's own spacing does not change what the water weighs: over the first period of the water's sound, 4 H / c0.
@@ -63,9 +65,10 @@ fn a_finer_plate_carries_coarse_water() {
     let mean = |name: &str| run.curve(name).mean();
     let (load, deflection) = (mean("load.y") / -WEIGHT, mean("middle.y") / DEFLECTION);
     println!("3 across in water at 2 across: load {load:.3}, deflection {deflection:.3}");
-    assert!((load - 1.0).abs() < 0.01, "{load}");
-    // As with water at three across, and not as with two: 0.89.
-    assert!((1.0..1.12).contains(&deflection), "{deflection}");
+    // 1.0014 measured.
+    assert!((load - 1.0).abs() < 0.003, "{load}");
+    // 1.046 measured: as with water at three across, and not as with two, 0.89.
+    assert!((1.04..1.052).contains(&deflection), "{deflection}");
 }
 
 #[test]

@@ -6,14 +6,14 @@
 
 use halfstep_tests::{Finished, scene};
 use halfstep_wire::frame::FLUID;
+use std::ops::RangeInclusive;
 
 const GRAVITY: f64 = 9.81;
 const DEPTH: f64 = 0.3;
 /// Mass times g times half the depth, J/m.
 const POTENTIAL_ENERGY: f64 = 1000.0 * 0.5 * DEPTH * GRAVITY * 0.5 * DEPTH;
-/// Largest deviation from rho g depth: 2.3 % at 20 mm and 1.6 % at 10 mm with A = 1; layers 0.4 to 1.0 % too much, by
-/// the kernel's sums near the walls.
-const TOLERANCE: f64 = 0.024;
+/// Pressures of layers over rho g depth: 0.4 to 1.0 % too much, by the kernel's sums near the walls.
+const LAYERS: RangeInclusive<f64> = 1.002..=1.012;
 
 /// Pressure by depth over rho g depth in the last frame: means over layers of 2 cm, from 0.1 m below the surface.
 fn profile(run: &Finished) -> Vec<f64> {
@@ -34,20 +34,22 @@ fn profile(run: &Finished) -> Vec<f64> {
         .collect()
 }
 
-fn pressure_is_hydrostatic(run: &Finished) {
+/// With the largest deviation of the probe: that of the first waves of sound.
+fn pressure_is_hydrostatic(run: &Finished, most: f64) {
     let probe = run.curve("depth.pressure").values.into_iter();
     let expected = 1000.0 * GRAVITY * 0.2;
     let worst = probe.map(|p| (p / expected - 1.0).abs()).fold(0.0, f64::max);
     let profile = profile(run);
     println!("pressure over rho g depth: probe within {:.2} %; layers {profile:.3?}", 100.0 * worst);
-    assert!(worst < TOLERANCE, "{worst}");
-    assert!(profile.iter().all(|ratio| (ratio - 1.0).abs() < TOLERANCE), "{profile:?}");
+    assert!(worst < most, "{worst}");
+    assert!(profile.iter().all(|ratio| LAYERS.contains(ratio)), "{profile:?}");
 }
 
 #[test]
 fn water_at_rest_keeps_its_pressure_and_settles() {
     let run = scene("hydrostatic-tank").set("resolution", 0.02).until(4.0).run();
-    pressure_is_hydrostatic(&run);
+    // 2.18 % measured.
+    pressure_is_hydrostatic(&run, 0.0235);
     let energy = run.curve("water.energy");
     let (time, most) = energy.peak();
     let last = energy.between(3.8, 4.0).mean();
@@ -56,17 +58,20 @@ fn water_at_rest_keeps_its_pressure_and_settles() {
         most / POTENTIAL_ENERGY,
         last / POTENTIAL_ENERGY
     );
-    assert!(most < 1e-4 * POTENTIAL_ENERGY);
-    assert!(last < 0.2 * most, "it decays");
-    assert!((run.curve("level.level").at(4.0) - DEPTH).abs() < 0.01 * DEPTH);
+    // 1.16e-5 and 2.3e-7 of the potential energy, and 0.2 % of the depth measured.
+    assert!(most < 1.4e-5 * POTENTIAL_ENERGY, "{most}");
+    assert!(last < 4e-7 * POTENTIAL_ENERGY, "{last}");
+    assert!((run.curve("level.level").at(4.0) - DEPTH).abs() < 0.003 * DEPTH);
 }
 
 #[test]
 fn motion_decays_where_the_lattice_holds() {
     let run = scene("hydrostatic-tank").set("fluid.artificial_viscosity.linear", 1).until(1.0).run();
-    pressure_is_hydrostatic(&run);
+    // 1.60 % measured.
+    pressure_is_hydrostatic(&run, 0.017);
     let energy = run.curve("water.energy");
     let (first, last) = (energy.between(0.0, 0.2).peak().1, energy.between(0.8, 1.0).peak().1);
     println!("kinetic energy: most {first:.1e} J before 0.2 s, {last:.1e} J after 0.8 s");
-    assert!(last < 0.5 * first);
+    // 3.5e-5 J and 2.2e-6 J measured.
+    assert!(first < 4.2e-5 && last < 0.1 * first, "{first} {last}");
 }

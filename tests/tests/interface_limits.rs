@@ -56,13 +56,13 @@ shape = "plug"
     )
 }
 
-/// Bands: a half per cent about what is measured; 1 is right.
+/// Bands: 0.3 % about what is measured; 1 is right.
 #[test]
 fn walls_beside_a_plug_carry_some_of_its_load() {
-    for (width, part) in [(0.1, 0.946), (0.2, 0.973)] {
+    for (width, part) in [(0.1, 0.948), (0.2, 0.974), (0.4, 0.987)] {
         let found = mean(&plug(width), 0.01, 1.0, 1.5) / (-1000.0 * 9.81 * 0.3 * width);
         println!("{width} m wide: {found:.4} of the weight");
-        assert!((found - part).abs() < 0.005, "{width} m wide: {found}");
+        assert!((found - part).abs() < 0.003, "{width} m wide: {found}");
     }
 }
 
@@ -155,7 +155,17 @@ at = [0.05, 0.05]
 /// measured; 1 is right, and finer is nearer.
 #[test]
 fn a_bar_under_pressure_is_shortened_too_little() {
-    for (dx, part) in [(0.01, 0.870), (0.005, 0.933)] {
+    shortened([(0.01, 0.870), (0.005, 0.933)]);
+}
+
+#[test]
+#[ignore = "a minute: 40 particles across"]
+fn a_finer_bar_under_pressure_is_shortened_better() {
+    shortened([(0.0025, 0.959)]);
+}
+
+fn shortened<const N: usize>(measured: [(f64, f64); N]) {
+    for (dx, part) in measured {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("bar.toml");
         std::fs::write(&path, BAR).unwrap();

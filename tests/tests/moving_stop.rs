@@ -68,10 +68,14 @@ fn a_block_falls_freely_once_its_floor_is_gone() {
         println!(
             "{name}: held to {held:.1e} m; {from:.5} m, {speed:.4} m/s then; free fall to {worst:.1e} m"
         );
-        assert!(held < 1e-4, "{name}: {held} m");
-        // What is left of the contact while the floor leaves its reach slows the fall a little.
-        assert!((speed / (-GRAVITY * (FREE - 0.05)) - 1.0).abs() < 0.05, "{name}: {speed} m/s");
-        assert!(worst < 1e-5, "{name}: {worst} m");
+        // 2.3e-5 and 3.0e-5 m measured.
+        assert!(held < 4e-5, "{name}: {held} m");
+        // What contact does while the floor leaves its reach: 0.958 and 1.004 of free fall measured.
+        let fall = speed / (-GRAVITY * (FREE - 0.05));
+        let measured = if name == "hypoelastic" { 1.004 } else { 0.958 };
+        assert!((fall - measured).abs() < 0.01, "{name}: {fall} of free fall");
+        // Round-off: both schemes are exact under gravity alone.
+        assert!(worst < 1e-10, "{name}: {worst} m");
     }
 }
 
@@ -87,13 +91,15 @@ fn a_floor_that_rises_takes_a_block_along() {
             last = height;
         });
         println!("{name}: {last:.4} m up, at up to {fastest:.2} m/s");
-        // At least with the floor, 0.05 m; an impact without loss would throw it at twice the floor's speed.
-        assert!((0.049..0.1).contains(&last) && (1.0..2.0).contains(&fastest), "{name}: {last} {fastest}");
+        // An impact without loss throws it at twice the floor's speed, to almost 0.1 m. Measured: 80.3 and 72.2 mm, and
+        // 1.885 and 1.717 m/s.
+        let [way, speed] = if name == "hypoelastic" { [0.0722, 1.717] } else { [0.0803, 1.885] };
+        assert!((last - way).abs() < 0.001 && (fastest - speed).abs() < 0.02, "{name}: {last} {fastest}");
     }
 }
 
 /// Particles of spacing dx on wall particles of 2 dx: surfaces meet at 1.5 dx, and between two wall particles a body
-/// may sink in by 0.4 dx.
+/// may sink in by 0.4 dx: here by 0.19 and 0.21 dx. It comes back with 0.934 and 0.656 of its speed.
 #[test]
 fn a_body_finer_than_the_wall_stops_at_its_surface() {
     for (name, build) in BUILDS {
@@ -110,7 +116,9 @@ fn a_body_finer_than_the_wall_stops_at_its_surface() {
             last = velocity;
         });
         println!("{name}: {deepest:.4} m, then {last:.4} m/s");
-        assert!(deepest > -0.004 && last > -0.01, "{name}: {deepest} m, {last} m/s of -1 m/s");
+        let [depth, speed] = if name == "hypoelastic" { [-0.00206, 0.656] } else { [-0.00192, 0.934] };
+        assert!((deepest - depth).abs() < 1e-4, "{name}: {deepest} m");
+        assert!((last - speed).abs() < 0.02, "{name}: {last} m/s of -1 m/s");
     }
 }
 

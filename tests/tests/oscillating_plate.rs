@@ -44,12 +44,12 @@ fn finite_elements_converge_to_the_reference() {
 /// One, two and four elements across: +0.8, -0.5 and -0.3 % of the period of elasticity. No locking.
 #[test]
 fn the_finite_element_solid_swings_right_with_one_element_across() {
-    for (across, most) in [(1, 0.010), (2, 0.007), (4, 0.004)] {
+    for (across, measured) in [(1, 0.0083), (2, -0.0051), (4, -0.0031)] {
         let run = plate(0.02 / f64::from(across), "finite-element");
         let period = (1.0 + error(&format!("finite elements, {across} across"), &run)) * PERIOD;
         let to_elasticity = period / ELASTICITY - 1.0;
         println!("{:+.2} % to elasticity", 100.0 * to_elasticity);
-        assert!(to_elasticity.abs() < most, "{to_elasticity}");
+        assert!((to_elasticity - measured).abs() < 0.001, "{to_elasticity}");
     }
 }
 
@@ -61,8 +61,9 @@ fn error_to_elasticity(across: u32) -> f64 {
     println!("{:+.2} % to elasticity", 100.0 * error);
     // It comes back to where it was straight with all of its energy: each half period.
     let energy = run.curve("plate.energy");
+    // 0.9975 to 0.9985 measured at 3 to 10 across.
     let again = energy.between(0.1, 0.16).peak().1 / energy.values[0];
-    assert!((again - 1.0).abs() < 0.01, "{again}");
+    assert!((0.996..1.0).contains(&again), "{again}");
     error
 }
 
@@ -90,17 +91,17 @@ fn error(what: &str, run: &Finished) -> f64 {
 
 #[test]
 fn the_period_at_10_across() {
-    // The paper's kernel. Measured: 19 %.
+    // The paper's kernel. 19.6 % of thin-plate theory measured, 19.0 % of elasticity.
     let error = hypoelastic_error(10, "cubic-spline");
-    assert!((0.17..0.20).contains(&error), "{error}");
+    assert!((0.193..0.199).contains(&error), "{error}");
 }
 
 #[test]
 fn the_total_lagrangian_period_from_3_to_10_across() {
-    // Measured: 1.9, 0.9 and 0.3 %.
-    let [three, five, ten] = [3, 5, 10].map(error_to_elasticity);
-    assert!(three < 0.025 && five < 0.012 && ten < 0.005, "{three} {five} {ten}");
-    assert!(three > five && five > ten && ten > -0.002, "it converges: {three} {five} {ten}");
+    for (across, measured) in [(3, 0.0038), (5, 0.0022), (10, 0.0013)] {
+        let found = error_to_elasticity(across);
+        assert!((found - measured).abs() < 0.0004, "{across} across: {found}");
+    }
 }
 
 #[test]
@@ -118,7 +119,8 @@ fn the_period_converges() {
 #[ignore = "minutes: 20 particles across"]
 fn the_total_lagrangian_period_converges() {
     let [ten, twenty] = [10, 20].map(error_to_elasticity);
-    assert!(twenty.abs() < 0.6 * ten.abs(), "{twenty} after {ten}");
+    // 0.13 and 0.04 % measured.
+    assert!((twenty - 0.0004).abs() < 0.0003 && twenty < 0.5 * ten, "{twenty} after {ten}");
 }
 
 /// Complex modulus of bending in plane strain, E' = 4 G* (3 K + G*) / (3 K + 4 G*), as tan delta: of a plate whose arm
@@ -157,7 +159,8 @@ fn a_relaxing_plate_swings_out_by_its_loss_angle() {
     let relaxing = 1.0 - 1.0 / f64::from(across * across);
     let theory = std::f64::consts::PI * tan_delta(g, tau, 2.0 * std::f64::consts::PI / period) * relaxing;
     println!("period {period:.4} s, log decrement {decrement:.4}, theory {theory:.4}");
-    assert!((decrement / theory - 1.0).abs() < 0.03, "{decrement} {theory}");
+    // 0.978 measured.
+    assert!((0.97..0.986).contains(&(decrement / theory)), "{decrement} {theory}");
 }
 
 /// Plane stress with E and nu is plane strain with E (1 + 2 nu) / (1 + nu)² and nu / (1 + nu): finite elements know the

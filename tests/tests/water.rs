@@ -143,15 +143,15 @@ fn linear_theory_of_the_lifted_block() {
 #[test]
 fn a_lifted_block_swings() {
     let (time, depth) = heave(0.02, 1.5);
-    within("lifted block at 20 mm, first trough, mm", 1e3 * depth, -3.1..=-2.9);
-    within("its instant over that of linear theory", time / 0.364, 1.0..=1.02);
+    within("lifted block at 20 mm, first trough, mm", 1e3 * depth, -3.06..=-2.96);
+    within("its instant over that of linear theory", time / 0.364, 1.004..=1.014);
 }
 
 #[test]
 #[ignore = "long: make validate"]
 fn a_lifted_block_swings_finer() {
     for (dx, depth_band, time_band) in
-        [(0.01, -4.05..=-3.85, 1.005..=1.02), (0.005, -4.5..=-4.27, 1.005..=1.02)]
+        [(0.01, -4.0..=-3.9, 1.009..=1.019), (0.005, -4.44..=-4.34, 1.006..=1.016)]
     {
         let (time, depth) = heave(dx, 1.5);
         within(&format!("lifted block at {dx} m, first trough, mm"), 1e3 * depth, depth_band);
@@ -163,10 +163,11 @@ fn a_lifted_block_swings_finer() {
 #[test]
 #[ignore = "long: make validate"]
 fn a_lifted_block_swings_in_water_with_a_wide_kernel() {
-    for (dx, depth_band) in [(0.01, -3.95..=-3.7), (0.005, -4.4..=-4.2)] {
+    // The target is 15 % of -5.03 mm at 5 mm, -4.27 mm: the band does not reach past it.
+    for (dx, depth_band) in [(0.01, -3.78..=-3.68), (0.005, -4.35..=-4.27)] {
         let (time, depth) = heave(dx, 2.0);
         within(&format!("lifted block at {dx} m, wide kernel, first trough, mm"), 1e3 * depth, depth_band);
-        within("its instant over that of linear theory", time / 0.364, 1.005..=1.02);
+        within("its instant over that of linear theory", time / 0.364, 1.009..=1.019);
     }
 }
 
@@ -242,12 +243,12 @@ fn the_guard_does_not_brake_a_run_up() {
     within("pressure over that without guard at 20 mm", pressure, 0.855..=0.885);
 }
 
-/// The target is 5 %.
+/// The target is 5 %. A jet comes apart at single particles: 2 % about the means measured.
 #[test]
 #[ignore = "long: make validate"]
 fn the_guard_does_not_brake_a_run_up_finer() {
     for (dx, widths, jets, pressures) in
-        [(0.01, 5, 0.95..=1.05, 0.97..=0.99), (0.005, 3, 0.95..=1.05, 0.985..=1.01)]
+        [(0.01, 5, 1.01..=1.05, 0.97..=0.99), (0.005, 3, 0.96..=1.0, 0.986..=1.006)]
     {
         let [jet, pressure] = guard_over_none(dx, widths);
         within(&format!("jet over that without guard at {dx} m"), jet, jets);
@@ -279,16 +280,16 @@ fn standing_wave(dx: f64) -> (f64, f64) {
 #[test]
 fn a_standing_wave_has_its_period() {
     let (period, decay) = standing_wave(0.025);
-    within("standing wave at 25 mm, period over theory", period, 0.993..=1.0);
-    within("its decay over 2 k² nu", decay, 0.96..=0.99);
+    within("standing wave at 25 mm, period over theory", period, 0.993..=0.997);
+    within("its decay over 2 k² nu", decay, 0.966..=0.986);
 }
 
 #[test]
 #[ignore = "long: make validate"]
 fn a_standing_wave_has_its_period_finer() {
     let (period, decay) = standing_wave(0.0125);
-    within("standing wave at 12.5 mm, period over theory", period, 0.993..=0.999);
-    within("its decay over 2 k² nu", decay, 1.0..=1.08);
+    within("standing wave at 12.5 mm, period over theory", period, 0.994..=0.998);
+    within("its decay over 2 k² nu", decay, 0.995..=1.015);
 }
 
 // ---- A paddle's waves ---------------------------------------------------------------------------------------------
@@ -311,13 +312,13 @@ fn paddle(dx: f64) -> f64 {
 
 #[test]
 fn a_paddle_makes_its_waves() {
-    within("paddle at 20 mm, height over theory", paddle(0.02), 0.89..=0.915);
+    within("paddle at 20 mm, height over theory", paddle(0.02), 0.895..=0.915);
 }
 
 #[test]
 #[ignore = "long: make validate"]
 fn a_paddle_makes_its_waves_finer() {
-    within("paddle at 10 mm, height over theory", paddle(0.01), 0.955..=0.985);
+    within("paddle at 10 mm, height over theory", paddle(0.01), 0.958..=0.978);
 }
 
 // ---- Taylor and Green's vortex ------------------------------------------------------------------------------------
@@ -330,14 +331,30 @@ fn vortex(dx: f64) -> f64 {
 
 #[test]
 fn a_vortex_decays_by_its_viscosity() {
-    within("vortex at 40 mm, energy over the exact one", vortex(0.04), 0.985..=1.0);
+    within("vortex at 40 mm, energy over the exact one", vortex(0.04), 0.988..=0.998);
 }
 
 #[test]
 #[ignore = "long: make validate"]
 fn a_vortex_decays_by_its_viscosity_finer() {
-    within("vortex at 20 mm, energy over the exact one", vortex(0.02), 0.997..=1.011);
-    within("vortex at 10 mm, energy over the exact one", vortex(0.01), 1.0..=1.013);
+    within("vortex at 20 mm, energy over the exact one", vortex(0.02), 0.997..=1.007);
+    within("vortex at 10 mm, energy over the exact one", vortex(0.01), 1.0..=1.01);
+}
+
+/// A is worth the viscosity A h c0 / 16: the decay of A = 1 less that of A = 0.5, in which walls and pressure cancel,
+/// over 4 k² nu. 1.03 measured, while the lattice holds.
+#[test]
+fn artificial_viscosity_is_worth_a_sixteenth_of_its_product() {
+    let rate = |linear: f64| {
+        let run =
+            scene("taylor-green").set("resolution", 0.04).set("fluid.artificial_viscosity.linear", linear);
+        let run = run.set("effects.viscosity", "off").set("effects.wall-guard", "off");
+        let energy = run.until(0.3).in_process().run().curve("water.energy");
+        (energy.at(0.0) / energy.at(0.3)).ln() / 0.3
+    };
+    let (h, sound, k) = (0.08, 10.0, std::f64::consts::PI);
+    let nu = (1.0 - 0.5) * h * sound / 16.0;
+    within("worth of A over A h c0 / 16", (rate(1.0) - rate(0.5)) / (4.0 * k * k * nu), 1.02..=1.04);
 }
 
 // ---- Corners ------------------------------------------------------------------------------------------------------

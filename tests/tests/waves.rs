@@ -5,8 +5,8 @@ use halfstep_tests::{Curve, run, scene};
 use std::f64::consts::TAU;
 use std::path::Path;
 
-/// Three particles high: the height is held to a band, and the celerity to sqrt(g (d + H)), as near as levels that go
-/// by whole particles tell when a crest passes: 0.03 s at each gauge, 8 % together. sqrt(g d) is 12 % less.
+/// Three particles high. Heights to 0.7 mm about what is measured, 58.3 and 55.9 mm of 60, and the celerity to 1 %
+/// about 0.986 of sqrt(g (d + H)); sqrt(g d) is 0.877 of it.
 #[test]
 fn a_solitary_wave_has_its_height_and_celerity() {
     let run = scene("solitary-wave-wall")
@@ -25,9 +25,9 @@ fn a_solitary_wave_has_its_height_and_celerity() {
     let celerity = 1.0 / (passes[1] - passes[0]);
     let theory = (9.81 * 0.26_f64).sqrt();
     println!("celerity {celerity:.3} of {theory:.3} m/s, crests at {heights:?} of 0.26 m");
-    assert!((celerity / theory - 1.0).abs() < 0.08, "{celerity}");
-    for level in heights {
-        assert!((level - 0.26).abs() < 0.2 * 0.06, "{level}");
+    assert!((celerity / theory - 0.986).abs() < 0.01, "{celerity}");
+    for (level, measured) in heights.into_iter().zip([0.2583, 0.2559]) {
+        assert!((level - measured).abs() < 0.0007, "{level}");
     }
 }
 
@@ -51,13 +51,14 @@ fn a_beach_takes_what_it_says() {
     let taken: f64 = lengths.zip(means).map(|(dt, mean)| 2.0 * sigma * dt * mean).sum();
     let ledger = beach.curve("left.beach").at(2.4);
     println!("the beach took {taken:.4} J/m, in the ledger {ledger:.4} J/m");
-    assert!((ledger / taken + 1.0).abs() < 0.01, "{ledger} {taken}");
+    assert!((ledger / taken + 1.0).abs() < 1e-3, "{ledger} {taken}");
     let damped = kinetic(beach);
     // The mean of exp(-sigma t) over the window, in which the wave goes once round.
     let decay = |t: f64| (-sigma * t).exp();
     let expected = (decay(1.2) - decay(2.4)) / (sigma * 1.2);
     println!("kinetic energy {:.4} of {expected:.4}", damped / free);
-    assert!((damped / free / expected - 1.0).abs() < 0.03, "{damped} {free} {expected}");
+    // 0.994 measured.
+    assert!((0.985..1.003).contains(&(damped / free / expected)), "{damped} {free} {expected}");
 }
 
 const DEPTH: f64 = 0.2;
@@ -116,8 +117,8 @@ fn faded(curve: &Curve) -> Curve {
     Curve { times: curve.times.clone(), values }
 }
 
-/// Ten particles deep, waves of a particle's height: the paddle of `scenes/wave-paddle.toml` makes 0.90 of its height
-/// at this spacing, and so does this one, whose stroke follows from the height.
+/// Ten particles deep, waves of a particle's height: the paddle of `scenes/wave-paddle.toml` makes 0.905 of its height
+/// at this spacing, and this one, whose stroke follows from the height, 0.926.
 #[test]
 fn regular_waves_have_the_height_that_was_asked_for() {
     let (level, paddle) = waves("{ wave = \"regular\", height = 0.02, period = 0.9, depth = 0.2 }", 5.9);
@@ -127,7 +128,7 @@ fn regular_waves_have_the_height_that_was_asked_for() {
     assert!((stroke - 0.02 / 1.154).abs() < 2e-5, "{stroke}");
     let height = 2.0 * part(&level.between(3.2, 5.9), TAU / 0.9);
     println!("height {:.3} of the one asked for", height / 0.02);
-    assert!((0.86..0.94).contains(&(height / 0.02)), "{height}");
+    assert!((0.916..0.936).contains(&(height / 0.02)), "{height}");
 }
 
 /// A sea of JONSWAP by its significant height, four standard deviations of the level, beside what linear theory makes
