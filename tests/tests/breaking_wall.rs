@@ -26,15 +26,17 @@ fn a_wall_that_holds_is_one_that_cannot_break() {
 #[test]
 #[ignore = "a minute"]
 fn the_wall_breaks_alike_in_processes_and_threads_and_its_ledger_is_closed() {
-    let broken = coarse().until(0.24).run();
+    // Most of the ledger's rest comes when the fragments lie down, at 0.28 s.
+    let broken = coarse().until(0.3).run();
     assert_eq!(broken.report.status, Some(RunStatus::Finished));
     assert!(broken.curve("pieces.bodies").peak().1 >= 2.0);
-    let threads = coarse().until(0.24).in_process().threads(1).run();
+    let threads = coarse().until(0.3).in_process().threads(1).run();
     assert_eq!(broken.state_hash(), threads.state_hash());
     // What nobody gave the wall, over what the water gave it.
-    let rest = broken.curve("ledger.integration").peak().1;
-    let given = broken.curve("ledger.interface-pressure").peak().1;
-    assert!(rest.abs() < 0.01 * given, "{rest} of {given}");
+    let largest = |name: &str| broken.curve(name).values.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+    let (rest, given) = (largest("ledger.integration"), largest("ledger.interface-pressure"));
+    println!("rest of the ledger {rest} J, given by the water {given} J");
+    assert!(rest < 0.012 * given, "{rest} of {given}");
     // Beam theory lets it break under an even pressure of 3 kPa, a jet of 2.4 m/s, which is there 30 ms after the water
     // (0.12 s); a spacing of 2 mm breaks 3 % later. The first two of three rows take G_f times their length, and
     // what swings: 1.12 measured.
@@ -103,6 +105,11 @@ kind = "displacement"
 at = [0.01, 0.22]
 "#;
 
+/// Spacing, m, G_f, J/m², and the depth at the first damage and at the cut through half of the wall over that of beam
+/// theory, as measured.
+const MEASURED: [(f64, f64, [f64; 2]); 3] =
+    [(0.005, 0.6, [0.981, 0.983]), (0.0025, 0.6, [0.976, 1.042]), (0.0025, 0.4, [0.976, 1.009])];
+
 /// Under water of depth d a thin wall has 6 M / t² = rho g d³ / t² at its foot, and its own weight per area holds it
 /// together.
 #[test]
@@ -113,15 +120,19 @@ fn slowly_rising_water_breaks_a_wall_at_the_depth_of_beam_theory() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("rising.toml");
     std::fs::write(&path, RISING).unwrap();
-    let run = scene_at(&path).run();
-    let level = run.curve("depth.level-1");
-    let at = |time: f64| level.at(time) / depth;
-    let first = at(run.curve("crack.energy").first_above(f64::MIN_POSITIVE).unwrap());
-    let broken = at(run.curve("opened.area").first_above(0.5 * thickness).unwrap());
-    println!("first damage at {first}, cut through half at {broken} of the depth");
-    // 0.982 and 0.984 measured.
-    assert!((first - 1.0).abs() < 0.05, "first damage at {first} of the depth");
-    assert!((broken - 1.0).abs() < 0.1, "broken at {broken} of the depth");
+    // t f_t² / (E G_f) is 3.3, 3.3 and 5: with 4 particles across it has to stay below 4.
+    for (resolution, energy, [first_is, broken_is]) in MEASURED {
+        let wall = scene_at(&path).set("resolution", resolution).set("solid.fracture.energy", energy);
+        let run = wall.until(2.6).run();
+        let (level, taken) = (run.curve("depth.level-1"), run.curve("crack.energy"));
+        let at = |time: f64| level.at(time) / depth;
+        assert_eq!(taken.at(level.first_above(0.85 * depth).unwrap()), 0.0, "damaged at 85 % of the depth");
+        let first = at(taken.first_above(f64::MIN_POSITIVE).unwrap());
+        let broken = at(run.curve("opened.area").first_above(0.5 * thickness).unwrap());
+        println!("{resolution} m, {energy} J/m²: first damage at {first}, cut through half at {broken}");
+        assert!((first - 1.0).abs() < 0.05 && (first - first_is).abs() < 0.015, "first damage at {first}");
+        assert!((broken - 1.0).abs() < 0.1 && (broken - broken_is).abs() < 0.03, "broken at {broken}");
+    }
 }
 
 /// Until the first wall has broken and lies on the second.
