@@ -6,7 +6,7 @@ use crate::roles::probes_of;
 pub use halfstep_interface::contact::WallContact;
 use halfstep_output::{Frame, FramePoint, FrameWriter, OutputError};
 use halfstep_scene::geometry::{self, holds, nearest};
-use halfstep_scene::{BodyQuantity, Geometry, ProbeKind, Scene, Spot};
+use halfstep_scene::{BodyQuantity, Phase, ProbeKind, Scene, Shape, Spot};
 use halfstep_wire::Name;
 use halfstep_wire::frame::{body_of, mean_stress, von_mises};
 use halfstep_wire::protocol::{ForceRecord, StateRecord};
@@ -19,10 +19,8 @@ pub struct ExternalSolid {
     kinds: Vec<ProbeKind>,
     dimension: usize,
     /// Where the scene's shapes are, and how far outside of its shape a particle may lie, m.
-    bodies: Vec<Geometry>,
+    shapes: Vec<Shape>,
     margin: f64,
-    /// Which body each shape is part of.
-    body_names: Vec<String>,
     /// The scene has it as a model that strains.
     strains: bool,
     /// By probe, the angle at the last row, rad.
@@ -45,9 +43,8 @@ impl ExternalSolid {
             writer: FrameWriter::start(folder, name.as_str())?,
             kinds: probes_of(scene, place).map(|probe| probe.kind.clone()).collect(),
             dimension: scene.dimension,
-            bodies: scene.shapes.iter().map(|shape| shape.geometry.clone()).collect(),
+            shapes: scene.shapes.clone(),
             margin: 0.5 * scene.resolution,
-            body_names: scene.shapes.iter().map(|shape| shape.body().to_owned()).collect(),
             strains: scene.solids[place - usize::from(scene.fluid.is_some())].rigid().is_none(),
             turned: vec![0.0; probes_of(scene, place).count()],
             first: Vec::new(),
@@ -79,6 +76,7 @@ impl ExternalSolid {
         self.values.clear();
         let of_probes = self.kinds.iter().zip(&self.chosen).zip(&mut self.turned);
         for ((kind, chosen), turned) in of_probes {
+            let parts = kind.components(self.dimension).0.len();
             match kind {
                 ProbeKind::Displacement { .. } => {
                     for d in 0..self.dimension {
@@ -107,16 +105,14 @@ impl ExternalSolid {
                     let stress = mean_stress(chosen.iter().map(|&i| &records[i]));
                     self.values.extend(&stress[..if self.dimension == 2 { 4 } else { 6 }]);
                 }
-                // Its records say nothing of its strain, nor of its inside.
-                ProbeKind::Strain { .. } | ProbeKind::CauchyStress { .. } => {
-                    let parts = kind.components(self.dimension).0.len();
-                    self.values.extend(std::iter::repeat_n(f64::NAN, parts));
-                }
-                // Its particles say nothing of what its inside stores.
-                ProbeKind::StrainEnergy | ProbeKind::CrackEnergy | ProbeKind::CrackArea => {
-                    self.values.push(f64::NAN)
-                }
-                ProbeKind::Bodies => self.values.extend([f64::NAN; 2]),
+                // Its records say nothing of its strain, nor of its inside and what that stores.
+                ProbeKind::Strain { .. }
+                | ProbeKind::CauchyStress { .. }
+                | ProbeKind::StrainEnergy
+                | ProbeKind::CrackEnergy
+                | ProbeKind::CrackArea
+                | ProbeKind::Bodies
+                | ProbeKind::Energy { .. } => self.values.extend(std::iter::repeat_n(f64::NAN, parts)),
                 ProbeKind::Moment { about, .. } => {
                     let of = |&i: &usize| {
                         let (x, f) = (records[i].position, forces[i].force(records[i].mass));
@@ -125,25 +121,17 @@ impl ExternalSolid {
                     self.values.push(chosen.iter().map(of).sum());
                 }
                 ProbeKind::KineticEnergy { .. } => {
-                    let energy =
-                        |r: &StateRecord| 0.5 * r.mass * r.velocity.iter().map(|v| v * v).sum::<f64>();
-                    self.values.push(records.iter().map(energy).sum());
+                    self.values.push(records.iter().map(body::kinetic_energy).sum());
                 }
                 ProbeKind::Body { quantity, .. } => {
-                    let body = body::Particles { chosen, records, forces, first: &self.first };
-                    let mut value = body.quantity(*quantity, self.dimension, self.strains);
-                    if let (BodyQuantity::Angle, 2, Some(value)) = (*quantity, self.dimension, &mut value) {
-                        *turned = body::beyond_turns(value.z, *turned);
-                        value.z = *turned;
-                    }
-                    let parts = kind.components(self.dimension).0.len();
+                    let first = &self.first;
+                    let body = body::Particles { chosen, records, forces, first, turned: *turned };
+                    let value = body.quantity(*quantity, self.dimension, self.strains);
                     let value = value.map_or([f64::NAN; 3], |value| [value.x, value.y, value.z]);
+                    if *quantity == BodyQuantity::Angle {
+                        *turned = value[2];
+                    }
                     self.values.extend(if parts == 1 { &value[2..] } else { &value[..parts] });
-                }
-                // What another program's solid holds is not known.
-                ProbeKind::Energy { .. } => {
-                    let parts = kind.components(self.dimension).0.len();
-                    self.values.extend(std::iter::repeat_n(f64::NAN, parts));
                 }
                 ProbeKind::Force { .. } => {
                     for d in 0..self.dimension {
@@ -162,6 +150,11 @@ impl ExternalSolid {
         &self.values
     }
 
+    /// Whether a particle that began there is one of a shape.
+    fn is_of(&self, shape: &Shape, x: &[f64; 3]) -> bool {
+        geometry::distance(&shape.geometry, x) < self.margin
+    }
+
     fn choose(&self, kind: &ProbeKind) -> Vec<usize> {
         match *kind {
             ProbeKind::Displacement { at }
@@ -171,8 +164,8 @@ impl ExternalSolid {
             | ProbeKind::CauchyStress { of: Spot::At(at) } => nearest(self.first.iter().copied(), at),
             ProbeKind::Force { within, shape } | ProbeKind::Moment { within, shape, .. } => {
                 let of_shape = |x: &[f64; 3]| {
-                    let shape = shape.and_then(|shape| self.bodies.get(shape));
-                    shape.is_none_or(|geometry| geometry::distance(geometry, x) < self.margin)
+                    let shape = shape.and_then(|shape| self.shapes.get(shape));
+                    shape.is_none_or(|shape| self.is_of(shape, x))
                 };
                 let inside = |i: &usize| {
                     let x = &self.first[*i];
@@ -181,15 +174,9 @@ impl ExternalSolid {
                 (0..self.first.len()).filter(inside).collect()
             }
             ProbeKind::Body { ref body, .. } => {
-                let of_body = || {
-                    self.bodies
-                        .iter()
-                        .zip(&self.body_names)
-                        .filter(|(_, name)| *name == body)
-                        .map(|(of, _)| of)
-                };
-                let inside =
-                    |i: &usize| of_body().any(|of| geometry::distance(of, &self.first[*i]) < self.margin);
+                let of_body = |shape: &&Shape| shape.phase == Phase::Solid && shape.body() == body;
+                let shapes: Vec<&Shape> = self.shapes.iter().filter(of_body).collect();
+                let inside = |i: &usize| shapes.iter().any(|shape| self.is_of(shape, &self.first[*i]));
                 (0..self.first.len()).filter(inside).collect()
             }
             _ => Vec::new(),

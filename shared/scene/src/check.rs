@@ -172,17 +172,16 @@ impl Check<'_> {
             let mut at = String::new();
             let thickness = match shape.geometry.unmoved() {
                 Geometry::Disc { radius, .. } => *radius,
+                // Of walls and water an end may be as thin as it likes.
+                Geometry::Polygon(polygon)
+                    if shape.phase != Phase::Solid && polygon.area().sqrt() >= least * (1.0 - 1e-9) =>
+                {
+                    polygon.area().sqrt()
+                }
                 Geometry::Polygon(polygon) => {
                     let (thickness, [x, y]) = polygon.thickness();
-                    // Of walls and water an end may be as thin as it likes.
-                    let other = (shape.phase != Phase::Solid).then(|| polygon.area().sqrt());
-                    match other.filter(|size| *size >= least * (1.0 - 1e-9)) {
-                        Some(size) => size,
-                        None => {
-                            at = format!(" at [{}, {}]", x as f32, y as f32);
-                            thickness.min(other.unwrap_or(thickness))
-                        }
-                    }
+                    at = format!(" at [{}, {}]", x as f32, y as f32);
+                    if shape.phase == Phase::Solid { thickness } else { thickness.min(polygon.area().sqrt()) }
                 }
                 geometry => match joined(self.scene, shape, &shape.geometry) {
                     Some(block) => spacing::thickness(&Geometry::Box(block), self.scene.dimension),

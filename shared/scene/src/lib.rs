@@ -77,7 +77,9 @@ pub use halfstep_sph::kernel::KernelName;
 pub use halfstep_sph::lane::Precision;
 pub use load::{load, load_with, parse, parse_with};
 pub use metric::{Metric, MetricKind, MetricReference};
-pub use motion::{Column, Composed, Course, Motion, Part, Placement, Solitary, Spline, Turn, WaveMaker};
+pub use motion::{
+    Column, Composed, Course, Motion, Part, Placement, Solitary, Spline, Turn, WaveMaker, angle_near,
+};
 pub use participant::Participant;
 pub use probe::{BodyQuantity, Probe, ProbeKind, Reference, Spot};
 pub use resources::{expected_speed, expected_speed_of_fluid, memory_available, memory_needed};
@@ -429,6 +431,14 @@ impl Geometry {
         match self {
             Self::Moved(moved) => moved.geometry.unmoved(),
             _ => self,
+        }
+    }
+
+    /// How often it is there: what is repeated is there several times.
+    pub fn copies(&self) -> u32 {
+        match self {
+            Self::Moved(moved) => moved.count,
+            _ => 1,
         }
     }
 }

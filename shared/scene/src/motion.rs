@@ -6,7 +6,7 @@ mod spline;
 mod waves;
 
 pub use course::{Composed, Course, Part};
-pub use placement::{Placement, Turn};
+pub use placement::{Placement, Turn, angle_near};
 pub use spline::{Column, Spline};
 pub(crate) use waves::{Paddle, Sea, breaking_height, wave_number};
 pub use waves::{Solitary, WaveMaker};

@@ -2,7 +2,7 @@
 
 use super::Vec3;
 use halfstep_scene::geometry::Surface;
-use halfstep_scene::{Motion, Placement};
+use halfstep_scene::{Motion, Placement, angle_near};
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion};
 
 /// A body, or what bodies are tied to or touch: a wall, space.
@@ -172,13 +172,9 @@ impl Body {
         let center: [f64; 3] = self.center.into();
         pose.center = placement.position_of(center).into();
         pose.velocity = placement.velocity_of(center).into();
-        let (angle, rate) = match &placement.turn {
-            None => (0.0, 0.0),
-            Some(turn) => (libm::atan2(turn.sin, turn.cos), turn.rate),
-        };
-        // The one nearest to where it was.
-        let turns = libm::round((pose.angle - angle) / std::f64::consts::TAU);
-        pose.angle = angle + turns * std::f64::consts::TAU;
+        let (sine, cosine, rate) =
+            placement.turn.map_or((0.0, 1.0, 0.0), |turn| (turn.sin, turn.cos, turn.rate));
+        pose.angle = angle_near(sine, cosine, pose.angle);
         pose.turn = rotation(&Vec3::z(), pose.angle);
         pose.spin = self.spin(&pose.rotation(), &Vec3::new(0.0, 0.0, rate));
     }

@@ -1,6 +1,6 @@
 //! What the records of another program's solid say of one of its bodies, taken as a rigid one.
 
-use halfstep_scene::BodyQuantity;
+use halfstep_scene::{BodyQuantity, angle_near};
 use halfstep_wire::protocol::{ForceRecord, StateRecord};
 use nalgebra::{Matrix3, Vector3};
 
@@ -11,6 +11,13 @@ pub(super) struct Particles<'a> {
     pub(super) forces: &'a [ForceRecord],
     /// Positions in the reference configuration, m.
     pub(super) first: &'a [[f64; 3]],
+    /// Its last angle, rad.
+    pub(super) turned: f64,
+}
+
+/// Of a particle, J.
+pub(super) fn kinetic_energy(record: &StateRecord) -> f64 {
+    0.5 * record.mass * record.velocity.iter().map(|v| v * v).sum::<f64>()
 }
 
 impl Particles<'_> {
@@ -27,31 +34,33 @@ impl Particles<'_> {
         self.forces[i].force(self.records[i].mass).into()
     }
 
-    /// From the centre of mass to a particle.
-    fn arm(&self, i: usize) -> Vector3<f64> {
-        Vector3::from(self.records[i].position) - self.mean(|i| self.records[i].position)
+    fn centre(&self) -> Vector3<f64> {
+        self.mean(|i| self.records[i].position)
     }
 
-    /// The rotation in the plane since the start by least squares (Kabsch 1976), between -pi and pi, rad.
-    fn turned(&self) -> f64 {
-        let (was, is) = (self.mean(|i| self.first[i]), self.mean(|i| self.records[i].position));
+    fn position(&self, i: usize) -> Vector3<f64> {
+        self.records[i].position.into()
+    }
+
+    /// The rotation in the plane since the start by least squares (Kabsch 1976), rad.
+    fn angle(&self) -> f64 {
+        let (was, is) = (self.mean(|i| self.first[i]), self.centre());
         let (mut sine, mut cosine) = (0.0, 0.0);
         for &i in self.chosen {
-            let (mass, x) = (self.records[i].mass, Vector3::from(self.records[i].position) - is);
+            let (mass, x) = (self.records[i].mass, self.position(i) - is);
             let reference = Vector3::from(self.first[i]) - was;
             sine += mass * reference.cross(&x).z;
             cosine += mass * reference.dot(&x);
         }
-        libm::atan2(sine, cosine)
+        angle_near(sine, cosine, self.turned)
     }
 
     /// Angular velocity with the angular momentum that the particles have, rad/s.
     fn rate(&self, dimension: usize) -> Vector3<f64> {
-        let velocity = self.mean(|i| self.records[i].velocity);
-        let centre = self.mean(|i| self.records[i].position);
+        let (velocity, centre) = (self.mean(|i| self.records[i].velocity), self.centre());
         let (mut inertia, mut momentum) = (Matrix3::zeros(), Vector3::zeros());
         for &i in self.chosen {
-            let (mass, r) = (self.records[i].mass, Vector3::from(self.records[i].position) - centre);
+            let (mass, r) = (self.records[i].mass, self.position(i) - centre);
             inertia += mass * (r.norm_squared() * Matrix3::identity() - r * r.transpose());
             momentum += mass * r.cross(&(Vector3::from(self.records[i].velocity) - velocity));
         }
@@ -66,27 +75,24 @@ impl Particles<'_> {
     /// `strains` for a body that the scene has as elastic: what it stores is not known.
     pub(super) fn quantity(&self, of: BodyQuantity, dimension: usize, strains: bool) -> Option<Vector3<f64>> {
         match of {
-            BodyQuantity::Position => Some(self.mean(|i| self.records[i].position)),
+            BodyQuantity::Position => Some(self.centre()),
             BodyQuantity::Velocity => Some(self.mean(|i| self.records[i].velocity)),
-            BodyQuantity::Angle if dimension == 2 => Some(Vector3::z() * self.turned()),
+            BodyQuantity::Angle if dimension == 2 => Some(Vector3::z() * self.angle()),
             BodyQuantity::AngularVelocity => Some(self.rate(dimension)),
             BodyQuantity::Force => Some(self.sum(|i| self.force(i))),
-            BodyQuantity::Moment => Some(self.sum(|i| self.arm(i).cross(&self.force(i)))),
+            BodyQuantity::Moment => {
+                let centre = self.centre();
+                Some(self.sum(|i| (self.position(i) - centre).cross(&self.force(i))))
+            }
             BodyQuantity::Energy if !strains => {
-                let twice =
-                    |i: usize| self.records[i].mass * Vector3::from(self.records[i].velocity).norm_squared();
-                Some(Vector3::z() * (0.5 * self.chosen.iter().map(|&i| twice(i)).sum::<f64>()))
+                let energy: f64 = self.chosen.iter().map(|&i| kinetic_energy(&self.records[i])).sum();
+                Some(Vector3::z() * energy)
             }
             // Contact by its own program stays within that; the coupler's is part of the force.
             BodyQuantity::ContactForce | BodyQuantity::ContactMoment => None,
             BodyQuantity::Angle | BodyQuantity::Energy => None,
         }
     }
-}
-
-/// The angle nearest to the one before that is the same but for whole turns, rad.
-pub(super) fn beyond_turns(angle: f64, before: f64) -> f64 {
-    angle + std::f64::consts::TAU * ((before - angle) / std::f64::consts::TAU).round()
 }
 
 #[cfg(test)]
@@ -108,7 +114,8 @@ mod tests {
         let records = [record(at(-3.0), speed(-3.0), 1.0), record(at(1.0), speed(1.0), 3.0)];
         let pull = ForceRecord { stress_force: [0.0, 7.0, 0.0], ..ForceRecord::default() };
         let forces = [pull, ForceRecord::default()];
-        let rod = Particles { chosen: &[0, 1], records: &records, forces: &forces, first: &first };
+        let rod =
+            Particles { chosen: &[0, 1], records: &records, forces: &forces, first: &first, turned: 0.0 };
         let close = |of: BodyQuantity, expected: [f64; 3]| {
             for dimension in [2, 3] {
                 // In space a rod's moment of inertia about itself is zero.
@@ -129,13 +136,5 @@ mod tests {
         close(BodyQuantity::Energy, [0.0, 0.0, 0.5 + 24.0]);
         assert!(rod.quantity(BodyQuantity::Energy, 2, true).is_none());
         assert!(rod.quantity(BodyQuantity::ContactForce, 2, false).is_none());
-    }
-
-    #[test]
-    fn angles_go_on_beyond_a_turn() {
-        let tau = std::f64::consts::TAU;
-        assert!((beyond_turns(-3.1, 3.1) - (tau - 3.1)).abs() < 1e-15);
-        assert!((beyond_turns(0.1, 4.0 * tau) - (4.0 * tau + 0.1)).abs() < 1e-12);
-        assert_eq!(beyond_turns(0.5, 0.2), 0.5);
     }
 }

@@ -4,7 +4,8 @@
 use super::magnitudes::STIFFNESS;
 use super::shapes::{Placed, length};
 use halfstep_scene::geometry::{self, Layout};
-use halfstep_scene::{Block, Geometry, Phase, Scene, Shape};
+use halfstep_scene::{Block, Geometry, Phase, Scene};
+use serde::Serialize;
 
 /// Deflection by linear theory over the free length from which on it is remarked: soft plates of experiments behind a
 /// dam that breaks have up to five.
@@ -21,12 +22,17 @@ const NAMED: f64 = 0.01;
 const LIES: f64 = 0.7;
 
 /// How far a plate bends by beam theory.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub(super) struct Bends {
     /// Deflection and free length, m.
+    #[serde(rename = "bends")]
     pub(super) way: [f64; 2],
     /// What bends it.
+    #[serde(rename = "bends_under")]
     pub(super) under: String,
+    /// The fluid is part of that, and does not touch it at the start.
+    #[serde(skip)]
+    dry: bool,
 }
 
 /// A straight plate, held at one end or both.
@@ -48,14 +54,14 @@ fn dot(a: &[f64; 2], b: &[f64; 2]) -> f64 {
 }
 
 /// Corners of each copy of a box or polygon.
-fn outlines(shape: &Shape) -> Vec<Vec<[f64; 2]>> {
-    match &shape.geometry {
+fn outlines(geometry: &Geometry) -> Vec<Vec<[f64; 2]>> {
+    match geometry {
         Geometry::Box(Block { min, max }) => {
             vec![vec![[min[0], min[1]], [max[0], min[1]], [max[0], max[1]], [min[0], max[1]]]]
         }
         Geometry::Polygon(polygon) if polygon.holes.is_empty() => vec![polygon.outline.clone()],
         Geometry::Moved(moved) => {
-            let first = outlines(&Shape { geometry: (*moved.geometry).clone(), ..shape.clone() });
+            let first = outlines(&moved.geometry);
             let placed = |copy| first.iter().map(move |corners| (copy, corners));
             let place = |(copy, corners): (u32, &Vec<[f64; 2]>)| {
                 corners.iter().map(|corner| moved.place(copy, *corner)).collect()
@@ -81,12 +87,7 @@ impl Beam {
         };
         let ([low, high], [right, left]) = (extent(&along), extent(&across));
         let (length, thickness, middle) = (high - low, left - right, 0.5 * (left + right));
-        let area: f64 = corners
-            .iter()
-            .zip(corners.iter().cycle().skip(1))
-            .map(|(a, b)| 0.5 * (a[0] * b[1] - b[0] * a[1]))
-            .sum();
-        if area.abs() < STRAIGHT * length * thickness {
+        if 0.5 * geometry::twice_area(corners).abs() < STRAIGHT * length * thickness {
             return None;
         }
         let start = [0, 1].map(|a| low * along[a] + middle * across[a]);
@@ -226,10 +227,8 @@ pub(super) fn deflection<const D: usize>(scene: &Scene, layout: &Layout<D>, inde
             let [along, _] = beam.coordinates(&[p.position[0], p.position[1]]);
             force * beam.influence(along)
         });
-        let fluid = match beam.is_wet(layout, scene.resolution) {
-            true => "the fluid at rest",
-            false => "the fluid's full head",
-        };
+        let wet = beam.is_wet(layout, scene.resolution);
+        let fluid = if wet { "the fluid at rest" } else { "the fluid's full head" };
         let parts = [
             (fluid, beam.under(pressure)),
             ("its own weight", beam.under(|_| own)),
@@ -240,20 +239,26 @@ pub(super) fn deflection<const D: usize>(scene: &Scene, layout: &Layout<D>, inde
         let named = parts.iter().filter(|(_, part)| part.abs() > NAMED * largest).map(|(name, _)| *name);
         let stiffness = material.bending_modulus() * beam.thickness.powi(3) / 12.0;
         let way = [sum.abs() / stiffness, beam.free_length()];
+        let dry = !wet && parts[0].1.abs() > NAMED * largest;
         // What floats bends by what rounding leaves.
-        (sum.abs() > 1e-9 * largest).then(|| Bends { way, under: named.collect::<Vec<_>>().join(" and ") })
+        (sum.abs() > 1e-9 * largest).then(|| Bends {
+            way,
+            under: named.collect::<Vec<_>>().join(" and "),
+            dry,
+        })
     };
-    let bends = outlines(shape).into_iter().enumerate().filter_map(of_copy);
+    let bends = outlines(&shape.geometry).into_iter().enumerate().filter_map(of_copy);
     bends.max_by(|a, b| a.way[0].total_cmp(&b.way[0]))
 }
 
 /// Clamped plates that would bend far beyond their length, of a modulus that exists.
 pub(super) fn bent(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
     for (shape, of_scene) in placed.iter().zip(&scene.shapes) {
-        let (Some([way, free]), Some(under)) = (shape.bends, &shape.bends_under) else { continue };
+        let Some(Bends { way: [way, free], under, dry }) = shape.bends.as_ref() else { continue };
+        let (way, free) = (*way, *free);
         let Some(material) = of_scene.solid.and_then(|k| scene.solids.get(k)) else { continue };
         if way > TOO_FAR * free && material.youngs_modulus >= STIFFNESS[0] {
-            let dry = match under.contains("full head") {
+            let dry = match dry {
                 true => " (it is dry at the start: this is fluid that stands at it as high as fluid begins)",
                 false => "",
             };

@@ -64,18 +64,14 @@ pub(super) fn sections<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &
         if shape.motion.is_some() || Plate::<D>::of(scene, shape).is_none() {
             continue;
         }
-        let (count, carried) = match &shape.geometry {
-            Geometry::Moved(moved) => (moved.count, true),
-            _ => (1, false),
-        };
-        let worst = (0..count).find_map(|copy| {
+        let worst = (0..shape.geometry.copies()).find_map(|copy| {
             let own = layout.solid.iter().filter(|p| p.body as usize == index && p.copy == copy);
             held_in_part(scene, shape, body, &own.collect::<Vec<_>>())
         });
         if let Some([held, across]) = worst {
-            let remedy = match carried {
-                true => "`translate`, `rotate` and `repeat` do not take the clamp's box along",
-                false => "a box over the whole section holds it",
+            let remedy = match shape.geometry {
+                Geometry::Moved(_) => "`translate`, `rotate` and `repeat` do not take the clamp's box along",
+                _ => "a box over the whole section holds it",
             };
             all.push(format!(
                 "the clamp of `{}` holds {held} of the {across} particles of a section, and no section as a whole: \

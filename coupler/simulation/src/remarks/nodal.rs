@@ -18,11 +18,7 @@ pub(super) fn lacks(scene: &Scene, shape: &Shape) -> bool {
 pub(super) fn mass(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
     for (shape, of_scene) in placed.iter().zip(&scene.shapes).filter(|(_, shape)| lacks(scene, shape)) {
         let dx = scene.spacing(of_scene);
-        let copies = match &of_scene.geometry {
-            Geometry::Moved(moved) => moved.count,
-            _ => 1,
-        };
-        let whole = f64::from(copies) * shape.asked.iter().product::<f64>();
+        let whole = f64::from(of_scene.geometry.copies()) * shape.asked.iter().product::<f64>();
         let share = (shape.particles + shape.lost) as f64 * dx.powi(shape.asked.len() as i32) / whole;
         if (share - 1.0).abs() < NOTABLE {
             continue;

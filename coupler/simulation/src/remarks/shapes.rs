@@ -1,7 +1,8 @@
 //! Every shape as asked and as computed.
 
+use super::beams::{self, Bends};
+use super::nodal;
 use super::thickness::{self, Thinnest};
-use super::{beams, nodal};
 use halfstep_scene::geometry::{self, Layout, Plate};
 use halfstep_scene::{Geometry, Phase, Plane, Scene, Shape, SolidModelName};
 use serde::{Serialize, Serializer};
@@ -49,12 +50,9 @@ pub(crate) struct Placed {
     /// The computed one is that of the particles' area: they lie in no rectangle whose second moment is known.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     bending_by_area: bool,
-    /// Deflection of a clamped plate by beam theory, and its free length, m.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) bends: Option<[f64; 2]>,
-    /// What bends it so.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) bends_under: Option<String>,
+    /// Of a clamped plate.
+    #[serde(flatten)]
+    pub(super) bends: Option<Bends>,
     /// Where it is too thin to hold fluid.
     #[serde(skip)]
     pub(super) thinnest: Option<Thinnest>,
@@ -81,8 +79,7 @@ pub(crate) fn placed<const D: usize>(scene: &Scene, layout: &Layout<D>) -> Vec<P
         shape.rows = shape.rows.map(|whole| rows.map_or(whole, |rows| rows.min(whole)));
     }
     for (index, shape) in all.iter_mut().enumerate() {
-        let bends = beams::deflection(scene, layout, index);
-        (shape.bends, shape.bends_under) = bends.map(|bends| (bends.way, bends.under)).unzip();
+        shape.bends = beams::deflection(scene, layout, index);
     }
     give_masses(scene, &mut all);
     all
@@ -121,11 +118,7 @@ fn of_shape<const D: usize>(scene: &Scene, index: usize, [particles, clamped]: [
     // The nodal lattice has no particles on the surface of a solid.
     let missing = f64::from(u8::from(nodal::lacks(scene, shape)));
     let cells = |extent: f64| ((extent / dx).round() - missing) * dx;
-    let copies = match &shape.geometry {
-        Geometry::Moved(moved) => f64::from(moved.count),
-        _ => 1.0,
-    };
-    let measure = || geometry::measure_alone::<D>(scene, index) / copies;
+    let measure = || geometry::measure_alone::<D>(scene, index) / f64::from(shape.geometry.copies());
     let (asked, computed) = match shape.geometry.unmoved() {
         Geometry::Box(b) if shape.lattice_angle != 0.0 => {
             (vec![(0..D).map(|a| b.max[a] - b.min[a]).product()], vec![measure()])
@@ -166,7 +159,6 @@ fn of_shape<const D: usize>(scene: &Scene, index: usize, [particles, clamped]: [
         bending: bending.map(|(both, _)| both),
         bending_by_area: by_area,
         bends: None,
-        bends_under: None,
         thinnest: None,
         unit: if !is_measured(shape) {
             "m"
@@ -255,7 +247,8 @@ impl fmt::Display for Placed {
                 write!(f, " asked, {} computed{by}", length(computed))?;
             }
         }
-        if let (Some([way, free]), Some(under)) = (self.bends, &self.bends_under) {
+        if let Some(Bends { way: [way, free], under, .. }) = &self.bends {
+            let (way, free) = (*way, *free);
             write!(f, ", bends {} of {} m under {under}", length(way), length(free))?;
         }
         if let Some(body) = self.body.as_ref().filter(|body| **body != self.name) {

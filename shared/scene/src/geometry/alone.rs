@@ -21,10 +21,7 @@ pub fn measure_alone<const D: usize>(scene: &Scene, index: usize) -> f64 {
     let shape = &scene.shapes[index];
     let spacing = Spacing::of(scene, shape);
     let cells = points::of_shape::<D>(&shape.geometry, spacing).len() as f64 * spacing.dx.powi(D as i32);
-    let copies = match &shape.geometry {
-        Geometry::Moved(moved) => f64::from(moved.count),
-        _ => 1.0,
-    };
+    let copies = f64::from(shape.geometry.copies());
     match shape.geometry.unmoved() {
         // Its outermost row lies on the surface: half of each of its cells is outside.
         Geometry::Polygon(polygon) if shape.phase == Phase::Wall && spacing.nodal => copies * polygon.area(),

@@ -29,7 +29,7 @@ pub struct Polygon {
 }
 
 /// Twice the area that a line of corners encloses, m²: positive where it runs counter-clockwise.
-pub(crate) fn twice_area(corners: &[[f64; 2]]) -> f64 {
+pub fn twice_area(corners: &[[f64; 2]]) -> f64 {
     let Some(o) = corners.first() else { return 0.0 };
     let next = corners.iter().cycle().skip(1);
     // From the first corner: far from the origin the products would lose their digits.

@@ -28,6 +28,13 @@ pub struct Turn {
     pub acceleration: f64,
 }
 
+/// Of the angles with a sine and a cosine, times any length, the one nearest to another angle, rad: beyond whole turns.
+pub fn angle_near(sine: f64, cosine: f64, before: f64) -> f64 {
+    let angle = libm::atan2(sine, cosine);
+    let turns = libm::round((before - angle) / std::f64::consts::TAU);
+    angle + turns * std::f64::consts::TAU
+}
+
 impl Turn {
     /// R v.
     fn turned<const D: usize>(&self, mut v: [f64; D]) -> [f64; D] {
@@ -100,5 +107,20 @@ impl Placement {
         let (sin, cos) = before.turn.map_or((0.0, 1.0), |before| (before.sin, before.cos));
         // The chord of the angle between both.
         way + radius * ((turn.sin - sin).powi(2) + (turn.cos - cos).powi(2)).sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angles_go_on_beyond_a_turn() {
+        let tau = std::f64::consts::TAU;
+        let near =
+            |angle: f64, before: f64| angle_near(2.0 * libm::sin(angle), 2.0 * libm::cos(angle), before);
+        assert!((near(-3.1, 3.1) - (tau - 3.1)).abs() < 1e-15);
+        assert!((near(0.1, 4.0 * tau) - (4.0 * tau + 0.1)).abs() < 1e-12);
+        assert!((near(0.5, 0.2) - 0.5).abs() < 1e-15);
     }
 }
