@@ -24,9 +24,17 @@ pub fn wall_separation(scene: &Scene) -> Decision {
         true if scene.has_free_bodies() => {
             Derived::On("f_i that ends at dx lets water by that a free body thinned out".into())
         }
-        true => Derived::Off("for kernels wider than h / dx = 1.75 and free bodies".into()),
+        true if solids && is_thrown(scene) => {
+            Derived::On("water that is thrown at a solid leaves its edges in jets".into())
+        }
+        true => Derived::Off("for kernels wider than h / dx = 1.75, free bodies and thrown water".into()),
     };
     Decision::new(scene, EffectName::WallSeparation, derived)
+}
+
+/// Whether water begins with a velocity.
+fn is_thrown(scene: &Scene) -> bool {
+    scene.shapes.iter().any(|s| s.phase == Phase::Fluid && s.velocity != [0.0; 3])
 }
 
 /// 1 for water of no pressure, or less; else 0: what is compressed may expand.
