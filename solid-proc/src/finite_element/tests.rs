@@ -67,8 +67,10 @@ fn a_plate_swings_as_a_beam_with_one_element_across() {
     };
     let found = [1.0, 2.0, 4.0].map(|across| period(across) / beam);
     println!("periods over the beam's: {found:?}");
-    assert!(found.iter().all(|ratio| (0.98..1.04).contains(ratio)), "{found:?}");
-    assert!((found[1] / found[2] - 1.0).abs() < 0.01, "{found:?}");
+    // Measured; the page says so.
+    for (ratio, measured) in found.iter().zip([1.0152, 1.0000, 1.0019]) {
+        assert!((ratio - measured).abs() < 1e-3, "{found:?}");
+    }
 }
 
 /// A free block that turns keeps its shape, energy and spin.
@@ -173,7 +175,8 @@ fn long_implicit_steps_swing_as_short_explicit_ones() {
         tip / exact - 1.0
     });
     println!("steps of {:.1} explicit ones: errors {errors:?}", span / 160.0 / limit);
-    assert!(errors[0].abs() < 0.02 && errors[2].abs() < 0.002, "{errors:?}");
+    // Measured: 1.0e-4, 4.7e-5 and 2.2e-5, halved as steps are: of first order, by theta.
+    assert!(errors.iter().zip([1.5e-4, 7.5e-5, 4e-5]).all(|(error, most)| error.abs() < most), "{errors:?}");
 }
 
 /// One element, held on its left, nu = 0: along x, E dx u / dx against half of its mass, omega² = 2 c² / dx². Over a
@@ -225,7 +228,8 @@ fn a_stiff_plate_takes_any_step() {
     let (q, inertia, l, x) = (7800.0 * 9.81 * 0.02, 0.02_f64.powi(3) / 12.0, 0.2_f64, 0.195_f64);
     let beam = -q * (x.powi(4) - 4.0 * l * x.powi(3) + 6.0 * l * l * x * x) / (24.0 * modulus * inertia);
     println!("tip {tip:e}, beam {beam:e}, energy {energy:e}");
-    assert!((tip / beam - 1.0).abs() < 0.05, "{tip:e} {beam:e}");
+    // Measured: 0.991.
+    assert!((tip / beam - 0.991).abs() < 0.003, "{tip:e} {beam:e}");
 }
 
 /// A block that turns freely, a twentieth of a radian a step: momentum, spin and energy.
@@ -256,5 +260,6 @@ fn a_turning_block_keeps_its_spin_in_long_steps() {
     }
     let end = (spin(&model), model.kinetic_energy() + model.strain_energy());
     println!("spin {:.3e}, energy {:.3e}", end.0 / start.0 - 1.0, end.1 / start.1 - 1.0);
-    assert!((end.0 / start.0 - 1.0).abs() < 0.01 && (end.1 / start.1 - 1.0).abs() < 0.01);
+    // Measured: 2e-5 and 4e-5.
+    assert!((end.0 / start.0 - 1.0).abs() < 5e-5 && (end.1 / start.1 - 1.0).abs() < 1e-4);
 }

@@ -30,7 +30,8 @@ fn a_heavy_box_between_two_light_ones_stays() {
             }
         });
         println!("steps of {dt:.1e} s: at most {off:.2e} m off their places");
-        assert!(off < 3e-6, "{off:e} m");
+        // Measured: 1e-12 m, of rounding in some thousand steps.
+        assert!(off < 1e-11, "{off:e} m");
         assert!(model.states.iter().all(|state| state.kinetic_energy < 1e-12), "{:?}", model.states);
         // The light one below carries 2 kg/m³ x 0.02 m² of its own kind and the heavy one.
         let carried = model.states[1].contact_force[1];
@@ -68,11 +69,11 @@ fn a_tower_tips_beyond_its_width_over_its_height() {
             let (turned, right) =
                 (-model.states[0].angle[2], rate / growth.powi(2) * ((growth * end).cosh() - 1.0));
             println!("{name}, {tangent}: turned by {turned:.3e} rad of {right:.3e}");
-            match (tangent < b / h, name) {
+            match tangent < b / h {
                 // Loose blocks settle in the first steps.
-                (true, _) => assert!(turned.abs() < 3e-4, "{name}: {turned}"),
-                (false, "one") => assert!((turned / right - 1.0).abs() < 0.02, "{name}: {turned} of {right}"),
-                _ => assert!(turned > 0.5 * right, "{name}: {turned} of {right}"),
+                true => assert!(turned.abs() < 3e-4, "{name}: {turned}"),
+                // The formula is linear in phi.
+                false => assert!((turned / right - 1.0).abs() < 2e-3, "{name}: {turned} of {right}"),
             }
         }
     }
