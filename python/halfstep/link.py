@@ -115,7 +115,7 @@ class Link:
         """What `find` returns once it is something; asleep meanwhile. `limit`: s."""
         began = asked = time.monotonic()
         while not (found := find()):
-            self.listener.timed_wait(iox2.Duration.from_millis(milliseconds))
+            self._sleep(milliseconds)
             now = time.monotonic()
             if os.getppid() != self.parent:
                 raise RunEnded("the run's launcher has ended")
@@ -128,6 +128,14 @@ class Link:
             if now - began > limit:
                 raise RunEnded(f"no message for {limit:g} s")
         return found
+
+    def _sleep(self, milliseconds):
+        """Until a wake-up call, or so long; less where the process was stopped and goes on (SIGSTOP, SIGCONT)."""
+        try:
+            self.listener.timed_wait(iox2.Duration.from_millis(milliseconds))
+        except iox2.ListenerWaitError as error:
+            if str(error) != "InterruptSignal":
+                raise
 
     def _is_left(self):
         """Whether a partner has ended: it lies dead, or somebody has cleaned up after it, or it has left by itself."""

@@ -1,4 +1,7 @@
-"""A rigid block on a spring along x, whichever solid of the scene it is: `own_spring.py STIFFNESS [SILENT_FROM]`."""
+"""A rigid block on a spring along x, whichever solid of the scene it is: `own_spring.py STIFFNESS [FROM [PAUSE]]`.
+
+From the step FROM on it is silent for PAUSE seconds (by default for good) before each state.
+"""
 
 import sys
 import time
@@ -8,12 +11,13 @@ import numpy as np
 
 stiffness, points = float(sys.argv[1]), halfstep.particles()
 silent_from = int(sys.argv[2]) if len(sys.argv) > 2 else None
+pause = float(sys.argv[3]) if len(sys.argv) > 3 else 1000.0
 mass, along_x = points.mass.sum(), np.array([1.0, 0.0])
 x = v = x_now = v_now = 0.0  # displacement and velocity at step n, and at the stage that was published
 solid = halfstep.Solid(points.position, points.mass, points.density, own_walls=True)
 for step in solid:
-    if step.number == silent_from:
-        time.sleep(1000)
+    if silent_from is not None and step.number >= silent_from:
+        time.sleep(pause)
     acceleration = (step.forces[:, 0].sum() - stiffness * x_now) / mass
     # The midpoint rule: both stages go from n, with the rates of the stage.
     x_now, v_now = x + step.span * v_now, v + step.span * acceleration

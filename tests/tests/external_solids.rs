@@ -6,7 +6,7 @@ use halfstep_tests::python::python;
 use halfstep_tests::run::{RunBuilder, program, repository, scene_at, whole_machine};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 const STIFFNESS: f64 = 2e4;
 
@@ -83,6 +83,17 @@ impl Scene {
         Self { folder, path }
     }
 
+    fn pid_file(&self, name: &str) -> PathBuf {
+        self.folder.path().join(format!("{name}.pid"))
+    }
+
+    /// The line of a block whose process number is then in its file.
+    fn telling_its_pid(&self, name: &str) -> String {
+        let line = block(name, STIFFNESS, "");
+        let (_, command) = line.split_once('=').expect("NAME=COMMAND");
+        format!("{name}=echo $$ > {}; exec {command}", self.pid_file(name).display())
+    }
+
     /// With these lines for solids, NAME=COMMAND.
     fn run(&self, solids: &[String]) -> RunBuilder {
         solids.iter().fold(scene_at(&self.path), |run, line| run.argument("--solid").argument(line))
@@ -152,20 +163,15 @@ fn one_of_two_is_started_by_hand() {
 fn a_killed_program_is_named_and_takes_the_other_along() {
     let _machine = whole_machine();
     let scene = Scene::new();
-    let pid = |name: &str| scene.folder.path().join(format!("{name}.pid"));
-    let line = |name: &str| {
-        let (_, command) =
-            block(name, STIFFNESS, "").split_once('=').map(|(a, b)| (a.to_owned(), b.to_owned())).expect("");
-        format!("{name}=echo $$ > {}; exec {command}", pid(name).display())
-    };
     for victim in ["left", "right"] {
-        let running = scene.run(&[line("left"), line("right")]).set("end_time", 100.0).start();
+        let lines = ["left", "right"].map(|name| scene.telling_its_pid(name));
+        let running = scene.run(&lines).set("end_time", 100.0).start();
         let launcher = running.pid();
         let rows = running.dir().join("probes.csv");
         eventually(60.0, "rows", || {
             std::fs::read_to_string(&rows).is_ok_and(|text| text.lines().count() > 2)
         });
-        let [left, right] = ["left", "right"].map(|name| read_pid(&pid(name)));
+        let [left, right] = ["left", "right"].map(|name| read_pid(&scene.pid_file(name)));
         kill(if victim == "left" { left } else { right }, libc::SIGKILL);
         let moment = Instant::now();
         let outcome = running.wait();
@@ -181,6 +187,39 @@ fn a_killed_program_is_named_and_takes_the_other_along() {
 
 fn read_pid(path: &Path) -> u32 {
     std::fs::read_to_string(path).expect("a number").trim().parse().expect("a number")
+}
+
+/// One that is slow at each state and one that is stopped: the run waits for both within its patience, names the one
+/// that it has waited for 5 s, goes on when that one does, and ends with the bits of a run in which nobody was late.
+#[test]
+fn slow_and_stopped_programs_are_waited_for() {
+    let _machine = whole_machine();
+    let scene = Scene::new();
+    let until = || scene.run(&both([STIFFNESS; 2])).until(0.05);
+    let prompt = until().start().wait().finished();
+    let lines = [block("left", STIFFNESS, "0 0.002"), scene.telling_its_pid("right")];
+    let mut running = scene.run(&lines).until(0.05).start();
+    let launcher = running.pid();
+    let rows = running.dir().join("probes.csv");
+    let count = || std::fs::read_to_string(&rows).map_or(0, |text| text.lines().count());
+    eventually(60.0, "rows", || count() > 2);
+    let right = read_pid(&scene.pid_file("right"));
+    kill(right, libc::SIGSTOP);
+    std::thread::sleep(Duration::from_millis(300));
+    let before = count();
+    // Silence is told after 5 s.
+    std::thread::sleep(Duration::from_millis(5200));
+    assert!(running.is_alive() && count() == before, "{before} rows, then {}", count());
+    kill(right, libc::SIGCONT);
+    let late = running.wait().finished();
+    assert!(late.report.steps > before as u64 && late.outcome.seconds > 5.5, "it was stopped within the run");
+    for said in [&late.outcome.stderr, &late.outcome.log()] {
+        assert!(said.contains("waiting for the right since 5 s"), "{said}");
+        assert!(!said.contains("waiting for the left since"), "{said}");
+    }
+    assert_eq!(late.state_hash(), prompt.state_hash());
+    assert_eq!(late.probes, prompt.probes);
+    assert_eq!(leftovers(launcher), Vec::<String>::new());
 }
 
 /// Alive and without a word: after the patience it is named.

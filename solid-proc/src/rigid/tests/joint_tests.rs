@@ -140,7 +140,7 @@ fn a_rail_of_a_wall_that_turns_throws_its_body_out() {
     assert!((gained / right - 1.0).abs() < 1e-5 && (given / gained - 1.0).abs() < 1e-5, "{gained} {given}");
 }
 
-/// A box that falls along a rail stays at the lower stop; thrown up it is stopped at the upper one, and falls from there.
+/// A box that falls along a rail stays at the lower stop; thrown up it stops at the upper one and falls from there.
 #[test]
 fn a_rail_has_stops() {
     let keys = "joints = [{ name = \"lift\", kind = \"rail\", body = \"box\", at = [0.1, 0.05], axis = [0.0, 1.0], \
@@ -172,8 +172,8 @@ fn a_rail_has_stops() {
     }
 }
 
-/// A box that hangs by its end from a rail without friction: nothing pushes its centre sideways, and at the lowest place
-/// all that it has lost is in its rotation, I omega² / 2 = m g l.
+/// A box that hangs by its end from a rail without friction: nothing pushes its centre sideways, and at the lowest
+/// place all that it has lost is in its rotation, I omega² / 2 = m g l.
 #[test]
 fn a_rail_lets_turn_what_may() {
     let keys = "joints = [{ name = \"slide\", kind = \"rail\", body = \"box\", at = [0.0, 0.05], axis = [1.0, 0.0], \
