@@ -102,6 +102,79 @@ fn a_block_of_one_solid_slides_on_another_as_coulomb_says() {
     assert!(on_block.largest > 0.99 * least, "{on_block:?}");
 }
 
+/// A block of one solid that strains on a slab of another, which is clamped below its upper two rows.
+const RUBBING: &str = r#"
+resolution = 0.01
+end_time = 0.22
+
+[[solid]]
+name = "block"
+density = 1000.0
+youngs_modulus = 1e6
+poissons_ratio = 0.3
+
+[[solid]]
+name = "slab"
+density = 1000.0
+youngs_modulus = 1e6
+poissons_ratio = 0.3
+
+[[contact]]
+solids = ["block", "slab"]
+friction = 0.3
+
+[[shape]]
+name = "block"
+phase = "solid"
+solid = "block"
+box = { min = [0.0, 0.0], max = [0.1, 0.05] }
+velocity = [0.5, 0.0]
+
+[[shape]]
+name = "slab"
+phase = "solid"
+solid = "slab"
+box = { min = [-0.05, -0.05], max = [0.2, 0.0] }
+clamp = { min = [-0.05, -0.05], max = [0.2, -0.02] }
+
+[[probe]]
+name = "block"
+kind = "centroid"
+phase = "solid"
+solid = "block"
+"#;
+
+/// v² / (2 mu g) = 42.47 mm, after 0.17 s. Bands: the way is 0.9 to 1.3e-3 short and friction takes 1.8 to 3.9e-3 less
+/// than the block had, which its own viscosity takes as it shears; then it stays, shaking by 0.02 mm.
+#[test]
+fn solids_that_strain_rub_on_each_other_as_coulomb_says() {
+    let scene = Written::new(RUBBING);
+    let energy = 0.5 * 5.0 * 0.25;
+    for [block, slab] in [
+        ["total-lagrangian", "finite-element"],
+        ["total-lagrangian", "hypoelastic"],
+        ["hypoelastic", "finite-element"],
+    ] {
+        let run =
+            scene.run().set("solid.block.model", block).set("solid.slab.model", slab).in_process().run();
+        let x = run.curve("block.x");
+        let (way, late) = (x.at(0.22) - 0.05, x.at(0.22) - x.at(0.19));
+        let (right, did) = (0.25 / (2.0 * 0.3 * 9.81), contact(&run.report));
+        println!("{block} on {slab}: {way:.6} m of {right:.6} m, {late:.1e} m at last, {did:?}");
+        assert!((-2e-3..0.0).contains(&(way / right - 1.0)), "{block} on {slab}: {way}");
+        assert!(late.abs() < 5e-5, "{block} on {slab}: {late}");
+        assert!((-5e-3..0.0).contains(&(-did.friction / energy - 1.0)), "{block} on {slab}: {did:?}");
+        assert!(did.normal <= 0.0 && did.normal > -0.01 * energy, "{block} on {slab}: {did:?}");
+        // It stops 2.5 N s/m; what one gets is what the other one gives.
+        let [on_block, on_slab] = &run.report.forces[..] else { panic!("{:?}", run.report.forces) };
+        assert!((on_block.impulse[0] / -2.5 - 1.0).abs() < 0.01, "{on_block:?}");
+        for (a, b) in on_block.impulse.iter().zip(&on_slab.impulse) {
+            assert!((a + b).abs() < 1e-12 * 11.0, "{:?}", run.report.forces);
+        }
+        assert!((on_block.work + on_slab.work - did.normal - did.friction).abs() < 1e-9 * energy, "{did:?}");
+    }
+}
+
 /// A rigid block runs into a free elastic one.
 const COLLIDING: &str = r#"
 resolution = 0.01
@@ -150,8 +223,11 @@ fn an_elastic_block_takes_the_momentum_that_a_rigid_one_loses() {
     let speed = run.curve("rigid.x").at(0.05);
     println!("drift {drift:.1e}, rigid {speed:.4} m/s, {:?}", contact(&run.report));
     assert!(drift < 1e-12, "{drift}");
-    // An impact of points would leave (1 - 2) / 3 of the speed; waves in the block take some of its energy.
-    assert!((-0.7..0.0).contains(&speed), "{speed}");
+    // An impact of points would leave (1 - 2) / 3 of the 2 m/s; waves in the block keep 1.5 % of that. The law's spring
+    // gives back what it took: 5e-4 of 20 J/m.
+    let right = -2.0 / 3.0;
+    assert!((speed / right - 0.985).abs() < 0.01, "{speed}");
+    assert!(contact(&run.report).normal.abs() < 2e-3, "{:?}", contact(&run.report));
     assert!(contact(&run.report).largest_force > 0.0);
 }
 
