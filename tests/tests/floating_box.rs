@@ -1,7 +1,7 @@
 //! Rigid bodies in water: they float as deep as Archimedes says, sink, and account for their energy.
 
 use halfstep_tests::run::{repository, scene_at};
-use halfstep_tests::{RunBuilder, scene};
+use halfstep_tests::{Curve, RunBuilder, scene};
 
 /// Coarse, released where it should float.
 fn coarse() -> RunBuilder {
@@ -64,29 +64,104 @@ fn a_heavy_box_sinks_and_lies_on_the_floor() {
         .run();
     let last = |name: &str| run.curve(name).between(0.6, 0.8).mean();
     let (y, contact) = (last("box.y"), run.curve("water.y").between(0.6, 0.8).mean());
-    println!("centre {y:.6} m, water {contact:.1} N/m");
-    assert!((y - 0.05).abs() < 1e-5, "{y}");
+    println!("centre {:.1e} m off, water {contact:.1} N/m", y - 0.05);
+    assert!((y - 0.05).abs() < 1e-9, "{y}");
 }
 
-/// Turned by 10 degrees it rights itself. Hydrostatics alone gives a period of 0.634 s, with half of the moment of a
-/// plate of its breadth that turns in water 0.77 s; walls and floor are near.
+/// A drum full of water, and in its middle a disc of twice the water's density.
+const DRUM: &str = r#"
+resolution = 0.01
+end_time = 0.04
+
+[fluid]
+density = 1000.0
+
+[solid]
+model = "rigid"
+density = 2000.0
+
+[[shape]]
+name = "drum"
+phase = "wall"
+contact = false
+ring = { center = [0.0, 0.0], inner = 0.15, outer = 0.2 }
+
+[[shape]]
+name = "disc"
+phase = "solid"
+disc = { center = [0.0, 0.0], radius = 0.05 }
+
+[[shape]]
+name = "water"
+phase = "fluid"
+disc = { center = [0.0, 0.0], radius = 0.15 }
+pressure = "hydrostatic"
+
+[[probe]]
+name = "disc"
+kind = "body-position"
+body = "disc"
+"#;
+
+/// At first it falls with (rho_s - rho_f) g / (rho_s + C rho_f), C = (b² + a²) / (b² - a²) = 1.25 of the water that
+/// goes along between the radii a and b: 2.41 mm in 0.04 s, without that water 3.92 mm. Measured: 3.1 % less, as
+/// viscosity begins to brake it; bands of 1 % about that.
+#[test]
+fn a_sinking_disc_takes_water_along() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("drum.toml");
+    std::fs::write(&path, DRUM).expect("a scene");
+    let run = scene_at(&path).run();
+    let fallen = -run.curve("disc.y").at(0.04);
+    let right = 0.5 * 9.81 * (2.0 - 1.0) / (2.0 + 1.25) * 0.04 * 0.04;
+    println!("{:.4} mm of {:.4} mm", 1e3 * fallen, 1e3 * right);
+    assert!((fallen / right - 0.969).abs() < 0.01, "{fallen}");
+    assert!(run.curve("disc.x").at(0.04).abs() < 1e-9, "straight down");
+}
+
+/// When a curve is lowest between two times, s.
+fn lowest(curve: &Curve, from: f64, to: f64) -> f64 {
+    let part = curve.between(from, to);
+    Curve { values: part.values.iter().map(|x| -x).collect(), ..part }.peak().0
+}
+
+/// Let go 10 mm too high. By linear potential flow in this tank (`validation/floating-box/potential_flow.py`) it turns
+/// round after 0.371 s and 0.765 s; in unbounded water without waves the first would be after 0.360 s, of its own mass
+/// alone after 0.225 s. Measured here: 0.2 % early and 2.7 % early, with 10 mm 1.1 % and 0.3 % late. Bands: 1 % beyond.
+#[test]
+fn a_box_heaves_with_the_water_that_goes_along() {
+    let run =
+        scene("floating-box").set("resolution", 0.02).set("output.probe_interval", 1e-3).until(0.85).run();
+    let heave = run.curve("box.y");
+    let (down, up) = (lowest(&heave, 0.2, 0.6), heave.between(0.6, 0.85).peak());
+    println!("down for {down:.4} s to {:.4} m, up at {up:.4?}", heave.at(down));
+    assert!((down / 0.371 - 1.0).abs() < 0.012, "{down}");
+    assert!((up.0 / 0.765 - 1.0).abs() < 0.037, "{up:?}");
+}
+
+/// Turned by 10 degrees it rights itself: by linear potential flow in this tank it is upright after 0.198 s and turns
+/// round after 0.395 s and 0.790 s. Measured: 0.1981, 0.391 and 0.782 s, for viscosity brakes it before it turns: 0.140
+/// rad on the other side instead of 0.172. Bands: 1 % beyond. Hydrostatics alone would have it upright after 0.159 s.
 #[test]
 fn a_flat_box_rights_itself() {
     let run = coarse()
         .set("shape.box.box", "{ min = [0.4, 0.15], max = [0.6, 0.25] }")
         .set("shape.box.rotate", "{ angle = 10 }")
-        .until(0.9)
+        .set("output.probe_interval", 1e-3)
+        .until(0.85)
         .run();
     let roll = run.curve("roll.angle");
-    let (first, overshoot) = (roll.at(0.0), roll.between(0.3, 0.5).mean());
     let upright = -10.0_f64.to_radians();
-    let passed = (0..900).map(|k| 1e-3 * f64::from(k)).find(|t| roll.at(*t) < upright);
-    println!("a quarter of a period: {passed:?} s, beyond upright {:.4} rad", overshoot - upright);
-    assert_eq!(first, 0.0);
-    let period = 4.0 * passed.expect("it comes up");
-    assert!((0.75..0.83).contains(&period), "{period}");
-    assert!(overshoot < upright && overshoot > 2.0 * upright, "{overshoot}");
-    assert!(roll.at(0.8) > overshoot, "it swings back");
+    assert_eq!(roll.at(0.0), 0.0);
+    let from_upright = Curve { values: roll.values.iter().map(|x| x - upright).collect(), ..roll.clone() };
+    let quarter = from_upright.crossings()[0].0;
+    let (half, whole) = (lowest(&roll, 0.3, 0.5), roll.between(0.6, 0.85).peak().0);
+    let beyond = from_upright.at(half);
+    println!("upright after {quarter:.4} s, {beyond:.4} rad at {half:.4} s, back at {whole:.4} s");
+    assert!((quarter / 0.198 - 1.0).abs() < 0.011, "{quarter}");
+    assert!((half / 0.395 - 1.0).abs() < 0.02, "{half}");
+    assert!((whole / 0.790 - 1.0).abs() < 0.02, "{whole}");
+    assert!((beyond + 0.140).abs() < 0.005, "{beyond}");
 }
 
 /// A tall box of half the water's density: its metacentre is 42 mm below its centre of mass.
