@@ -93,16 +93,21 @@ fn bar(text: &str, model: &str, across: u32) -> Finished {
 /// 0.8 and 0.1 % off, 0.5 and 0.7 % too fast; the straight clamp is worth some of it. The amplitude is 63.5 mm.
 #[test]
 fn bars_of_both_models_swing_as_turek_and_hron_say() {
-    for model in ["total-lagrangian", "finite-element"] {
+    // Over the reference: y, x, frequency, amplitude; from run to run only the last digits change.
+    for (model, measured) in [
+        ("total-lagrangian", [0.9854, 0.9881, 1.0086, 0.9738]),
+        ("finite-element", [0.9863, 0.9919, 1.0079, 0.9747]),
+    ] {
         let swing = Swing::of(&bar(SCENE, model, 4));
         swing.say(model);
-        let ([lowest, top], inmost, frequency) = (swing.y, swing.x, swing.frequency);
-        assert!((lowest / -0.128767 - 1.0).abs() < 0.02, "{model}: {lowest}");
-        assert!((inmost / -0.02861 - 1.0).abs() < 0.02, "{model}: {inmost}");
-        assert!((frequency / 1.0995 - 1.0).abs() < 0.01, "{model}: {frequency}");
+        let [lowest, top] = swing.y;
+        let found =
+            [lowest / -0.128767, swing.x / -0.02861, swing.frequency / 1.0995, swing.amplitude() / 0.06516];
+        for (found, measured) in found.into_iter().zip(measured) {
+            assert!((found - measured).abs() < 1e-3, "{model}: {swing:?}");
+        }
         // Released at rest it comes back to where it was, undamped; the reference's +1.55 mm is beyond that.
         assert!(top.abs() < 1e-4, "{model}: {top}");
-        assert!((swing.amplitude() / 0.06516 - 1.0).abs() < 0.03, "{model}: {}", swing.amplitude());
     }
 }
 
