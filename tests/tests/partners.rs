@@ -25,7 +25,8 @@ fn a_box_of_mujoco_floats_and_heaves() {
     let level = (water + 0.2 * 0.05) / 0.8;
     let mean = heave.between(0.38, 1.16).mean();
     println!("mean height {mean} m, at rest {level} m");
-    assert!((mean - level).abs() < 0.0025, "{mean} m, expected {level} m");
+    // Measured: 0.3 mm above, of a draught of 50 mm.
+    assert!((mean - level).abs() < 0.001, "{mean} m, expected {level} m");
     let extreme = |from: f64, to: f64, sign: f64| {
         let part = heave.between(from, to);
         let k = (0..part.values.len())
@@ -34,7 +35,8 @@ fn a_box_of_mujoco_floats_and_heaves() {
     };
     let period = extreme(0.9, 1.4, -1.0) - extreme(0.1, 0.6, -1.0);
     println!("period {period} s");
-    assert!((period / 0.771 - 1.0).abs() < 0.08, "{period} s");
+    // Measured: 4.4 % longer, at 10 mm 1.4 %. Bands of 2 % about that.
+    assert!((period / 0.771 - 1.044).abs() < 0.02, "{period} s");
     assert!(run.report.audit.action_reaction.unwrap() <= 1e-12);
 }
 
@@ -83,7 +85,8 @@ fn a_flap_of_mujoco_holds_back_water() {
     }
     let expected = 0.14 * angle.sin() - 0.01 * (1.0 - angle.cos());
     println!("tip {mean} m, expected {expected} m");
-    assert!((mean / expected - 1.0).abs() < 0.05, "{mean} m, expected {expected} m");
+    // Measured: 2.7 % less. Bands of 1 % about that.
+    assert!((mean / expected - 0.973).abs() < 0.01, "{mean} m, expected {expected} m");
 }
 
 /// A stem of PyElastica's, a rod, swings in waves as the built-in one does. PyElastica comes with its own environment.
