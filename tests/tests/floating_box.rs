@@ -140,7 +140,7 @@ fn a_box_heaves_with_the_water_that_goes_along() {
 }
 
 /// Turned by 10 degrees it rights itself: by linear potential flow in this tank it is upright after 0.198 s and turns
-/// round after 0.395 s and 0.790 s. Measured: 0.1981, 0.391 and 0.782 s, for viscosity brakes it before it turns: 0.140
+/// round after 0.395 s and 0.790 s. Measured: 0.1971, 0.391 and 0.782 s, for viscosity brakes it before it turns: 0.140
 /// rad on the other side instead of 0.172. Bands: 1 % beyond. Hydrostatics alone would have it upright after 0.159 s.
 #[test]
 fn a_flat_box_rights_itself() {
