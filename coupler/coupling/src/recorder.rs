@@ -333,7 +333,9 @@ impl Recorder {
             .first_energy
             .filter(|&e| self.isolated && self.first_fluid.is_none() && e > 0.0)
             .map(|e| self.energy / e - 1.0);
-        report.particles.removed = self.removed;
+        // What begins outside of the domain is gone before the first state.
+        let at_first = self.first_fluid.map_or(0, |first| report.particles.fluid.saturating_sub(first));
+        report.particles.removed = at_first + self.removed;
         report.external.clone_from(&self.external);
         report.audit.energy_growth = self.balance.growth();
         report.audit.density_error = self.first_fluid.map(|_| self.density_error);

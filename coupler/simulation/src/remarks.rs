@@ -2,20 +2,28 @@
 //! was asked, on bodies and clamps, on water and on magnitudes. A run says them at its start, `halfstep check` as well,
 //! and `run.json` keeps them.
 
+mod beach;
 mod beams;
 mod bodies;
 mod clamp_faces;
 mod contacts;
+mod domain;
 mod enclosed;
+mod fields;
 mod frame;
+mod gaps;
+mod idle;
 mod loads;
 mod magnitudes;
+mod makers;
 mod moving;
 mod nodal;
 mod outcome;
 mod reached;
 mod settings;
 mod shapes;
+mod spills;
+mod tanks;
 mod thickness;
 mod units;
 mod walls;
@@ -83,11 +91,19 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     shapes::sizes(scene, placed, &mut all);
     nodal::mass(scene, placed, &mut all);
     nodal::touching(scene, layout, &bodies, &mut all);
-    shapes::overlaps(scene, placed, &mut all);
+    shapes::overlaps::<D>(scene, placed, &mut all);
     shapes::locking(scene, placed, &mut all);
     thickness::thin(scene, placed, &mut all);
     walls::thin(scene, layout, &mut all);
     walls::across(scene, layout, &mut all);
+    domain::domain(scene, layout, &mut all);
+    spills::spills(scene, layout, &mut all);
+    gaps::over(scene, &mut all);
+    gaps::below(scene, layout, &mut all);
+    gaps::beside(scene, layout, &mut all);
+    tanks::overlapping(scene, &mut all);
+    tanks::copies_outside(scene, &mut all);
+    tanks::hidden(scene, &mut all);
     water::hanging(scene, layout, &mut all);
     water::outside(scene, layout, &mut all);
     water::stacked(scene, layout, &mut all);
@@ -95,11 +111,17 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     settings::background_pressure(scene, layout, &mut all);
     water::expected_speed(scene, &mut all);
     water::wave_makers(scene, &mut all);
+    makers::makers(scene, &mut all);
+    fields::fields(scene, layout, &mut all);
     water::walls_that_meet(scene, &mut all);
     settings::motions(scene, &mut all);
     frame::frame(scene, &mut all);
     settings::solitary_waves(scene, &mut all);
-    settings::beach(scene, &mut all);
+    beach::beach(scene, &mut all);
+    idle::effects(scene, layout, &mut all);
+    idle::sticking(scene, &mut all);
+    idle::belts(scene, &mut all);
+    idle::sound_speed(scene, &mut all);
     settings::checkpoints(scene, &mut all);
     settings::probes(scene, &mut all);
     settings::fluxes(scene, &mut all);
@@ -123,8 +145,12 @@ mod meaning_tests;
 #[cfg(test)]
 mod silence_tests;
 #[cfg(test)]
+mod tank_tests;
+#[cfg(test)]
 mod tests;
 #[cfg(test)]
 mod trap_tests;
 #[cfg(test)]
 mod wall_tests;
+#[cfg(test)]
+mod wave_tests;

@@ -28,7 +28,7 @@ mod surface;
 mod tests;
 
 use crate::{Block, Geometry, Lattice, Motion, Phase, Scene, Shape, dispatch};
-pub use alone::{measure_alone, particles_alone};
+pub use alone::{measure_alone, places_alone};
 pub use at_start::cantilever_velocity;
 use at_start::{added, field_velocity, initial_pressure, surfaces};
 pub use cells::{Cells, cell};
@@ -41,12 +41,13 @@ pub use plate::Plate;
 pub(crate) use plate::joined;
 pub use plate::{least_thickness, second_moments};
 use points::Spacing;
+pub use points::sides;
 pub(crate) use polygon::Fault;
 use polygon::Standing;
 pub use polygon::twice_area;
 pub use polygon::{MAX_CORNERS, Polygon};
-pub use region::void_meets;
 use region::{Region, voids_before};
+pub use region::{Regions, void_meets};
 pub use surface::Surface;
 
 /// Relative tolerance of every comparison of lengths, in spacings.

@@ -13,6 +13,8 @@ const GRAVITY: [f64; 2] = [0.1, 50.0];
 const WATER: [f64; 2] = [980.0, 1040.0];
 /// A hundred times that of water, Pa s.
 const VISCOUS: f64 = 0.1;
+/// Kinematic viscosities of water between 90 and 0 °C, m²/s: no liquid of its density has so few Pa s.
+const KINEMATIC: [f64; 2] = [3e-7, 2e-6];
 /// Smaller than a drop, larger than a harbour, m.
 const SIZE: [f64; 2] = [1e-3, 1e3];
 /// Of a way over the size of the scene.
@@ -50,10 +52,18 @@ pub(super) fn gravity(scene: &Scene, all: &mut Vec<String>) {
     }
 }
 
-/// Water that flows like oil; fluids alone have the viscosity that a theory asks for.
+/// Water that flows like oil, and a kinematic viscosity in Pa s; fluids alone have what a theory asks for.
 pub(super) fn viscosity(scene: &Scene, all: &mut Vec<String>) {
-    let Some(fluid) = scene.fluid.as_ref().filter(|_| !scene.solids.is_empty()) else { return };
-    if (WATER[0]..=WATER[1]).contains(&fluid.density) && fluid.viscosity > VISCOUS {
+    let water = |density| (WATER[0]..=WATER[1]).contains(&density);
+    let Some(fluid) = scene.fluid.as_ref().filter(|fluid| water(fluid.density)) else { return };
+    if (KINEMATIC[0]..=KINEMATIC[1]).contains(&fluid.viscosity) {
+        all.push(format!(
+            "fluid.viscosity = {:e} Pa s in a fluid of the density of water is the kinematic viscosity of water, in m²/s: \
+             it has 0.001 Pa s",
+            fluid.viscosity
+        ));
+    }
+    if fluid.viscosity > VISCOUS && !scene.solids.is_empty() {
         all.push(format!(
             "fluid.viscosity = {} Pa s in a fluid of the density of water, which has 0.001 Pa s: is the unit right?",
             fluid.viscosity

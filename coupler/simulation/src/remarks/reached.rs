@@ -12,16 +12,22 @@ const FILLED: f64 = 0.75;
 /// row of the fluid's lattice still water leaves some places free.
 const FALLS: f64 = 1.2;
 
-/// The walls' particles, by their positions, m.
-pub(super) struct Walls<const D: usize> {
+/// The particles of walls, or of walls and solids, by their positions, m.
+pub(super) struct Matter<const D: usize> {
     cells: Cells<[f64; D], D>,
     dx: f64,
 }
 
-impl<const D: usize> Walls<D> {
-    pub(super) fn new(scene: &Scene, layout: &Layout<D>) -> Self {
+impl<const D: usize> Matter<D> {
+    pub(super) fn of_walls(scene: &Scene, layout: &Layout<D>) -> Self {
         let dx = scene.resolution;
         Self { cells: by_place(dx, layout.wall.iter().map(|p| p.position)), dx }
+    }
+
+    pub(super) fn with_solids(scene: &Scene, layout: &Layout<D>) -> Self {
+        let mut walls = Self::of_walls(scene, layout);
+        layout.solid.iter().for_each(|p| walls.cells.add(&p.position, p.position));
+        walls
     }
 
     /// Whether a particle is near a place.
@@ -51,7 +57,7 @@ fn middle<const D: usize>(k: &[i64; D], dx: f64) -> [f64; D] {
 pub(super) fn reached<const D: usize>(
     scene: &Scene,
     layout: &Layout<D>,
-    walls: &Walls<D>,
+    walls: &Matter<D>,
     rises: bool,
 ) -> Places<D> {
     let dx = scene.resolution;

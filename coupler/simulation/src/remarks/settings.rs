@@ -1,13 +1,10 @@
 //! Remarks on settings that cannot act in their scene, or act the other way around.
 
 use super::near;
-use super::shapes::Placed;
-use super::water::{INSTANTS, depth};
+use super::shapes::{Placed, length};
+use super::water::INSTANTS;
 use halfstep_scene::geometry::{Cells, Layout};
-use halfstep_scene::{EffectName, Motion, Phase, ProbeKind, Scene, Switch, geometry};
-
-/// Part of a wave's amplitude from which on a beach takes nothing.
-const KEPT: f64 = 0.9;
+use halfstep_scene::{Course, Motion, Phase, ProbeKind, Scene, geometry};
 
 /// Motions that begin, or reach their amplitude, after the run.
 pub(super) fn motions(scene: &Scene, all: &mut Vec<String>) {
@@ -25,14 +22,27 @@ pub(super) fn motions(scene: &Scene, all: &mut Vec<String>) {
                 "`{}` has a motion and does not move until the run ends at {end} s",
                 shape.name
             ));
-        } else if let Motion::Oscillating { start, ramp, .. } = motion
-            && start + ramp > end
-        {
+        } else if let Some(full) = full_from(motion).filter(|full| *full > end) {
             all.push(format!(
                 "the motion of `{}` reaches its amplitude at {} s, after its `ramp`, and the run ends at {end} s",
                 shape.name,
-                start + ramp
+                length(full)
             ));
+        }
+    }
+}
+
+/// When all swings of a motion have reached their amplitude, s; `None` without any.
+fn full_from(motion: &Motion) -> Option<f64> {
+    match motion {
+        Motion::Oscillating { start, ramp, .. } => Some(start + ramp),
+        Motion::Steady { .. } => None,
+        Motion::Composed(composed) => {
+            let full = composed.parts.iter().filter_map(|part| match part.course {
+                Course::Sine { start, ramp, .. } => Some(start + ramp),
+                _ => None,
+            });
+            full.reduce(f64::max)
         }
     }
 }
@@ -57,26 +67,6 @@ pub(super) fn solitary_waves(scene: &Scene, all: &mut Vec<String>) {
                 shape.name
             ));
         }
-    }
-}
-
-/// A beach that is not there, or takes next to nothing.
-pub(super) fn beach(scene: &Scene, all: &mut Vec<String>) {
-    let Some(fluid) = &scene.fluid else { return };
-    let Some(beach) = fluid.beach else {
-        if scene.switch(EffectName::Beach) == Switch::On {
-            all.push("effects.beach is \"on\", and without fluid.beach there is none".into());
-        }
-        return;
-    };
-    let Some(depth) = depth(scene) else { return };
-    let speed = (scene.gravity[1].abs() * depth).sqrt();
-    let kept = (-beach.rate * (beach.to - beach.from).abs() / (3.0 * speed)).exp();
-    if kept > KEPT {
-        all.push(format!(
-            "the beach leaves long waves {kept:.2} of their amplitude, there and back: a larger fluid.beach.rate, or a \
-             longer beach, takes more"
-        ));
     }
 }
 
@@ -129,13 +119,13 @@ const SHORT: f64 = 2.5;
 pub(super) fn fluxes(scene: &Scene, all: &mut Vec<String>) {
     for probe in &scene.probes {
         let ProbeKind::Flux { from, to } = &probe.kind else { continue };
-        let length = (0..3).map(|a| (to[a] - from[a]).powi(2)).sum::<f64>().sqrt();
-        if length < SHORT * scene.resolution {
+        let long = (0..3).map(|a| (to[a] - from[a]).powi(2)).sum::<f64>().sqrt();
+        if long < SHORT * scene.resolution {
             all.push(format!(
                 "the line of the probe `{}` is {:.1} spacings long: a flux counts where fluid fills half of the kernel, \
                  which a stream of less than about three spacings does not",
                 probe.name,
-                length / scene.resolution
+                long / scene.resolution
             ));
         }
     }

@@ -3,7 +3,7 @@
 use super::beams::{self, Bends};
 use super::nodal;
 use super::thickness::{self, Thinnest};
-use halfstep_scene::geometry::{self, Layout, Plate};
+use halfstep_scene::geometry::{self, Layout, Plate, Regions};
 use halfstep_scene::{Geometry, Phase, Plane, Scene, Shape, SolidModelName};
 use serde::{Serialize, Serializer};
 use std::fmt;
@@ -114,7 +114,7 @@ fn of_shape<const D: usize>(scene: &Scene, index: usize, [particles, clamped]: [
         Phase::Fluid => scene.fluid.as_ref().map_or(0.0, |fluid| fluid.density),
         Phase::Wall => 0.0,
     };
-    let whole = geometry::particles_alone::<D>(scene, index);
+    let whole = geometry::places_alone::<D>(scene, index).len();
     // The nodal lattice has no particles on the surface of a solid.
     let missing = f64::from(u8::from(nodal::lacks(scene, shape)));
     let cells = |extent: f64| ((extent / dx).round() - missing) * dx;
@@ -350,7 +350,7 @@ pub(super) fn locking(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
 }
 
 /// Shapes that lose many of their particles to others.
-pub(super) fn overlaps(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
+pub(super) fn overlaps<const D: usize>(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
     for (shape, of_scene) in placed.iter().zip(&scene.shapes) {
         if shape.particles == 0 && shape.lost == 0 {
             all.push(format!(
@@ -361,19 +361,36 @@ pub(super) fn overlaps(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) 
             ));
         }
     }
-    for shape in placed.iter().filter(|shape| shape.phase != Phase::Wall) {
+    for (index, shape) in placed.iter().enumerate().filter(|(_, shape)| shape.phase != Phase::Wall) {
         let whole = shape.particles + shape.lost;
+        let are_many = |lost: usize| lost as f64 > LOST * whole as f64;
         if shape.particles == 0 && shape.lost > 0 {
             all.push(format!(
                 "`{}` has none of its {whole} particles, and what it says acts nowhere: shapes that it overlaps take \
-                 their places (of two shapes of solid the one that is listed first has them)",
+                 their places (of two shapes of one phase the one that is listed first has them)",
                 shape.name
             ));
-        } else if shape.lost as f64 > LOST * whole as f64 {
+        } else if are_many(shape.lost) && are_many(shape.lost.saturating_sub(laid_over::<D>(scene, index))) {
             all.push(format!(
                 "`{}` has {} of its {whole} particles: the others' places are taken by shapes that it overlaps",
                 shape.name, shape.particles
             ));
         }
     }
+}
+
+/// How many of the places of a shape of fluid solids and walls have, without those of tanks: water is laid over bodies
+/// and beaches.
+fn laid_over<const D: usize>(scene: &Scene, index: usize) -> usize {
+    if scene.shapes[index].phase != Phase::Fluid {
+        return 0;
+    }
+    let matter = Regions::of(scene, |shape| match shape.phase {
+        Phase::Solid => true,
+        Phase::Wall => !matches!(shape.geometry.unmoved(), Geometry::Tank { .. }),
+        Phase::Fluid => false,
+    });
+    // Places closer than half a spacing to their particles are theirs as well.
+    let margin = 0.5 * scene.resolution;
+    geometry::places_alone::<D>(scene, index).iter().filter(|place| matter.hold(place, margin)).count()
 }

@@ -479,7 +479,10 @@ fn settings_that_cannot_act() {
         let output = format!("[output]\ncheckpoint_interval = {interval}\n");
         assert_eq!(said(&[TANK, WATER, PLATE, &output], "makes no checkpoint"), none);
     }
-    assert!(said(&[TANK, WATER, PLATE, "[effects]\nbeach = \"on\"\n"], "without fluid.beach there is none"));
+    assert!(said(
+        &[TANK, WATER, PLATE, "[effects]\nbeach = \"on\"\n"],
+        "effects.beach is \"on\" and does nothing"
+    ));
     // exp(-rate 0.4 m / (3 sqrt(9.81 0.1) m/s)) = exp(-0.1346 rate).
     for (rate, little) in [(0.5, true), (10.0, false)] {
         assert_eq!(said(&[&beach(rate), TANK, WATER, PLATE], "the beach leaves long waves 0.93"), little);

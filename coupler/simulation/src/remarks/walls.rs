@@ -1,8 +1,8 @@
 //! Remarks on walls: how thick they are where the fluid can come, and which way their surface goes.
 
 use super::near;
-use super::reached::{Places, Walls, is_driven, reached};
-use halfstep_scene::geometry::{self, Cells, Layout, cell};
+use super::reached::{Matter, Places, is_driven, reached};
+use halfstep_scene::geometry::{self, Cells, Layout, Regions, cell};
 use halfstep_scene::{Phase, Scene};
 
 /// Part of a wall's velocity across its face from which on it is no belt's.
@@ -55,9 +55,12 @@ impl<const D: usize> Thin<D> {
 }
 
 /// Where walls are thinner than the kernel's support, from either side: a single row has one normal and two faces.
-fn thin_places<const D: usize>(scene: &Scene, layout: &Layout<D>, walls: &Walls<D>) -> Vec<Thin<D>> {
+fn thin_places<const D: usize>(scene: &Scene, layout: &Layout<D>, walls: &Matter<D>) -> Vec<Thin<D>> {
     let dx = scene.resolution;
     let support = kernel_support(scene);
+    // Where rows of two walls meet at an angle they leave places free inside of them.
+    let regions = Regions::of(scene, |shape| shape.phase == Phase::Wall);
+    let fill = |x: &[f64; D]| walls.fill(x) || regions.hold(x, -1e-6 * dx);
     let mut all = Vec::new();
     for p in layout.wall.iter().filter(|p| !p.corner) {
         for side in [1.0, -1.0] {
@@ -65,13 +68,13 @@ fn thin_places<const D: usize>(scene: &Scene, layout: &Layout<D>, walls: &Walls<
                 std::array::from_fn(|a| p.position[a] - side * way * dx * p.normal[a])
             };
             // Fluid next to it stands a spacing before it, or a little more where its cell begins.
-            let before = [-1.0, -1.5].map(behind).map(|x| (!walls.fill(&x)).then(|| cell(&x, dx)));
+            let before = [-1.0, -1.5].map(behind).map(|x| (!fill(&x)).then(|| cell(&x, dx)));
             if before == [None; 2] {
                 continue;
             }
             // Half a spacing lies before the particle, and half a one behind the last place that is filled.
             let steps = (0..).map(|k| 0.5 * f64::from(k));
-            let filled = steps.take_while(|k| k * dx < support && walls.fill(&behind(*k)));
+            let filled = steps.take_while(|k| k * dx < support && fill(&behind(*k)));
             let thickness = filled.count() as f64 * 0.5 * dx;
             if thickness < support - 0.51 * dx {
                 all.push(Thin { shape: p.shape as usize, at: p.position, thickness, before });
@@ -81,7 +84,7 @@ fn thin_places<const D: usize>(scene: &Scene, layout: &Layout<D>, walls: &Walls<
     all
 }
 
-fn kernel_support(scene: &Scene) -> f64 {
+pub(super) fn kernel_support(scene: &Scene) -> f64 {
     2.0 * scene.smoothing_ratio * scene.resolution
 }
 
@@ -90,7 +93,7 @@ pub(super) fn thin<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut 
     if layout.fluid.is_empty() || layout.wall.is_empty() {
         return;
     }
-    let walls = Walls::new(scene, layout);
+    let walls = Matter::of_walls(scene, layout);
     let places = thin_places(scene, layout, &walls);
     if places.is_empty() {
         return;

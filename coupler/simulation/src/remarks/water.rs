@@ -2,14 +2,14 @@
 
 use super::overlap;
 use halfstep_scene::geometry::{self, Cells, FluidPoint, Layout};
-use halfstep_scene::{Block, Geometry, Motion, Phase, Scene, expected_speed_of_fluid as fastest};
+use halfstep_scene::{Block, Geometry, Motion, Phase, Scene, Shape, expected_speed_of_fluid as fastest};
 use std::collections::HashMap;
 
 /// Mach number above which the density error, about its square, exceeds 3 %.
 const HIGHEST_MACH: f64 = 0.17;
 
 /// Along which axis things fall, and which way; `None` without gravity.
-fn falls<const D: usize>(scene: &Scene) -> Option<(usize, f64)> {
+pub(super) fn falls<const D: usize>(scene: &Scene) -> Option<(usize, f64)> {
     let axis = (0..D).max_by(|&a, &b| scene.gravity[a].abs().total_cmp(&scene.gravity[b].abs()))?;
     (scene.gravity[axis] != 0.0).then(|| (axis, scene.gravity[axis].signum()))
 }
@@ -17,7 +17,9 @@ fn falls<const D: usize>(scene: &Scene) -> Option<(usize, f64)> {
 /// Fluid with nothing right below it.
 pub(super) fn hanging<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
     let Some((axis, down)) = falls::<D>(scene) else { return };
-    let shapes = || scene.shapes.iter().enumerate().filter(|(_, shape)| shape.phase == Phase::Fluid);
+    // What has a velocity is thrown.
+    let rests = |shape: &Shape| shape.phase == Phase::Fluid && shape.velocity == [0.0; 3];
+    let shapes = || scene.shapes.iter().enumerate().filter(|(_, shape)| rests(shape));
     let others = |index: usize| {
         let fluid = layout.fluid.iter().filter(move |p| p.shape as usize != index).map(|p| &p.position);
         let solid = layout.solid.iter().map(|p| &p.position);
@@ -37,7 +39,9 @@ pub(super) fn hanging<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &m
                 .then(|| "nothing is right below it".to_owned()),
         };
         if let Some(text) = text {
-            all.push(format!("`{}` hangs in the air: {text}, so it falls", shape.name));
+            // Whoever writes this means the other way, mostly.
+            let up = if axis == 1 && down > 0.0 { " up, as gravity points along +y" } else { "" };
+            all.push(format!("`{}` hangs in the air: {text}, so it falls{up}", shape.name));
         }
     }
 }
@@ -54,25 +58,49 @@ fn bare_bottom<'l, const D: usize>(
     (axis, down): (usize, f64),
 ) -> f64 {
     let dx = scene.resolution;
-    let own = || layout.fluid.iter().filter(|p| p.shape as usize == shape);
-    let deepest = own().map(|p| p.position[axis] * down).fold(f64::NEG_INFINITY, f64::max);
-    let row: Vec<&[f64; D]> =
-        own().map(|p| &p.position).filter(|x| x[axis] * down > deepest - 0.5 * dx).collect();
+    let own = layout.fluid.iter().filter(|p| p.shape as usize == shape).map(|p| p.position);
+    let row = outermost(own, (axis, down), dx);
+    let depths = depths_below(&row, others, (axis, down), dx, 2.0 * dx);
+    let bare = depths.into_iter().filter(Option::is_none).count();
+    if row.is_empty() { 0.0 } else { bare as f64 / row.len() as f64 }
+}
+
+/// The places farthest along an axis, in the sense of `way`.
+pub(super) fn outermost<const D: usize>(
+    places: impl Iterator<Item = [f64; D]>,
+    (axis, way): (usize, f64),
+    dx: f64,
+) -> Vec<[f64; D]> {
+    let places: Vec<[f64; D]> = places.collect();
+    let farthest = places.iter().map(|x| x[axis] * way).fold(f64::NEG_INFINITY, f64::max);
+    places.into_iter().filter(|x| x[axis] * way > farthest - 0.5 * dx).collect()
+}
+
+/// How far below each place of a row the nearest of `others` is, m: `None` where none is within `most`.
+pub(super) fn depths_below<'l, const D: usize>(
+    row: &[[f64; D]],
+    others: impl Iterator<Item = &'l [f64; D]>,
+    (axis, down): (usize, f64),
+    dx: f64,
+    most: f64,
+) -> Vec<Option<f64>> {
+    let level = row.iter().map(|x| x[axis] * down).fold(f64::NEG_INFINITY, f64::max);
     // What is right below, whatever its depth.
     let column = |x: &[f64; D]| -> [f64; D] { std::array::from_fn(|a| if a == axis { 0.0 } else { x[a] }) };
     let mut below = Cells::new(dx);
     for x in others {
-        let depth = x[axis] * down - deepest;
-        if 0.1 * dx < depth && depth < 2.0 * dx {
-            below.add(&column(x), *x);
+        let depth = x[axis] * down - level;
+        if 0.1 * dx < depth && depth < most {
+            below.add(&column(x), (*x, depth));
         }
     }
-    let is_carried = |p: &&&[f64; D]| {
+    let nearest = |p: &[f64; D]| {
         let beside = |x: &[f64; D]| (0..D).all(|a| a == axis || (x[a] - p[a]).abs() < 0.75 * dx);
-        below.around(&column(p)).any(beside)
+        let at = column(p);
+        let found = below.around(&at).filter(|(x, _)| beside(x));
+        found.map(|(_, depth)| *depth).reduce(f64::min)
     };
-    let carried = row.iter().filter(is_carried).count();
-    if row.is_empty() { 0.0 } else { 1.0 - carried as f64 / row.len() as f64 }
+    row.iter().map(nearest).collect()
 }
 
 /// Whether one of `others` is near a particle of a shape, and rather below it than beside it. True where it has none.
@@ -204,7 +232,7 @@ pub(super) fn expected_speed(scene: &Scene, all: &mut Vec<String>) {
 }
 
 /// Part of its depth by which the water may differ from what a wave maker is meant for.
-const DEPTH: f64 = 0.05;
+pub(super) const DEPTH: f64 = 0.05;
 
 /// Depth of the water, m; `None` where there is none.
 pub(super) fn depth(scene: &Scene) -> Option<f64> {

@@ -6,13 +6,13 @@ use super::region::{Region, voids_before};
 use super::{Geometry, Polygon, TOLERANCE};
 use crate::{Phase, Scene};
 
-/// Number of particles that the shape of that index would have if there were nothing but it and the voids before it.
-pub fn particles_alone<const D: usize>(scene: &Scene, index: usize) -> usize {
+/// Places of the particles that the shape of that index would have if there were nothing but it and the voids before it.
+pub fn places_alone<const D: usize>(scene: &Scene, index: usize) -> Vec<[f64; D]> {
     let shape = &scene.shapes[index];
     let spacing = Spacing::of(scene, shape);
     let region = Region::new(&shape.geometry, spacing, &voids_before(scene, index));
-    let points = points::of_shape::<D>(&shape.geometry, spacing);
-    points.iter().filter(|p| !region.is_void(&p.position)).count()
+    let points = points::of_shape::<D>(&shape.geometry, spacing).into_iter().map(|p| p.position);
+    points.filter(|p| !region.is_void(p)).collect()
 }
 
 /// Area (volume) of the cells that the shape of that index would have if there were nothing but it, no void either, m²

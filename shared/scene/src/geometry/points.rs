@@ -71,7 +71,7 @@ pub(super) struct Point<const D: usize> {
 }
 
 /// The sides at the low and high end of an axis.
-pub(super) fn sides(axis: usize) -> [TankSide; 2] {
+pub fn sides(axis: usize) -> [TankSide; 2] {
     [[TankSide::Left, TankSide::Right], [TankSide::Bottom, TankSide::Top], [TankSide::Back, TankSide::Front]]
         [axis]
 }

@@ -3,7 +3,7 @@
 use super::points::{self, Spacing, sides};
 use super::polygon::Edges;
 use super::{Moved, TOLERANCE, holds};
-use crate::{Block, Geometry, Scene, Void};
+use crate::{Block, Geometry, Scene, Shape, Void};
 
 /// A geometry, ready for questions.
 #[derive(Clone, Debug)]
@@ -58,6 +58,26 @@ impl<'s> Region<'s> {
         // What lies on a void's surface is outside.
         let margin = -TOLERANCE * self.spacing.dx;
         self.voids.iter().any(|void| void.contains(self.spacing, p, margin))
+    }
+}
+
+/// The places of some shapes, less those of the voids before each.
+#[derive(Clone, Debug)]
+pub struct Regions<'s>(Vec<Region<'s>>);
+
+impl<'s> Regions<'s> {
+    /// Of the shapes that are asked for.
+    pub fn of(scene: &'s Scene, asked: impl Fn(&Shape) -> bool) -> Self {
+        let own = scene.shapes.iter().enumerate().filter(|(_, shape)| asked(shape));
+        let region = |(index, shape): (usize, &'s Shape)| {
+            Region::new(&shape.geometry, Spacing::of(scene, shape), &voids_before(scene, index))
+        };
+        Self(own.map(region).collect())
+    }
+
+    /// Whether one of them, grown by `margin` (shrunk where negative), m, holds a place.
+    pub fn hold<const D: usize>(&self, place: &[f64; D], margin: f64) -> bool {
+        self.0.iter().any(|region| region.contains(place, margin))
     }
 }
 

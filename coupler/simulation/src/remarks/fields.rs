@@ -1,0 +1,79 @@
+//! Remarks on initial velocity fields that do not fit the water, its walls or gravity.
+
+use super::shapes::length;
+use super::water::DEPTH;
+use halfstep_scene::geometry::{self, Cells, Layout};
+use halfstep_scene::{Lattice, Scene, Shape, VelocityField};
+
+/// Part of its largest speed with which a field may run into a wall: that of a wall 6 % of a cell beside its place.
+const INTO_WALLS: f64 = 0.2;
+
+/// Fields of other walls, depths or gravity than the scene's.
+pub(super) fn fields<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
+    let gravity = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+    for (index, shape) in scene.shapes.iter().enumerate() {
+        let Some(field) = &shape.velocity_field else { continue };
+        if matches!(field, VelocityField::StandingWave { .. }) && -scene.gravity[1] < gravity
+            || field.fastest(gravity) == 0.0
+        {
+            all.push(format!(
+                "the velocity field of `{}` is that of waves under gravity along -y, and gravity is {:?}",
+                shape.name,
+                &scene.gravity[..D]
+            ));
+            continue;
+        }
+        all.extend(other_depth(scene, shape, field));
+        all.extend(into_walls(scene, layout, index, (field, gravity)));
+    }
+}
+
+/// A standing wave of water of another depth.
+fn other_depth(scene: &Scene, shape: &Shape, field: &VelocityField) -> Option<String> {
+    let VelocityField::StandingWave { depth, origin, .. } = field else { return None };
+    let level = geometry::bounding_box(shape, scene).max[1];
+    let off = level - (origin[1] + depth);
+    (off.abs() > DEPTH * depth + 0.5 * scene.resolution).then(|| {
+        format!(
+            "the standing wave of `{}` is that of a surface at y = {} m, {} m above its origin, and the water's is at {} \
+             m: it has another frequency",
+            shape.name,
+            length(origin[1] + depth),
+            length(*depth),
+            length(level)
+        )
+    })
+}
+
+/// A field that has a velocity into a wall where that touches its fluid.
+fn into_walls<const D: usize>(
+    scene: &Scene,
+    layout: &Layout<D>,
+    index: usize,
+    (field, gravity): (&VelocityField, f64),
+) -> Option<String> {
+    let reach = 1.1 * scene.resolution;
+    let mut water = Cells::new(reach);
+    let own = layout.fluid.iter().filter(|p| p.shape as usize == index);
+    own.for_each(|p| water.add(&p.position, p.position));
+    let surface = if scene.numerics.lattice == Lattice::Nodal { 0.0 } else { 0.5 * scene.resolution };
+    let wet = layout.wall.iter().filter(|p| !p.corner && scene.shapes[p.shape as usize].motion.is_none());
+    let wet = wet.filter(|p| water.around(&p.position).any(|x| super::near(x, &p.position, reach)));
+    let into = wet.map(|p| {
+        let at = [0, 1].map(|a| p.position[a] + surface * p.normal[a]);
+        let velocity = field.velocity(at, gravity);
+        ((velocity[0] * p.normal[0] + velocity[1] * p.normal[1]).abs(), at, p.shape)
+    });
+    let (speed, [x, y], wall) = into.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (speed > INTO_WALLS * field.fastest(gravity)).then(|| {
+        format!(
+            "the velocity field of `{}` crosses `{}` at [{}, {}] with {} m/s: nothing crosses lines at multiples of \
+             half_wave from its origin, and walls belong there",
+            scene.shapes[index].name,
+            scene.shapes[wall as usize].name,
+            length(x),
+            length(y),
+            length(speed)
+        )
+    })
+}
