@@ -72,13 +72,16 @@ fn flooded(
     let crest = level + if makes.end.is_some() { makes.height } else { 0.5 * makes.height };
     let slack = 1e-6 * scene.resolution;
     let what = if top < level - slack {
-        format!("below the water's level, {} m: the water flows over it", length(level))
+        format!(
+            "below the water's level, {} m: the water flows over it, and its waves are others",
+            length(level)
+        )
     } else if top < crest - slack {
-        format!("below the crests of its waves, {} m: they flow over it", length(crest))
+        format!("below the crests of its waves, {} m: they flow over it, and others go on", length(crest))
     } else {
         return None;
     };
-    Some(format!("`{}` ends at {} m, {what}, and makes other waves", paddle.name, length(top)))
+    Some(format!("`{}` ends at {} m, {what}", paddle.name, length(top)))
 }
 
 /// Swings that are a wave maker's: those of all parts whose course is a sine.

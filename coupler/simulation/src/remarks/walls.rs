@@ -60,7 +60,8 @@ fn thin_places<const D: usize>(scene: &Scene, layout: &Layout<D>, walls: &Matter
     let support = kernel_support(scene);
     // Where rows of two walls meet at an angle they leave places free inside of them.
     let regions = Regions::of(scene, |shape| shape.phase == Phase::Wall);
-    let fill = |x: &[f64; D]| walls.fill(x) || regions.hold(x, -1e-6 * dx);
+    let inside = |x: &[f64; D]| regions.hold(x, -1e-6 * dx);
+    let fill = |x: &[f64; D]| walls.fill(x) || inside(x);
     let mut all = Vec::new();
     for p in layout.wall.iter().filter(|p| !p.corner) {
         for side in [1.0, -1.0] {
@@ -68,8 +69,10 @@ fn thin_places<const D: usize>(scene: &Scene, layout: &Layout<D>, walls: &Matter
                 std::array::from_fn(|a| p.position[a] - side * way * dx * p.normal[a])
             };
             // Fluid next to it stands a spacing before it, or a little more where its cell begins.
-            let before = [-1.0, -1.5].map(behind).map(|x| (!fill(&x)).then(|| cell(&x, dx)));
-            if before == [None; 2] {
+            let places = [-1.0, -1.5].map(behind);
+            let before = places.map(|x| (!fill(&x)).then(|| cell(&x, dx)));
+            // A row that goes on inside of another wall has no surface there.
+            if before == [None; 2] || inside(&places[0]) {
                 continue;
             }
             // Half a spacing lies before the particle, and half a one behind the last place that is filled.
