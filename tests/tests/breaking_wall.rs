@@ -26,7 +26,7 @@ fn a_wall_that_holds_is_one_that_cannot_break() {
 #[test]
 #[ignore = "a minute"]
 fn the_wall_breaks_alike_in_processes_and_threads_and_its_ledger_is_closed() {
-    // Most of the ledger's rest comes when the fragments lie down, at 0.28 s.
+    // Most of the ledger's rest comes when the fragments strike the floor.
     let broken = coarse().until(0.3).run();
     assert_eq!(broken.report.status, Some(RunStatus::Finished));
     assert!(broken.curve("pieces.bodies").peak().1 >= 2.0);
@@ -36,7 +36,8 @@ fn the_wall_breaks_alike_in_processes_and_threads_and_its_ledger_is_closed() {
     let largest = |name: &str| broken.curve(name).values.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
     let (rest, given) = (largest("ledger.integration"), largest("ledger.interface-pressure"));
     println!("rest of the ledger {rest} J, given by the water {given} J");
-    assert!(rest < 0.012 * given, "{rest} of {given}");
+    // 1.6e-3 measured, 1.7e-2 with the default sub-step.
+    assert!(rest < 3e-3 * given, "{rest} of {given}");
     // Beam theory lets it break under an even pressure of 3 kPa, a jet of 2.4 m/s, which is there 30 ms after the water
     // (0.12 s); a spacing of 2 mm breaks 3 % later. The first two of three rows take G_f times their length, and
     // what swings: 1.12 measured.

@@ -98,7 +98,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     walls::across(scene, layout, &mut all);
     domain::domain(scene, layout, &mut all);
     spills::spills(scene, layout, &mut all);
-    gaps::over(scene, &mut all);
+    gaps::over::<D>(scene, &mut all);
     gaps::below(scene, layout, &mut all);
     gaps::beside(scene, layout, &mut all);
     tanks::overlapping(scene, &mut all);

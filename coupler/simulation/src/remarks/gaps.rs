@@ -97,8 +97,8 @@ pub(super) fn beside<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mu
 }
 
 /// Gates that end below the water that they hold.
-pub(super) fn over(scene: &Scene, all: &mut Vec<String>) {
-    let Some((down, way)) = falls::<3>(scene) else { return };
+pub(super) fn over<const D: usize>(scene: &Scene, all: &mut Vec<String>) {
+    let Some((down, way)) = falls::<D>(scene) else { return };
     let dx = scene.resolution;
     let water: Vec<(&Shape, Block)> = scene
         .shapes
