@@ -224,6 +224,7 @@ fn picture(name: &str, first: &Answer, others: &[(&str, &Curve)]) {
             probe: "tip.x".into(),
             label: (*label).into(),
             points: curve.times.iter().zip(&curve.values).step_by(4).map(|(&t, &v)| [t, v]).collect(),
+            column: None,
         })
         .collect();
     let mut text = String::from("time [s],tip.x [m]\n");

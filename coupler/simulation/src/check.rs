@@ -1,7 +1,7 @@
 //! What a scene asks for, before anything is run.
 
 use crate::forecast::{self, Forecast, megabytes};
-use crate::remarks::Placed;
+use crate::remarks::{Loaded, Placed, Probed};
 use crate::step_cost::step_cost;
 use crate::{effects, remarks};
 use halfstep_coupling::clock::times_above_limit;
@@ -29,6 +29,10 @@ pub struct Check {
     particles: Particles,
     shapes: Vec<Placed>,
     bodies: Vec<Body>,
+    loads: Vec<Loaded>,
+    probes: Vec<Probed>,
+    /// Between rows of the probes, s.
+    probe_interval: f64,
     solids: Vec<Solid>,
     /// How fast sound and, at most, fluid are expected to be.
     speeds: Option<Speeds>,
@@ -162,6 +166,9 @@ fn check_in<const D: usize>(scene: &Scene, isa: Isa) -> Check {
         particles: Particles { fluid, solid, wall },
         bodies_listed: (solid > 0).then(|| remarks::bodies_listed(scene, &bodies)),
         bodies: bodies.iter().map(|body| named(scene, body)).collect(),
+        loads: remarks::loaded(scene, &layout),
+        probes: remarks::probed(scene, &layout),
+        probe_interval: scene.output.probe_interval,
         solids,
         speeds: scene
             .fluid
@@ -268,6 +275,14 @@ impl Display for Check {
             line(&format!("  {}", shape.name), shape)?;
         }
         self.bodies_listed.iter().try_for_each(|bodies| line("bodies", bodies))?;
+        if !self.loads.is_empty() {
+            line("loads", &self.loads.len())?;
+        }
+        self.loads.iter().try_for_each(|load| line(&format!("  {}", load.shape), load))?;
+        if !self.probes.is_empty() {
+            line("probes", &format_args!("{}, a row each {} s", self.probes.len(), self.probe_interval))?;
+        }
+        self.probes.iter().try_for_each(|probe| line(&format!("  {}", probe.name), probe))?;
         for solid in &self.solids {
             if solid.spacing != self.resolution {
                 let [own, other] = [solid.spacing, self.resolution];

@@ -7,18 +7,23 @@ mod beams;
 mod bodies;
 mod clamp_faces;
 mod contacts;
+mod curves;
 mod domain;
+mod dry;
 mod enclosed;
 mod fields;
 mod frame;
 mod gaps;
 mod idle;
+mod jolts;
+mod loaded;
 mod loads;
 mod magnitudes;
 mod makers;
 mod moving;
 mod nodal;
 mod outcome;
+mod probed;
 mod reached;
 mod settings;
 mod shapes;
@@ -30,7 +35,9 @@ mod walls;
 mod water;
 
 pub(crate) use bodies::listed as bodies_listed;
+pub(crate) use loads::{Loaded, listed as loaded};
 pub use outcome::outcome;
+pub(crate) use probed::{Probed, probed};
 pub(crate) use shapes::{Placed, placed};
 
 use halfstep_scene::geometry::{self, Layout};
@@ -80,6 +87,8 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     bodies::not_repeated(scene, layout, &mut all);
     bodies::cracks(scene, &mut all);
     loads::tractions(scene, layout, &mut all);
+    loaded::empty(scene, layout, &mut all);
+    loaded::points(scene, layout, &mut all);
     bodies::touching(scene, layout, &bodies, &mut all);
     bodies::standing(scene, layout, &bodies, &mut all);
     contacts::overlaps(scene, &mut all);
@@ -114,8 +123,13 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     makers::makers(scene, &mut all);
     fields::fields(scene, layout, &mut all);
     water::walls_that_meet(scene, &mut all);
+    units::columns(scene, &mut all);
+    magnitudes::axes(scene, &mut all);
     settings::motions(scene, &mut all);
+    frame::twice(scene, &mut all);
     frame::frame(scene, &mut all);
+    jolts::pushed(scene, layout, &mut all);
+    jolts::cut_off(scene, &mut all);
     settings::solitary_waves(scene, &mut all);
     beach::beach(scene, &mut all);
     idle::effects(scene, layout, &mut all);
@@ -124,6 +138,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     idle::sound_speed(scene, &mut all);
     settings::checkpoints(scene, &mut all);
     settings::probes(scene, &mut all);
+    dry::walled(scene, layout, &mut all);
     settings::fluxes(scene, &mut all);
     settings::thin_gauges(scene, placed, &mut all);
     magnitudes::materials(scene, &mut all);
@@ -131,8 +146,10 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     magnitudes::viscosity(scene, &mut all);
     magnitudes::lengths(scene, &mut all);
     magnitudes::motions(scene, &mut all);
-    units::columns(scene, &mut all);
     units::degrees(scene, &mut all);
+    curves::intervals(scene, &mut all);
+    curves::references(scene, &mut all);
+    curves::levels(scene, layout, &mut all);
     beams::bent(scene, placed, &mut all);
     magnitudes::parameters(scene, &mut all);
     all
@@ -141,7 +158,13 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
 #[cfg(test)]
 mod beam_tests;
 #[cfg(test)]
+mod curve_tests;
+#[cfg(test)]
 mod meaning_tests;
+#[cfg(test)]
+mod motion_tests;
+#[cfg(test)]
+mod probe_tests;
 #[cfg(test)]
 mod silence_tests;
 #[cfg(test)]

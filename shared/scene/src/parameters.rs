@@ -46,33 +46,48 @@ ops_factory!(
 
 literal_matcher_from_pattern!(Numbers, r"^(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?");
 
+/// A sine, cosine or tangent in a formula whose angle is a whole number beyond half a turn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WholeAngle {
+    /// The key of the formula.
+    pub key: String,
+    /// The function with its angle, as it is written.
+    pub call: String,
+    /// What is written as the angle.
+    pub angle: String,
+    /// Its value, rad.
+    pub radians: f64,
+}
+
 /// Takes `[parameters]` out of a document and puts numbers in the place of all formulas. Returns the names of those
-/// that no formula of a key needs.
-pub(super) fn resolve(root: &mut Node, report: &Report) -> Vec<String> {
-    let Value::Table(top) = &mut root.value else { return Vec::new() };
+/// that no formula of a key needs, and angles that are hardly in radians.
+pub(super) fn resolve(root: &mut Node, report: &Report) -> (Vec<String>, Vec<WholeAngle>) {
+    let nothing = || (Vec::new(), Vec::new());
+    let Value::Table(top) = &mut root.value else { return nothing() };
     let table = match top.remove("parameters") {
         None => BTreeMap::new(),
         Some(Entry { node: Node { value: Value::Table(table), .. }, .. }) => table,
         Some(entry) => {
             let kind = entry.node.value.kind();
             report.value("parameters", entry.node.origin, format!("must be a table, not {kind}"));
-            return Vec::new();
+            return nothing();
         }
     };
-    let mut parameters = Parameters { table: &table, known: BTreeMap::new(), report };
+    let mut parameters = Parameters { table: &table, known: BTreeMap::new(), angles: Vec::new(), report };
     parameters.replace(root, "");
     let unused: Vec<String> =
         table.keys().filter(|name| !parameters.known.contains_key(*name)).cloned().collect();
     for name in &unused {
         parameters.named(name, &mut Vec::new());
     }
-    unused
+    (unused, parameters.angles)
 }
 
 struct Parameters<'a> {
     table: &'a BTreeMap<String, Entry>,
     /// Those that are computed; `None`: an error that was noted.
     known: BTreeMap<String, Option<f64>>,
+    angles: Vec<WholeAngle>,
     report: &'a Report,
 }
 
@@ -153,7 +168,23 @@ impl Parameters<'_> {
             self.report.value(key, origin, format!("is {value}, no finite number"));
             return None;
         }
+        for (call, angle) in angles(formula) {
+            self.note_whole(key, call, angle);
+        }
         Some(value)
+    }
+
+    /// Notes an angle that is a whole number beyond half a turn. Of two parameters it may be a phase, as k x is.
+    fn note_whole(&mut self, key: &str, call: &str, angle: &str) {
+        let Ok(expression) = FlatEx::<f64, Operators, Numbers>::parse(angle) else { return };
+        let names = expression.var_names();
+        let values: Option<Vec<f64>> =
+            names.iter().map(|name| self.known.get(name.as_str()).copied().flatten()).collect();
+        let value = values.filter(|values| values.len() < 2).and_then(|values| expression.eval(&values).ok());
+        if let Some(radians) = value.filter(|x| x.abs() > std::f64::consts::PI && x.fract() == 0.0) {
+            let [key, call, angle] = [key, call, angle.trim()].map(str::to_owned);
+            self.angles.push(WholeAngle { key, call, angle, radians });
+        }
     }
 
     /// Puts numbers in the place of all formulas of a node.
@@ -184,6 +215,22 @@ impl Parameters<'_> {
             _ => {}
         }
     }
+}
+
+/// Sines, cosines and tangents in a formula whose parentheses fit, with what is in these.
+fn angles(formula: &str) -> impl Iterator<Item = (&str, &str)> {
+    let letters = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    formula.match_indices('(').filter_map(move |(open, _)| {
+        let name = formula[..open].rsplit(|c| !letters(c)).next()?;
+        let mut depth = 0;
+        let close = formula[open..].find(|c| {
+            depth += i32::from(c == '(') - i32::from(c == ')');
+            depth == 0
+        })?;
+        let end = open + close;
+        let call = &formula[open - name.len()..=end];
+        ["sin", "cos", "tan"].contains(&name).then(|| (call, &formula[open + 1..end]))
+    })
 }
 
 /// Why a text is not even looked at as a formula.

@@ -1,6 +1,6 @@
 //! What is measured, and the curves that it is compared with.
 
-use super::{Block, EnergyPart, Phase};
+use super::{Block, Column, EnergyPart, Phase};
 use serde::{Deserialize, Serialize};
 
 /// Something measured while the run goes on.
@@ -225,6 +225,35 @@ impl BodyQuantity {
 }
 
 impl ProbeKind {
+    /// Its name as the key `kind`.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Displacement { .. } => "displacement",
+            Self::Position { .. } => "position",
+            Self::Stress { .. } => "stress",
+            Self::SolidVelocity { .. } => "solid-velocity",
+            Self::Strain { .. } => "strain",
+            Self::CauchyStress { .. } => "cauchy-stress",
+            Self::StrainEnergy => "strain-energy",
+            Self::CrackEnergy => "crack-energy",
+            Self::CrackArea => "crack-area",
+            Self::Bodies => "bodies",
+            Self::Pressure { .. } => "pressure",
+            Self::Velocity { .. } => "velocity",
+            Self::Flux { .. } => "flux",
+            Self::WaterLevel { .. } => "water-level",
+            Self::Front => "front",
+            Self::KineticEnergy { .. } => "kinetic-energy",
+            Self::Energy { .. } => "energy",
+            Self::Centroid { .. } => "centroid",
+            Self::Force { .. } => "force",
+            Self::Moment { .. } => "moment",
+            Self::Body { quantity, .. } => {
+                BodyQuantity::ALL.iter().find(|(_, of)| of == quantity).map_or("body", |(name, _)| name)
+            }
+        }
+    }
+
     /// Components of the probe and their unit, in the order of the values.
     pub fn components(&self, dimension: usize) -> (Vec<String>, &'static str) {
         let axes = || ["x", "y", "z"][..dimension].iter().map(|&axis| axis.to_owned()).collect();
@@ -308,4 +337,7 @@ pub struct Reference {
     pub label: String,
     /// Points (time s, value in the probe's unit).
     pub points: Vec<[f64; 2]>,
+    /// The column of a file that they come from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub column: Option<Column>,
 }

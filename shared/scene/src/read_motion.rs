@@ -205,13 +205,14 @@ fn from_file(table: &Section<'_>, dimension: usize, folder: &Path) -> Option<Vec
         wrong(format!("goes back in time: {} s follows {} s", times[k], times[k - 1]));
         return None;
     }
-    let part = |(column, (title, axis)): (usize, &(&str, Option<usize>))| {
+    let part = |(column, &(title, axis)): (usize, &(&str, Option<usize>))| {
         let values: Vec<f64> = rows.iter().map(|row| scale * row[column + 1]).collect();
-        let of = Column { file: path.to_owned(), title: (*title).to_owned(), scale };
+        let [title, time] = [title, titles[0]].map(str::to_owned);
+        let of = Column { file: path.to_owned(), title, time, scale };
         let spline = Spline::new(times.clone(), values).from_column(of);
         let mut part = Part { course: Course::Points(spline), translation: [0.0; 3], angle: 0.0 };
         match axis {
-            Some(axis) => part.translation[*axis] = 1.0,
+            Some(axis) => part.translation[axis] = 1.0,
             None => part.angle = 1.0,
         }
         part

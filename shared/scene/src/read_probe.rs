@@ -241,8 +241,10 @@ pub(super) fn reference(section: Section<'_>, folder: &Path) -> Option<Reference
     };
     let (probe, label) = (text("probe"), text("label"));
     let points = match (section.node("points"), section.node("file")) {
-        (Some(node), None) => given(&section, node),
-        (None, Some(node)) => from_file(&section, node, folder),
+        (Some(node), None) => given(&section, node).map(|points| (points, None)),
+        (None, Some(node)) => {
+            from_file(&section, node, folder).map(|(points, column)| (points, Some(column)))
+        }
         (Some(_), Some(_)) => {
             section.whole("has both `points` and `file`: a curve has one source");
             None
@@ -258,7 +260,8 @@ pub(super) fn reference(section: Section<'_>, folder: &Path) -> Option<Reference
         }
     }
     section.finish();
-    Some(Reference { probe: probe?, label: label?, points: points? })
+    let (points, column) = points?;
+    Some(Reference { probe: probe?, label: label?, points, column })
 }
 
 fn given(section: &Section<'_>, node: &Node) -> Option<Vec<[f64; 2]>> {
@@ -288,10 +291,11 @@ fn given(section: &Section<'_>, node: &Node) -> Option<Vec<[f64; 2]>> {
     Some(points)
 }
 
-fn from_file(section: &Section<'_>, node: &Node, folder: &Path) -> Option<Vec<[f64; 2]>> {
+fn from_file(section: &Section<'_>, node: &Node, folder: &Path) -> Option<(Vec<[f64; 2]>, Column)> {
     let scale = section.number("scale", Some(1.0));
     let columns = columns(section);
-    let file = folder.join(section.string("file")?);
+    let path = section.string("file")?;
+    let file = folder.join(path);
     let [time, value] = columns?;
     match read_csv(&file, time, value) {
         Ok(points) => {
@@ -299,7 +303,8 @@ fn from_file(section: &Section<'_>, node: &Node, folder: &Path) -> Option<Vec<[f
             if let (false, Some(node)) = (points.iter().all(|p| p[1].is_finite()), section.node("scale")) {
                 section.wrong("scale", node, "makes values of the file infinite");
             }
-            Some(points)
+            let [path, title, time] = [path, value, time].map(str::to_owned);
+            Some((points, Column { file: path, title, time, scale }))
         }
         Err(reason) => {
             section.wrong("file", node, format!("{}: {reason}", file.display()));

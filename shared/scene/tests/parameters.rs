@@ -132,3 +132,22 @@ fn nonsense_is_an_error_and_no_panic() {
     }
     assert!(computed > 100, "{computed}");
 }
+
+#[test]
+fn angles_of_whole_numbers_are_known() {
+    let of = |formula: &str| {
+        let found = scene(&["parameters.slope=15", "parameters.k=3", &format!("resolution=={formula}")]);
+        found.whole_angles.into_iter().map(|angle| (angle.call, angle.radians)).collect::<Vec<_>>()
+    };
+    assert_eq!(of("0.01 * abs(tan(slope))"), [("tan(slope)".to_owned(), 15.0)]);
+    assert_eq!(of("0.01 * abs(sin((slope * 2)) + cos(30))").len(), 2);
+    for radians in [
+        "0.01 * sin(slope * pi / 180)",
+        "0.01 * cos(3)",
+        "0.001 * atan(slope)",
+        "0.01 * abs(sin(k * slope))",
+        "0.01 * sin(0.5)",
+    ] {
+        assert_eq!(of(radians), [], "{radians}");
+    }
+}

@@ -1,12 +1,25 @@
 //! A frame that moves.
 
-use halfstep_scene::{Gravity, Scene, geometry};
+use halfstep_scene::{Gravity, Phase, Scene, Shape, geometry};
 
 /// Instants at which the frame is looked at.
 const INSTANTS: u32 = 2000;
 
 /// Part of gravity above which what a turning frame leaves out is told.
 const LEFT_OUT: f64 = 0.05;
+
+/// Walls that move in the frame as the frame does in space: what is at rest in the frame moves already.
+pub(super) fn twice(scene: &Scene, all: &mut Vec<String>) {
+    let Some(frame) = &scene.frame else { return };
+    let along = |shape: &&Shape| shape.phase == Phase::Wall && shape.motion.as_ref() == Some(&frame.motion);
+    if let Some(wall) = scene.shapes.iter().find(along) {
+        all.push(format!(
+            "`{}` has the motion of the `[frame]` once more, so the fluid feels it twice: what has no `motion` rests in \
+             the frame, and moves with it in space",
+            wall.name
+        ));
+    }
+}
 
 /// What acts at no time, and what turning leaves out.
 pub(super) fn frame(scene: &Scene, all: &mut Vec<String>) {

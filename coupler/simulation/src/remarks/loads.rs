@@ -1,8 +1,67 @@
-//! Remarks on tractions.
+//! Remarks on tractions, and every one as it acts.
 
-use halfstep_scene::geometry::Layout;
-use halfstep_scene::{Scene, Shape, Traction};
+use super::shapes::place;
+use halfstep_scene::geometry::{Layout, SolidPoint};
+use halfstep_scene::{Block, Scene, Traction};
+use serde::Serialize;
 use std::collections::BTreeSet;
+use std::fmt;
+
+/// A traction with what it acts on.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Loaded {
+    /// Name of the shape.
+    pub(crate) shape: String,
+    /// Pa.
+    traction: Vec<f64>,
+    /// How long it takes to grow, s.
+    ramp: f64,
+    within: Block,
+    particles: usize,
+}
+
+/// The tractions of a scene, in the order of its shapes.
+pub(crate) fn listed<const D: usize>(scene: &Scene, layout: &Layout<D>) -> Vec<Loaded> {
+    let of = |(index, name, Traction { within, traction, ramp }): (usize, &str, Traction)| Loaded {
+        shape: name.to_owned(),
+        traction: traction[..D].to_vec(),
+        ramp,
+        within,
+        particles: taken(scene, layout, index).count(),
+    };
+    tractions_of(scene).map(of).collect()
+}
+
+impl fmt::Display for Loaded {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Block { min, max } = &self.within;
+        let axes = self.traction.len();
+        let [traction, min, max] = [&self.traction[..], &min[..axes], &max[..axes]].map(place);
+        write!(f, "traction {traction} Pa on {} particles in {min} to {max}", self.particles)?;
+        if self.ramp > 0.0 {
+            write!(f, ", grows for {} s", self.ramp)?;
+        }
+        Ok(())
+    }
+}
+
+/// Shapes with a traction: index and name.
+fn tractions_of(scene: &Scene) -> impl Iterator<Item = (usize, &str, Traction)> {
+    scene
+        .shapes
+        .iter()
+        .enumerate()
+        .filter_map(|(index, shape)| Some((index, shape.name.as_str(), shape.load?)))
+}
+
+/// Particles that a shape's traction acts on.
+fn taken<'l, const D: usize>(
+    scene: &'l Scene,
+    layout: &'l Layout<D>,
+    shape: usize,
+) -> impl Iterator<Item = &'l SolidPoint<D>> {
+    layout.solid.iter().filter(move |p| p.body as usize == shape && !p.clamped && p.is_in_load(scene))
+}
 
 /// Rows, one behind the other, from which on a traction loads no surface.
 const SEVERAL: f64 = 1.5;
@@ -10,12 +69,9 @@ const SEVERAL: f64 = 1.5;
 /// A traction acts on one face of each particle: in a box of several rows its force is that many times a surface's, and
 /// grows as the spacing falls.
 pub(super) fn tractions<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
-    let loaded = |(index, shape): (usize, &Shape)| Some((index, shape.name.clone(), shape.load?));
-    for (index, name, Traction { traction, .. }) in scene.shapes.iter().enumerate().filter_map(loaded) {
+    for (index, name, Traction { traction, .. }) in tractions_of(scene) {
         let dx = scene.spacing(&scene.shapes[index]);
-        let taken =
-            layout.solid.iter().filter(|p| p.body as usize == index && !p.clamped && p.is_in_load(scene));
-        let places: Vec<[f64; D]> = taken.map(|p| p.position).collect();
+        let places: Vec<[f64; D]> = taken(scene, layout, index).map(|p| p.position).collect();
         let columns = |axis: usize| {
             let cells: BTreeSet<i64> = places.iter().map(|x| (x[axis] / dx).floor() as i64).collect();
             cells.len()

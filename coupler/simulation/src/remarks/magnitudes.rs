@@ -1,7 +1,8 @@
 //! Remarks on numbers that are right and yet hardly meant.
 
-use super::units;
-use halfstep_scene::{Block, Geometry, Scene, geometry};
+use super::shapes::{length, place};
+use super::{moving, units};
+use halfstep_scene::{Block, Geometry, ProbeKind, Scene, WholeAngle, geometry};
 
 /// Softer than any gel, stiffer than diamond, Pa.
 pub(super) const STIFFNESS: [f64; 2] = [1e3, 2e12];
@@ -19,6 +20,10 @@ const KINEMATIC: [f64; 2] = [3e-7, 2e-6];
 const SIZE: [f64; 2] = [1e-3, 1e3];
 /// Of a way over the size of the scene.
 const FAR: f64 = 5.0;
+/// Of an axis' distance over the size of the scene: beyond the arm of a pendulum or a centrifuge.
+const REMOTE: f64 = 30.0;
+/// Largest swing that is meant, rad: of what is hinged, and of a tank, which spills.
+const SWING: [f64; 2] = [std::f64::consts::FRAC_PI_2, std::f64::consts::FRAC_PI_4];
 
 /// Materials that hardly exist.
 pub(super) fn materials(scene: &Scene, all: &mut Vec<String>) {
@@ -71,16 +76,54 @@ pub(super) fn viscosity(scene: &Scene, all: &mut Vec<String>) {
     }
 }
 
+/// The box around all shapes, and its longest side, m.
+fn extent(scene: &Scene) -> Option<(Block, f64)> {
+    let boxes = scene.shapes.iter().map(|shape| geometry::bounding_box(shape, scene));
+    let around = geometry::around(boxes)?;
+    Some((around, (0..scene.dimension).map(|a| around.max[a] - around.min[a]).fold(0.0, f64::max)))
+}
+
+/// How far an axis along z lies beside the scene, m, and the same over the scene's size, where that is hardly meant.
+fn remote(scene: &Scene, axis: &[f64; 3]) -> Option<[f64; 2]> {
+    let (around, extent) = extent(scene)?;
+    let beside = |a: usize| (around.min[a] - axis[a]).max(axis[a] - around.max[a]).max(0.0);
+    let away = beside(0).hypot(beside(1));
+    (away > REMOTE * extent).then(|| [away, away / extent])
+}
+
+/// Axes far beside the scene: their units are hardly those meant.
+pub(super) fn axes(scene: &Scene, all: &mut Vec<String>) {
+    let mut said: Vec<[f64; 3]> = Vec::new();
+    let moments = scene.probes.iter().filter_map(|probe| match probe.kind {
+        ProbeKind::Moment { about, .. } => Some((format!("the probe `{}` takes moments", probe.name), about)),
+        _ => None,
+    });
+    let turns = scene.shapes.iter().filter_map(|shape| {
+        let pivot = shape.motion.as_ref()?.pivot()?;
+        Some((format!("the motion of `{}` turns", shape.name), pivot))
+    });
+    for (what, axis) in turns.chain(moments) {
+        if let Some([away, times]) = remote(scene, &axis).filter(|_| !said.contains(&axis)) {
+            said.push(axis);
+            all.push(format!(
+                "{what} about {}, {} m beside the scene, {times:.0} times its size: lengths are in metres",
+                place(&axis[..2]),
+                length(away)
+            ));
+        }
+    }
+}
+
 /// Motions that swing further than a quarter of a turn, or lead far away: their units are hardly those meant.
 pub(super) fn motions(scene: &Scene, all: &mut Vec<String>) {
-    let boxes = scene.shapes.iter().map(|shape| geometry::bounding_box(shape, scene));
-    let Some(around) = geometry::around(boxes) else { return };
-    let extent = (0..scene.dimension).map(|a| around.max[a] - around.min[a]).fold(0.0, f64::max);
+    let Some((_, extent)) = extent(scene) else { return };
+    let tanks = moving::tanks(scene);
     for shape in &scene.shapes {
         let Some(motion) = &shape.motion else { continue };
         let angle = motion.swings_by();
+        let is_tank = tanks.iter().any(|(tank, _)| tank.name == shape.name);
         // Of a column in degrees more is said.
-        if angle > std::f64::consts::FRAC_PI_2 && !units::has_degrees(motion) {
+        if angle > SWING[usize::from(is_tank)] && !units::has_degrees(motion) {
             all.push(format!(
                 "the motion of `{}` swings by {} rad, {:.0} degrees: angles are in radians",
                 shape.name,
@@ -109,6 +152,14 @@ pub(super) fn motions(scene: &Scene, all: &mut Vec<String>) {
 pub(super) fn parameters(scene: &Scene, all: &mut Vec<String>) {
     for name in &scene.unused_parameters {
         all.push(format!("no key needs the parameter `{name}`: whatever its value, the scene is the same"));
+    }
+    for WholeAngle { key, call, angle, radians } in &scene.whole_angles {
+        all.push(format!(
+            "`{call}` in {key} takes {radians} radians, {:.0} degrees: that of {radians} degrees is `{}(({angle}) * pi / \
+             180)`",
+            radians.to_degrees(),
+            &call[..3]
+        ));
     }
 }
 

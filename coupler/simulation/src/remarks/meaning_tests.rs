@@ -63,7 +63,7 @@ fn a_beam_whose_clamp_was_forgotten() {
 }
 
 /// Remarks on a tank that moves by a file of these titles and rows.
-fn recorded(titles: &str, rows: &str, motion: &str) -> Vec<String> {
+pub(super) fn recorded(titles: &str, rows: &str, motion: &str) -> Vec<String> {
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::write(folder.path().join("m.csv"), format!("{titles}\n{rows}\n")).expect("a file");
     let tank = with(TANK, &format!("motion = {}\n", motion.replace("FILE", "file = \"m.csv\"")));

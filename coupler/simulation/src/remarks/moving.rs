@@ -15,7 +15,7 @@ fn moving(scene: &Scene) -> Vec<(&Shape, Block)> {
 }
 
 /// Those of them that are around fluid.
-fn tanks(scene: &Scene) -> Vec<(&Shape, Block)> {
+pub(super) fn tanks(scene: &Scene) -> Vec<(&Shape, Block)> {
     let hollow = |wall: &Shape| !matches!(wall.geometry.unmoved(), Geometry::Box(_) | Geometry::Disc { .. });
     moving(scene).into_iter().filter(|(wall, around)| hollow(wall) && holds_fluid(scene, around)).collect()
 }

@@ -30,6 +30,13 @@ impl<const D: usize> Matter<D> {
         walls
     }
 
+    /// Those of walls that stay where they are.
+    pub(super) fn at_rest(scene: &Scene, layout: &Layout<D>) -> Self {
+        let dx = scene.resolution;
+        let rest = layout.wall.iter().filter(|p| scene.shapes[p.shape as usize].motion.is_none());
+        Self { cells: by_place(dx, rest.map(|p| p.position)), dx }
+    }
+
     /// Whether a particle is near a place.
     pub(super) fn fill(&self, at: &[f64; D]) -> bool {
         filled(&self.cells, at, self.dx)

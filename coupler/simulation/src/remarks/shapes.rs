@@ -282,6 +282,12 @@ pub(super) fn length(x: f64) -> String {
     format!("{rounded}")
 }
 
+/// A place, m.
+pub(crate) fn place(x: &[f64]) -> String {
+    let all: Vec<String> = x.iter().map(|x| (*x as f32).to_string()).collect();
+    format!("[{}]", all.join(", "))
+}
+
 /// Shapes whose size is another one than asked for.
 pub(super) fn sizes(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
     for (shape, of_scene) in placed.iter().zip(&scene.shapes) {

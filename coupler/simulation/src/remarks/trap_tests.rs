@@ -14,7 +14,7 @@ pub(super) fn with(shape: &str, line: &str) -> String {
 }
 
 /// Remarks on a whole scene.
-fn on(text: &str) -> Vec<String> {
+pub(super) fn on(text: &str) -> Vec<String> {
     remarks(&parse(text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}")))
 }
 

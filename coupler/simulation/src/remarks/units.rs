@@ -5,7 +5,7 @@ use halfstep_scene::{Column, Course, Geometry, Motion, Part, Scene, Spline};
 use std::f64::consts::{PI, TAU};
 
 /// Radians in a degree.
-const DEGREE: f64 = PI / 180.0;
+pub(super) const DEGREE: f64 = PI / 180.0;
 /// Factors within which a scale is that of a unit, and of more or less motion than was recorded.
 const ABOUT: [f64; 2] = [0.2, 5.0];
 /// Of more or less motion than was recorded; beyond these a scale is that of a unit.
@@ -13,7 +13,7 @@ const LARGER_OR_SMALLER: [f64; 2] = [0.1, 10.0];
 /// How near an angle is to a twelfth of pi that is meant to be one, rad.
 const ROUNDED: f64 = 1e-3;
 
-fn about(scale: f64, unit: f64) -> bool {
+pub(super) fn about(scale: f64, unit: f64) -> bool {
     (ABOUT[0]..=ABOUT[1]).contains(&(scale / unit).abs())
 }
 
@@ -29,11 +29,54 @@ fn of_files(motion: &Motion) -> impl Iterator<Item = (&Part, &Spline, &Column)> 
     })
 }
 
+/// Words of titles of velocities and accelerations.
+const RATES: [(&str, &[&str]); 2] =
+    [("a velocity", &["vel", "velocity", "speed"]), ("an acceleration", &["acc", "accel", "acceleration"])];
+/// Units of rates, of lengths and of angles.
+const PER_SECOND: [(&str, &[&str]); 2] = [
+    ("a velocity", &["m/s", "cm/s", "mm/s", "rad/s", "deg/s", "°/s"]),
+    (
+        "an acceleration",
+        &["m/s2", "m/s^2", "m/s²", "cm/s2", "mm/s2", "rad/s2", "rad/s^2", "rad/s²", "deg/s2"],
+    ),
+];
+
+/// What a title says that is neither a way nor an angle.
+pub(super) fn rate(title: &str) -> Option<&'static str> {
+    let title = title.to_lowercase();
+    let unit = title.split(['[', ']', '(', ')', ' ', ',', '_']).map(str::trim);
+    let by_unit = PER_SECOND.into_iter().find(|(_, units)| unit.clone().any(|unit| units.contains(&unit)));
+    let by_word = || RATES.into_iter().find(|(_, of)| words(&title).any(|word| of.contains(&&*word)));
+    by_unit.or_else(by_word).map(|(what, _)| what)
+}
+
+/// The unit of time that a title says and that is no second, with its seconds.
+fn other_time(title: &str) -> Option<(&'static str, f64)> {
+    let units = [("ms", 1e-3), ("µs", 1e-6), ("us", 1e-6), ("min", 60.0)];
+    units.into_iter().find(|(unit, _)| words(title).any(|word| word == *unit))
+}
+
+/// A column of times in another unit: none has a scale.
+pub(super) fn times(what: &str, column: &Column, [first, last]: [f64; 2], end: f64) -> Option<String> {
+    let (unit, seconds) = other_time(&column.time)?;
+    let remedy = match seconds < 1.0 {
+        true => format!("divided by {}", 1.0 / seconds),
+        false => format!("times {seconds}"),
+    };
+    Some(format!(
+        "{what} takes the times of the column `{}`, whose title says {unit}, as seconds: they last from {} to {} s, and \
+         the run {end} s (times have no `scale`: in the file they need to be {remedy})",
+        column.time,
+        length(first),
+        length(last)
+    ))
+}
+
 fn says_degrees(title: &str) -> bool {
     title.contains('°') || words(title).any(|word| word.starts_with("deg"))
 }
 
-fn words(title: &str) -> impl Iterator<Item = String> {
+pub(super) fn words(title: &str) -> impl Iterator<Item = String> {
     title.split(|c: char| !c.is_alphabetic()).map(str::to_lowercase)
 }
 
@@ -64,30 +107,44 @@ pub(super) fn columns(scene: &Scene, all: &mut Vec<String>) {
         }
         told.push(motion);
         all.extend(one_scale(&name, motion));
-        for (part, spline, column) in of_files(motion) {
-            let (low, high) = spline.extent();
-            let most = high.max(-low);
-            let Column { title, scale, .. } = column;
-            if part.angle != 0.0 {
-                if says_degrees(title) && !about(*scale, DEGREE) {
-                    all.push(format!(
-                        "{name} turns by the column `{title}`, whose title says degrees, times scale = {scale}, in \
-                         radians: by up to {} rad, {:.0} degrees (scale = {DEGREE} makes radians of degrees)",
-                        length(most),
-                        most.to_degrees()
-                    ));
-                }
-            } else if let Some((unit, metres)) = small_unit(title)
-                && !about(*scale, metres)
-            {
-                all.push(format!(
-                    "{name} goes by the column `{title}`, whose title says {unit}, times scale = {scale}, in metres: \
-                     by up to {} m (scale = {metres} makes metres of {unit})",
-                    length(most)
-                ));
-            }
-        }
+        let first = of_files(motion).next();
+        all.extend(first.and_then(|(_, spline, column)| times(&name, column, spline.ends(), scene.end_time)));
+        all.extend(
+            of_files(motion).filter_map(|(part, spline, column)| of_column(&name, part, spline, column)),
+        );
     }
+}
+
+/// A column of ways or angles.
+fn of_column(name: &str, part: &Part, spline: &Spline, column: &Column) -> Option<String> {
+    let (low, high) = spline.extent();
+    let most = high.max(-low);
+    let Column { title, scale, .. } = column;
+    let turns = part.angle != 0.0;
+    if let Some(rate) = rate(title) {
+        let (goes, taken) = if turns { ("turns", "angles in rad") } else { ("goes", "ways in m") };
+        return Some(format!(
+            "{name} {goes} by the column `{title}`, whose title says {rate}: its numbers are taken as {taken}, up to {}, \
+             and nothing integrates them",
+            length(most)
+        ));
+    }
+    if turns {
+        return (says_degrees(title) && !about(*scale, DEGREE)).then(|| {
+            format!(
+                "{name} turns by the column `{title}`, whose title says degrees, times scale = {scale}, in radians: by \
+                 up to {} rad, {:.0} degrees (scale = {DEGREE} makes radians of degrees)",
+                length(most),
+                most.to_degrees()
+            )
+        });
+    }
+    let (unit, metres) = small_unit(title).filter(|(_, metres)| !about(*scale, *metres))?;
+    Some(format!(
+        "{name} goes by the column `{title}`, whose title says {unit}, times scale = {scale}, in metres: by up to {} m \
+         (scale = {metres} makes metres of {unit})",
+        length(most)
+    ))
 }
 
 /// A scale that makes metres or radians of the one and spoils the other.

@@ -1,6 +1,7 @@
 //! Remarks on the fluid: what carries it, how fast it may become.
 
 use super::overlap;
+use super::shapes::place;
 use halfstep_scene::geometry::{self, Cells, FluidPoint, Layout};
 use halfstep_scene::{Block, Geometry, Motion, Phase, Scene, Shape, expected_speed_of_fluid as fastest};
 use std::collections::HashMap;
@@ -158,12 +159,11 @@ pub(super) fn outside<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &m
         let astray = 1 + astray.count();
         // What hangs altogether is remarked on as that.
         if astray < count {
-            let at: Vec<String> = first.iter().map(|x| (*x as f32).to_string()).collect();
             all.push(format!(
                 "{astray} of {count} particles of `{}` have neither wall nor solid below them, however deep, and fall: \
-                 the first is at [{}]",
+                 the first is at {}",
                 shape.name,
-                at.join(", ")
+                place(&first)
             ));
         }
     }

@@ -51,11 +51,13 @@ pub(crate) fn scene() -> Scene {
                 probe: "tip.x".into(),
                 label: "Antoci et al. 2007, experiment".into(),
                 points: (0..=10).map(|k| [0.04 * f64::from(k), 1.1 * tip(0.04 * f64::from(k))[0]]).collect(),
+                column: None,
             },
             Reference {
                 probe: "tip.y".into(),
                 label: "Antoci et al. 2007, experiment".into(),
                 points: (0..=10).map(|k| [0.04 * f64::from(k), 1.1 * tip(0.04 * f64::from(k))[1]]).collect(),
+                column: None,
             },
             Reference {
                 probe: "tip.x".into(),
@@ -63,6 +65,7 @@ pub(crate) fn scene() -> Scene {
                 points: (0..=200)
                     .map(|k| [0.002 * f64::from(k), 0.9 * tip(0.002 * f64::from(k))[0]])
                     .collect(),
+                column: None,
             },
         ],
         metrics: Vec::new(),
@@ -80,6 +83,7 @@ pub(crate) fn scene() -> Scene {
             domain: None,
         },
         unused_parameters: Vec::new(),
+        whole_angles: Vec::new(),
     }
 }
 

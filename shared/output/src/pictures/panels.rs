@@ -193,7 +193,12 @@ mod tests {
         assert_eq!(panels(&tip(), &table_flat).len(), 2);
         let mut scene = tip();
         let points = vec![[0.0, 0.0], [0.05, 0.04], [9.0, 70.0]];
-        scene.references.push(Reference { probe: "tip.y".into(), label: "measured".into(), points });
+        scene.references.push(Reference {
+            probe: "tip.y".into(),
+            label: "measured".into(),
+            points,
+            column: None,
+        });
         let panels = panels(&scene, &table(&[[0.0, 0.0, 0.0], [0.1, 0.02, 0.02]]));
         assert_eq!(panels.len(), 2);
         assert!(panels[0].references.is_empty());
@@ -208,7 +213,12 @@ mod tests {
         let far = vec![[0.05, 0.05], [0.04, 0.041]];
         let near = vec![[0.0, 0.0], [0.1, 0.05]];
         for (label, points) in [("far", far), ("near", near)] {
-            scene.references.push(Reference { probe: "tip.x".into(), label: label.into(), points });
+            scene.references.push(Reference {
+                probe: "tip.x".into(),
+                label: label.into(),
+                points,
+                column: None,
+            });
         }
         let panel = |x: f64| panels(&scene, &table(&[[0.0, 0.0, 0.0], [0.1, x, 0.0]])).remove(0);
         let flat = panel(0.002);

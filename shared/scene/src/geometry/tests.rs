@@ -70,6 +70,7 @@ fn scene(shapes: Vec<Shape>) -> Scene {
         },
         frame: None,
         unused_parameters: Vec::new(),
+        whole_angles: Vec::new(),
     }
 }
 

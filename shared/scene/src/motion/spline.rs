@@ -22,6 +22,9 @@ pub struct Column {
     pub file: String,
     /// Title of the column.
     pub title: String,
+    /// Title of the column of times.
+    #[serde(default)]
+    pub time: String,
     /// What its numbers were multiplied by.
     pub scale: f64,
 }
@@ -58,6 +61,12 @@ impl Spline {
         self.column.as_ref()
     }
 
+    /// Rate at which it comes to its last point.
+    pub fn last_rate(&self) -> f64 {
+        let n = self.times.len();
+        self.within(n - 2, self.times[n - 1] - self.times[n - 2])[1]
+    }
+
     /// Value, rate and second rate at a time.
     pub fn at(&self, time: f64) -> [f64; 3] {
         let next = self.times.partition_point(|t| *t <= time);
@@ -84,7 +93,7 @@ impl Spline {
     }
 
     /// Times of the first and the last point, s.
-    pub(crate) fn ends(&self) -> [f64; 2] {
+    pub fn ends(&self) -> [f64; 2] {
         [self.times[0], self.times[self.times.len() - 1]]
     }
 
@@ -149,6 +158,7 @@ mod tests {
         assert_eq!(spline.at(1.0), [1.0, 0.0, -3.0]);
         assert_eq!(spline.at(-1.0), [0.0; 3]);
         assert_eq!(spline.at(3.0), [0.0; 3]);
+        assert_eq!(spline.last_rate(), -1.5);
         assert_eq!((spline.extent(), spline.fastest()), ((0.0, 1.0), 1.5));
     }
 

@@ -1,0 +1,142 @@
+//! Remarks on probes of the fluid in walls.
+
+use super::curves::front_at;
+use super::reached::{Places, Walls, reached};
+use super::shapes::{length, place};
+use halfstep_scene::geometry::{self, Layout, cell};
+use halfstep_scene::{Block, ProbeKind, Scene};
+
+/// Distance from places that the fluid reaches up to which a point is at a wall's face and not in the wall, in spacings.
+const AT_FACE: f64 = 1.0;
+/// Distance from a line at which a wall is right beside it, in spacings.
+const RIGHT_BESIDE: f64 = 0.75;
+
+/// Where the fluid can come in the box around all shapes; walls that move may leave any of their places.
+struct Reach<'s, const D: usize> {
+    scene: &'s Scene,
+    places: Places<D>,
+    around: Block,
+}
+
+impl<const D: usize> Reach<'_, D> {
+    /// Whether a place that the fluid can come to, or one beside all shapes, is within a distance of a point.
+    fn comes_within(&self, at: &[f64; D], distance: f64) -> bool {
+        let dx = self.scene.resolution;
+        let (home, far) = (cell(at, dx), (distance / dx).ceil() as i64);
+        let side = 2 * far + 1;
+        !geometry::holds(&self.around, at, 0.0)
+            || (0..side.pow(D as u32)).any(|code| {
+                let near: [i64; D] =
+                    std::array::from_fn(|a| home[a] - far + code / side.pow(a as u32) % side);
+                let away = |a: usize| ((near[a] as f64 + 0.5) * dx - at[a]).powi(2);
+                (0..D).map(away).sum::<f64>() <= distance * distance && self.places.contains(&near)
+            })
+    }
+
+    /// Whether it comes into the columns that a gauge looks at, below the top of all shapes.
+    fn rises_at(&self, x: f64) -> bool {
+        let middle = |k: i64| (k as f64 + 0.5) * self.scene.resolution;
+        let beside = |k: i64| (middle(k) - x).abs() <= 1.5 * self.scene.resolution;
+        let Block { min, max } = &self.around;
+        x < min[0] || x > max[0] || self.places.iter().any(|at| beside(at[0]) && middle(at[1]) < max[1])
+    }
+
+    /// Whether it can come beyond a place along x.
+    fn goes_beyond(&self, x: f64) -> bool {
+        let dx = self.scene.resolution;
+        x + dx > self.around.max[0] || self.places.iter().any(|at| at[0] as f64 * dx > x + 0.5 * dx)
+    }
+
+    /// Whether a wall is right beside all of a line.
+    fn walled(&self, from: &[f64; D], to: &[f64; D]) -> bool {
+        let dx = self.scene.resolution;
+        let way: [f64; D] = std::array::from_fn(|a| to[a] - from[a]);
+        let size = way.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let parts = (2.0 * size / dx).ceil().max(1.0);
+        let normal = |a: usize| match a {
+            0 => way[1] / size,
+            1 => -way[0] / size,
+            _ => 0.0,
+        };
+        (0..parts as usize).all(|part| {
+            let along = (part as f64 + 0.5) / parts;
+            [-RIGHT_BESIDE, RIGHT_BESIDE].into_iter().any(|side| {
+                let beside: [f64; D] =
+                    std::array::from_fn(|a| from[a] + along * way[a] + side * dx * normal(a));
+                geometry::holds(&self.around, &beside, 0.0) && !self.places.contains(&cell(&beside, dx))
+            })
+        })
+    }
+}
+
+fn narrow<const D: usize>(x: &[f64; 3]) -> [f64; D] {
+    std::array::from_fn(|a| x[a])
+}
+
+/// Probes in and at walls that stay, where no fluid comes.
+pub(super) fn walled<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
+    let stays = |shape: &Option<usize>| {
+        shape.is_none_or(|k| scene.shapes[k].solid.is_none() && scene.shapes[k].motion.is_none())
+    };
+    let looks = |kind: &ProbeKind| match kind {
+        ProbeKind::Pressure { shape, .. } => stays(shape),
+        ProbeKind::Velocity { .. }
+        | ProbeKind::WaterLevel { .. }
+        | ProbeKind::Flux { .. }
+        | ProbeKind::Front => true,
+        _ => false,
+    };
+    let mut probes = scene.probes.iter().filter(|probe| looks(&probe.kind)).peekable();
+    let boxes = scene.shapes.iter().map(|shape| geometry::bounding_box(shape, scene));
+    let (Some(around), Some(_), false) = (geometry::around(boxes), probes.peek(), layout.fluid.is_empty())
+    else {
+        return;
+    };
+    let places = reached(scene, layout, &Walls::at_rest(scene, layout), true);
+    let reach = Reach { scene, places, around };
+    let support = 2.0 * scene.smoothing_ratio * scene.resolution;
+    let front = front_at(scene, layout);
+    for probe in probes {
+        let name = &probe.name;
+        match &probe.kind {
+            ProbeKind::Velocity { at } if !reach.comes_within(&narrow(at), AT_FACE * scene.resolution) => {
+                let measured = match reach.comes_within(&narrow(at), support) {
+                    true => format!("it measures the fluid beside the wall, up to 2h = {} m away", length(support)),
+                    false => "no fluid comes near it, and it measures 0 throughout".to_owned(),
+                };
+                all.push(format!("the probe `{name}` at {} is in a wall: {measured}", place(&at[..D])));
+            }
+            ProbeKind::Pressure { at, to, .. } => {
+                let ends = [Some(at), to.as_ref()];
+                if !ends.into_iter().flatten().any(|at| reach.comes_within(&narrow(at), support)) {
+                    all.push(format!(
+                        "the probe `{name}` at {} is in a wall: no fluid comes within 2h = {} m of it, and it measures \
+                         0 throughout",
+                        place(&at[..D]),
+                        length(support)
+                    ));
+                }
+            }
+            ProbeKind::WaterLevel { x } => {
+                for x in x.iter().filter(|x| !reach.rises_at(**x)) {
+                    all.push(format!(
+                        "the gauge `{name}` at x = {} m has walls alone below and above it: fluid comes there over \
+                         their top at most",
+                        length(*x)
+                    ));
+                }
+            }
+            ProbeKind::Front if !reach.goes_beyond(front) => all.push(format!(
+                "the front `{name}` is {} m throughout: it is the farthest reach along +x, where the fluid begins at a \
+                 wall",
+                length(front)
+            )),
+            ProbeKind::Flux { from, to } if reach.walled(&narrow(from), &narrow(to)) => all.push(format!(
+                "the flux `{name}` is 0 throughout: a wall is beside all of its line, {} to {}, and nothing crosses it",
+                place(&from[..D]),
+                place(&to[..D])
+            )),
+            _ => (),
+        }
+    }
+}
