@@ -1,7 +1,7 @@
 //! Remarks on probes of the fluid in walls.
 
 use super::curves::front_at;
-use super::reached::{Places, Walls, reached};
+use super::reached::{Matter, Places, reached};
 use super::shapes::{length, place};
 use halfstep_scene::geometry::{self, Layout, cell};
 use halfstep_scene::{Block, ProbeKind, Scene};
@@ -92,7 +92,7 @@ pub(super) fn walled<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mu
     else {
         return;
     };
-    let places = reached(scene, layout, &Walls::at_rest(scene, layout), true);
+    let places = reached(scene, layout, &Matter::at_rest(scene, layout), true);
     let reach = Reach { scene, places, around };
     let support = 2.0 * scene.smoothing_ratio * scene.resolution;
     let front = front_at(scene, layout);
