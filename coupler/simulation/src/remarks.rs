@@ -7,6 +7,7 @@ mod beams;
 mod bodies;
 mod clamp_faces;
 mod contacts;
+mod cracks;
 mod curves;
 mod domain;
 mod dry;
@@ -15,21 +16,28 @@ mod fields;
 mod frame;
 mod gaps;
 mod idle;
+mod joints;
 mod jolts;
 mod loaded;
 mod loads;
+mod lost;
 mod magnitudes;
 mod makers;
+mod modes;
 mod moving;
 mod nodal;
 mod outcome;
+mod passages;
 mod probed;
 mod reached;
+mod rigid;
 mod settings;
 mod shapes;
+mod solid_keys;
 mod spills;
 mod tanks;
 mod thickness;
+mod unheld;
 mod units;
 mod walls;
 mod water;
@@ -78,20 +86,33 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     moving::forgotten(scene, &mut all);
     moving::probes(scene, &mut all);
     let bodies = scene.bodies_of(layout);
+    unheld::sunk(scene, layout, &bodies, &mut all);
     bodies::free(scene, &bodies, &mut all);
+    unheld::beside_walls(scene, &bodies, &mut all);
+    rigid::given(scene, layout, &mut all);
+    joints::angles(scene, &mut all);
+    joints::springs(scene, layout, &mut all);
+    joints::locks(scene, &mut all);
+    joints::starts(scene, &mut all);
+    joints::far_hinges(scene, &mut all);
     bodies::held_in_part(scene, &bodies, &mut all);
     bodies::parted(scene, &bodies, &mut all);
     bodies::voids::<D>(scene, &mut all);
     bodies::idle_voids::<D>(scene, &mut all);
     bodies::held_altogether(scene, &bodies, &mut all);
     bodies::not_repeated(scene, layout, &mut all);
-    bodies::cracks(scene, &mut all);
+    cracks::cracks(scene, layout, &mut all);
     loads::tractions(scene, layout, &mut all);
     loaded::empty(scene, layout, &mut all);
     loaded::points(scene, layout, &mut all);
+    loads::ramps(scene, &mut all);
+    modes::cantilevers(scene, &mut all);
+    solid_keys::arms(scene, &mut all);
+    solid_keys::side_friction(scene, &mut all);
+    solid_keys::untouched(scene, &mut all);
     bodies::touching(scene, layout, &bodies, &mut all);
     bodies::standing(scene, layout, &bodies, &mut all);
-    contacts::overlaps(scene, &mut all);
+    contacts::overlaps(scene, layout, &mut all);
     contacts::unsaid(scene, &mut all);
     contacts::of_walls(scene, &bodies, &mut all);
     contacts::debris(scene, &mut all);
@@ -100,7 +121,8 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     shapes::sizes(scene, placed, &mut all);
     nodal::mass(scene, placed, &mut all);
     nodal::touching(scene, layout, &bodies, &mut all);
-    shapes::overlaps::<D>(scene, placed, &mut all);
+    lost::overlaps::<D>(scene, placed, &mut all);
+    lost::copies(scene, layout, &mut all);
     shapes::locking(scene, placed, &mut all);
     thickness::thin(scene, placed, &mut all);
     walls::thin(scene, layout, &mut all);
@@ -122,9 +144,9 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     water::wave_makers(scene, &mut all);
     makers::makers(scene, &mut all);
     fields::fields(scene, layout, &mut all);
-    water::walls_that_meet(scene, &mut all);
     units::columns(scene, &mut all);
     magnitudes::axes(scene, &mut all);
+    passages::passages(scene, &mut all);
     settings::motions(scene, &mut all);
     frame::twice(scene, &mut all);
     frame::frame(scene, &mut all);
@@ -158,7 +180,13 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
 #[cfg(test)]
 mod beam_tests;
 #[cfg(test)]
+mod body_tests;
+#[cfg(test)]
 mod curve_tests;
+#[cfg(test)]
+mod joint_tests;
+#[cfg(test)]
+mod load_tests;
 #[cfg(test)]
 mod meaning_tests;
 #[cfg(test)]

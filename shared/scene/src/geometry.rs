@@ -14,6 +14,7 @@
 mod alone;
 mod at_start;
 mod cells;
+mod crossing;
 mod moved;
 mod nearest;
 mod occupied;
@@ -32,6 +33,7 @@ pub use alone::{measure_alone, places_alone};
 pub use at_start::cantilever_velocity;
 use at_start::{added, field_velocity, initial_pressure, surfaces};
 pub use cells::{Cells, cell};
+pub use crossing::crosses;
 pub use moved::Moved;
 pub use nearest::nearest;
 use occupied::Occupied;

@@ -4,7 +4,7 @@
 use super::magnitudes::STIFFNESS;
 use super::shapes::{Placed, length};
 use halfstep_scene::geometry::{self, Layout};
-use halfstep_scene::{Block, Geometry, Phase, Scene};
+use halfstep_scene::{Block, Geometry, Phase, Scene, Shape};
 use serde::Serialize;
 
 /// Deflection by linear theory over the free length from which on it is remarked: soft plates of experiments behind a
@@ -194,6 +194,16 @@ impl Beam {
             (0.0..=self.length).contains(&along) && across.abs() < 0.5 * self.thickness + 2.0 * dx
         })
     }
+}
+
+/// Where a plate along x is free, that a clamp holds at one end: from its root to its tip, m along x.
+pub(super) fn free_along_x(scene: &Scene, shape: &Shape) -> Option<[f64; 2]> {
+    let corners = outlines(&shape.geometry);
+    let [corners] = &corners[..] else { return None };
+    let beam = Beam::of(corners, &shape.clamp, 0.5 * scene.spacing(shape))?;
+    let ends = beam.free.map(|along| beam.place(along, 0.0)[0]);
+    let lies = beam.along[1].abs() < 1e-6 && beam.held != [true; 2];
+    lies.then(|| if beam.held[0] { ends } else { [ends[1], ends[0]] })
 }
 
 /// Deflection of a clamped plate by beam theory, of the copy that bends most; `None` of what is no such plate.

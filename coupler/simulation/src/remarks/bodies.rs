@@ -105,7 +105,7 @@ pub(super) fn held_in_part(scene: &Scene, bodies: &[Body], all: &mut Vec<String>
 }
 
 /// A spring joint ties a rigid body, which stays free.
-fn on_spring(scene: &Scene, body: &Body) -> bool {
+pub(super) fn on_spring(scene: &Scene, body: &Body) -> bool {
     body.shapes.iter().any(|&k| {
         let shape = &scene.shapes[k];
         let keys = shape.solid.and_then(|k| scene.solids[k].rigid());
@@ -220,18 +220,6 @@ pub(super) fn not_repeated<const D: usize>(scene: &Scene, layout: &Layout<D>, al
     }
 }
 
-/// Cracks beside their shape.
-pub(super) fn cracks(scene: &Scene, all: &mut Vec<String>) {
-    for shape in &scene.shapes {
-        let Some([from, to]) = shape.crack else { continue };
-        let around = geometry::bounding_box(shape, scene);
-        let apart = |d: usize| from[d].max(to[d]) < around.min[d] || from[d].min(to[d]) > around.max[d];
-        if (0..2).any(apart) {
-            all.push(format!("the crack of `{}` lies beside it, and parts nothing", shape.name));
-        }
-    }
-}
-
 /// Shapes of one solid that touch: bodies of their own, or one continuum although they say otherwise.
 pub(super) fn touching<const D: usize>(
     scene: &Scene,
@@ -335,7 +323,7 @@ pub(crate) fn listed(scene: &Scene, bodies: &[Body]) -> String {
     format!("{}{more}", shown.join("; "))
 }
 
-fn names(scene: &Scene, body: &Body) -> String {
+pub(super) fn names(scene: &Scene, body: &Body) -> String {
     let names: Vec<String> = body.shapes.iter().map(|&k| format!("`{}`", scene.shapes[k].name)).collect();
     names.join(" and ")
 }

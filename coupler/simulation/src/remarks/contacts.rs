@@ -1,7 +1,10 @@
 //! Remarks on what touches: overlaps at the start, and pairs of solids of which the scene says nothing.
 
-use halfstep_scene::geometry::Surface;
+use super::meet;
+use super::shapes::length;
+use halfstep_scene::geometry::{self, Layout, Surface};
 use halfstep_scene::{Body, ContactKeys, EffectName, Geometry, Phase, Scene, Shape, Switch};
+use std::collections::HashSet;
 
 /// Part of the spacing that surfaces may lie in each other.
 const OVERLAP: f64 = 1e-3;
@@ -35,10 +38,17 @@ impl Toucher<'_> {
 
 /// Rigid bodies, and solids of which two touch, that lie in each other or in walls at the start: contact throws them
 /// apart.
-pub(super) fn overlaps(scene: &Scene, all: &mut Vec<String>) {
+pub(super) fn overlaps<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
     if scene.dimension != 2 || scene.solids.is_empty() {
         return;
     }
+    // A copy that lies in another one has no particles, and is no body.
+    let name = |index: u32| scene.shapes[index as usize].name.as_str();
+    let with_particles: HashSet<(&str, u32)> = layout.solid.iter().map(|p| (name(p.body), p.copy)).collect();
+    let is_there = |one: &Toucher<'_>| {
+        let Toucher { shape, copy, .. } = one;
+        shape.phase == Phase::Wall || with_particles.contains(&(&shape.name, copy.unwrap_or(0)))
+    };
     let touches =
         |shape: &&Shape| shape.phase == Phase::Solid || (shape.phase == Phase::Wall && shape.contact);
     let touchers: Vec<Toucher<'_>> = scene
@@ -53,6 +63,7 @@ pub(super) fn overlaps(scene: &Scene, all: &mut Vec<String>) {
                 Toucher { shape, copy, points, surface }
             })
         })
+        .filter(is_there)
         .collect();
     let rigid = |shape: &Shape| shape.solid.is_some_and(|k| scene.solids[k].rigid().is_some());
     let pairs = scene.contacts();
@@ -74,16 +85,33 @@ pub(super) fn overlaps(scene: &Scene, all: &mut Vec<String>) {
             let depth = a.depth_in(b).max(b.depth_in(a));
             let dx = scene.resolution;
             if depth > OVERLAP * dx {
-                let text = format!(
-                    "`{}` and `{}` lie {:.3} m in each other at the start: contact throws them apart",
-                    a.shape.name, b.shape.name, depth
-                );
+                let text = in_each_other(scene, a.shape, b.shape, depth);
                 if !all.contains(&text) {
                     all.push(text);
                 }
             }
         }
     }
+}
+
+/// What is said of two shapes that lie so deep, m, in each other.
+fn in_each_other(scene: &Scene, a: &Shape, b: &Shape, depth: f64) -> String {
+    let depth = length(depth);
+    let (solid, wall) = if a.phase == Phase::Wall { (b, a) } else { (a, b) };
+    let around = |shape: &Shape| geometry::bounding_box(shape, scene);
+    if matches!(wall.geometry.unmoved(), Geometry::Tank { .. }) && !meet(&around(solid), &around(wall), scene)
+    {
+        return format!(
+            "`{}` begins outside of `{}`, whose walls have no outer face for what touches them: contact throws it \
+             {depth} m back through them (a tank of boxes or polygons has both faces)",
+            solid.name, wall.name
+        );
+    }
+    let what = match a.name == b.name {
+        true => format!("copies of `{}`", a.name),
+        false => format!("`{}` and `{}`", a.name, b.name),
+    };
+    format!("{what} lie {depth} m in each other at the start: contact throws them apart")
 }
 
 /// A joint ties two shapes' bodies, or a motion prescribes where one is beside a wall: they do not touch.

@@ -1,8 +1,9 @@
 //! Remarks on tractions, and every one as it acts.
 
-use super::shapes::place;
-use halfstep_scene::geometry::{Layout, SolidPoint};
-use halfstep_scene::{Block, Scene, Traction};
+use super::near;
+use super::shapes::{length, place};
+use halfstep_scene::geometry::{Cells, Layout, SolidPoint};
+use halfstep_scene::{Block, Scene, Shape, Traction};
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::fmt;
@@ -79,6 +80,7 @@ pub(super) fn tractions<const D: usize>(scene: &Scene, layout: &Layout<D>, all: 
         let most = (0..D).map(columns).max().unwrap_or(0).max(1);
         let rows = places.len() as f64 / most as f64;
         if rows < SEVERAL {
+            inside(scene, layout, &scene.shapes[index], &places, all);
             continue;
         }
         let size = traction.iter().map(|t| t * t).sum::<f64>().sqrt();
@@ -89,5 +91,52 @@ pub(super) fn tractions<const D: usize>(scene: &Scene, layout: &Layout<D>, all: 
              all, {rows:.0} times that on a surface (a box around one row loads a surface)",
             places.len()
         ));
+    }
+}
+
+/// Part of the loaded particles from which on they are no surface: the ends of a row inside a body lie on it.
+const INSIDE: f64 = 0.9;
+
+/// Loads on a row inside of a body. A crack has faces there.
+fn inside<const D: usize>(
+    scene: &Scene,
+    layout: &Layout<D>,
+    shape: &Shape,
+    places: &[[f64; D]],
+    all: &mut Vec<String>,
+) {
+    let reach = 1.2 * scene.spacing(shape);
+    let cracked = scene.shapes.iter().any(|other| other.solid == shape.solid && other.crack.is_some());
+    if cracked || places.is_empty() {
+        return;
+    }
+    let mut cells = Cells::new(reach);
+    let own = layout.solid.iter().filter(|p| scene.shapes[p.body as usize].solid == shape.solid);
+    own.for_each(|p| cells.add(&p.position, p.position));
+    // Itself and one on each side, whichever way the lattice is turned.
+    let enclosed = |at: &&[f64; D]| cells.around(at).filter(|x| near(x, at, reach)).count() > 2 * D;
+    let count = places.iter().filter(enclosed).count();
+    if count as f64 > INSIDE * places.len() as f64 {
+        all.push(format!(
+            "the traction on `{}` acts inside of it: of {} particles {count} have others on all sides (a box around the \
+             outermost row loads a surface)",
+            shape.name,
+            places.len()
+        ));
+    }
+}
+
+/// Loads that the run's end cuts off as they grow.
+pub(super) fn ramps(scene: &Scene, all: &mut Vec<String>) {
+    for (shape, load) in scene.shapes.iter().filter_map(|shape| Some((shape, shape.load?))) {
+        if load.ramp > scene.end_time {
+            all.push(format!(
+                "the load of `{}` comes to {} % of its traction: its `ramp` takes {} s, and the run ends at {} s",
+                shape.name,
+                length(100.0 * load.share(scene.end_time)),
+                load.ramp,
+                scene.end_time
+            ));
+        }
     }
 }

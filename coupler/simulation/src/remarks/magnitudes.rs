@@ -7,7 +7,7 @@ use halfstep_scene::{Block, Geometry, ProbeKind, Scene, WholeAngle, geometry};
 /// Softer than any gel, stiffer than diamond, Pa.
 pub(super) const STIFFNESS: [f64; 2] = [1e3, 2e12];
 /// Lighter than aerogel, heavier than osmium, kg/m³.
-const DENSITY: [f64; 2] = [50.0, 25_000.0];
+pub(super) const DENSITY: [f64; 2] = [50.0, 25_000.0];
 /// Less than a small moon's, more than that of a giant planet, m/s².
 const GRAVITY: [f64; 2] = [0.1, 50.0];
 /// Of fresh and salt water, kg/m³.

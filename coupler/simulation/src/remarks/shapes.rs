@@ -3,7 +3,7 @@
 use super::beams::{self, Bends};
 use super::nodal;
 use super::thickness::{self, Thinnest};
-use halfstep_scene::geometry::{self, Layout, Plate, Regions};
+use halfstep_scene::geometry::{self, Layout, Plate};
 use halfstep_scene::{Geometry, Phase, Plane, Scene, Shape, SolidModelName};
 use serde::{Serialize, Serializer};
 use std::fmt;
@@ -12,8 +12,6 @@ use std::fmt;
 pub(super) const NOTABLE: f64 = 0.02;
 /// The same of a bending stiffness: that of a thickness that much larger.
 const NOTABLY_STIFFER: f64 = 0.06;
-/// From which share of its particles on a loss to other shapes is remarked.
-const LOST: f64 = 0.1;
 
 /// A shape with its particles.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -353,50 +351,4 @@ pub(super) fn locking(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
             ));
         }
     }
-}
-
-/// Shapes that lose many of their particles to others.
-pub(super) fn overlaps<const D: usize>(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
-    for (shape, of_scene) in placed.iter().zip(&scene.shapes) {
-        if shape.particles == 0 && shape.lost == 0 {
-            all.push(format!(
-                "`{}` has no particle, and nothing is where it stands: it is nowhere as thick as its spacing, {} m, or \
-                 a void has its place",
-                shape.name,
-                length(scene.spacing(of_scene))
-            ));
-        }
-    }
-    for (index, shape) in placed.iter().enumerate().filter(|(_, shape)| shape.phase != Phase::Wall) {
-        let whole = shape.particles + shape.lost;
-        let are_many = |lost: usize| lost as f64 > LOST * whole as f64;
-        if shape.particles == 0 && shape.lost > 0 {
-            all.push(format!(
-                "`{}` has none of its {whole} particles, and what it says acts nowhere: shapes that it overlaps take \
-                 their places (of two shapes of one phase the one that is listed first has them)",
-                shape.name
-            ));
-        } else if are_many(shape.lost) && are_many(shape.lost.saturating_sub(laid_over::<D>(scene, index))) {
-            all.push(format!(
-                "`{}` has {} of its {whole} particles: the others' places are taken by shapes that it overlaps",
-                shape.name, shape.particles
-            ));
-        }
-    }
-}
-
-/// How many of the places of a shape of fluid solids and walls have, without those of tanks: water is laid over bodies
-/// and beaches.
-fn laid_over<const D: usize>(scene: &Scene, index: usize) -> usize {
-    if scene.shapes[index].phase != Phase::Fluid {
-        return 0;
-    }
-    let matter = Regions::of(scene, |shape| match shape.phase {
-        Phase::Solid => true,
-        Phase::Wall => !matches!(shape.geometry.unmoved(), Geometry::Tank { .. }),
-        Phase::Fluid => false,
-    });
-    // Places closer than half a spacing to their particles are theirs as well.
-    let margin = 0.5 * scene.resolution;
-    geometry::places_alone::<D>(scene, index).iter().filter(|place| matter.hold(place, margin)).count()
 }

@@ -81,7 +81,7 @@ fn rigid(solids: [&str; 2], [x, floor]: [f64; 2], more: &str) -> Vec<String> {
 #[test]
 fn what_lies_in_each_other_at_the_start() {
     assert_eq!(rigid(["a", "a"], [0.1, 0.0], ""), [""; 0], "touching is none");
-    let both = "`block-0` and `block-1` lie 0.020 m in each other at the start";
+    let both = "`block-0` and `block-1` lie 0.02 m in each other at the start";
     for solids in [["a", "a"], ["a", "b"]] {
         let more = "[[contact]]\nsolids = [\"a\", \"b\"]\n";
         let found = rigid(solids, [0.08, 0.0], if solids[1] == "b" { more } else { "" });

@@ -1,9 +1,8 @@
 //! Remarks on the fluid: what carries it, how fast it may become.
 
-use super::overlap;
 use super::shapes::place;
 use halfstep_scene::geometry::{self, Cells, FluidPoint, Layout};
-use halfstep_scene::{Block, Geometry, Motion, Phase, Scene, Shape, expected_speed_of_fluid as fastest};
+use halfstep_scene::{Geometry, Motion, Phase, Scene, Shape, expected_speed_of_fluid as fastest};
 use std::collections::HashMap;
 
 /// Mach number above which the density error, about its square, exceeds 3 %.
@@ -256,61 +255,6 @@ pub(super) fn wave_makers(scene: &Scene, all: &mut Vec<String>) {
                 "`{}` makes waves for a depth of {} m, and the water is {} m deep: they have another height and length",
                 shape.name, makes.depth as f32, depth as f32
             ));
-        }
-    }
-}
-
-/// Walls that move through fluid into other walls: what is dry may overlap.
-pub(super) fn walls_that_meet(scene: &Scene, all: &mut Vec<String>) {
-    let walls: Vec<_> = scene.shapes.iter().filter(|shape| shape.phase == Phase::Wall).collect();
-    let fluid = geometry::fluid_boxes(scene);
-    for moving in &walls {
-        let Some(motion) = &moving.motion else { continue };
-        if motion.pivot().is_some() {
-            continue;
-        }
-        let block = geometry::bounding_box(moving, scene);
-        let time = |k: usize| scene.end_time * k as f64 / INSTANTS as f64;
-        let at = |k: usize| {
-            let (way, mut now) = (motion.at(time(k)).displacement, block);
-            (0..3).for_each(|a| (now.min[a], now.max[a]) = (now.min[a] + way[a], now.max[a] + way[a]));
-            now
-        };
-        let way: Vec<Block> = (0..=INSTANTS).map(at).collect();
-        if !moving.contact {
-            for solid in scene.shapes.iter().filter(|s| s.phase == Phase::Solid && s.motion.is_none()) {
-                let fixed = geometry::bounding_box(solid, scene);
-                let along = solid.clamp_with.iter().flatten().any(|with| *with == moving.name);
-                if along || overlap(&block, &fixed, scene) {
-                    continue;
-                }
-                if let Some(meets) = way.iter().position(|now| overlap(now, &fixed, scene)) {
-                    all.push(format!(
-                        "`{}` goes through `{}` from about {:.3} s on: its `contact` is false, so it does not touch \
-                         solids",
-                        moving.name,
-                        solid.name,
-                        time(meets)
-                    ));
-                }
-            }
-        }
-        // Boxes that do not move: what slides along one meets nothing.
-        for other in walls.iter().filter(|other| other.motion.is_none()) {
-            let Geometry::Box(fixed) = &other.geometry else { continue };
-            if overlap(&block, fixed, scene) {
-                continue;
-            }
-            let Some(meets) = way.iter().position(|now| overlap(now, fixed, scene)) else { continue };
-            if way[..=meets].iter().any(|now| fluid.iter().any(|fluid| overlap(now, fluid, scene))) {
-                all.push(format!(
-                    "`{}` goes through `{}` from about {:.3} s on: walls do not stop each other, and fluid between \
-                     them is crushed",
-                    moving.name,
-                    other.name,
-                    time(meets)
-                ));
-            }
         }
     }
 }

@@ -1,0 +1,186 @@
+//! Remarks on joints: angles in degrees, springs that are far from their rest, what joints hold altogether.
+
+use super::rigid::Mass;
+use super::shapes::length;
+use halfstep_scene::geometry::{self, Layout};
+use halfstep_scene::{Block, Geometry, Joint, JointKind, Phase, RigidKeys, Scene, Shape};
+use std::f64::consts::TAU;
+
+/// A whole number of these, degrees, is hardly one of radians.
+const ROUND: f64 = 5.0;
+/// Degrees in a turn.
+const TURN: f64 = 360.0;
+/// Force of a spring at the start, over the body's weight, from which on it is remarked: moorings pull with a few.
+const PULLS: f64 = 20.0;
+/// Length over thickness from which on a body is a flap and no float on an arm.
+const FLAP: f64 = 3.0;
+/// Distance of a hinge from a flap over the flap's length.
+const FAR: f64 = 0.5;
+
+/// A rigid solid with its keys.
+fn rigid(scene: &Scene) -> impl Iterator<Item = (usize, &RigidKeys)> {
+    scene.solids.iter().enumerate().filter_map(|(k, solid)| Some((k, solid.rigid()?)))
+}
+
+/// Shapes of a body.
+fn shapes<'s>(scene: &'s Scene, solid: usize, body: &'s str) -> impl Iterator<Item = &'s Shape> + Clone {
+    scene.shapes.iter().filter(move |shape| shape.solid == Some(solid) && shape.body() == body)
+}
+
+/// What a joint ties its body to keeps its place.
+fn is_grounded(scene: &Scene, joint: &Joint) -> bool {
+    let rests = |s: &Shape| s.phase == Phase::Wall && s.name == joint.with && s.motion.is_none();
+    joint.with.is_empty() || scene.shapes.iter().any(rests)
+}
+
+/// An angle in radians that is one in degrees.
+fn in_degrees(angle: f64) -> bool {
+    let round = angle != 0.0 && (angle / ROUND).fract() == 0.0;
+    angle.abs() <= TURN && (round || angle.abs() > 1.001 * TAU)
+}
+
+/// Stops and rests of hinges in degrees.
+pub(super) fn angles(scene: &Scene, all: &mut Vec<String>) {
+    let hinge = |joint: &&Joint| matches!(joint.kind, JointKind::Hinge { .. });
+    for joint in rigid(scene).flat_map(|(_, keys)| &keys.joints).filter(hinge) {
+        let name = &joint.name;
+        if let Some([least, largest]) = joint.limits.filter(|limits| limits.iter().any(|x| in_degrees(*x))) {
+            all.push(format!(
+                "limits = [{least}, {largest}] of the hinge `{name}` are in radians, {:.0} to {:.0} degrees: [{}, {}] \
+                 if degrees are meant",
+                least.to_degrees(),
+                largest.to_degrees(),
+                length(least.to_radians()),
+                length(largest.to_radians())
+            ));
+        }
+        let round = (joint.rest / ROUND).fract() == 0.0;
+        // A spring that is wound up for several turns may be meant.
+        if round && in_degrees(joint.rest) && joint.stiffness > 0.0 {
+            all.push(format!(
+                "rest = {} of the hinge `{name}` is in radians, {:.0} degrees: {} if degrees are meant",
+                joint.rest,
+                joint.rest.to_degrees(),
+                length(joint.rest.to_radians())
+            ));
+        }
+    }
+}
+
+/// Springs that begin far from where they rest.
+pub(super) fn springs<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
+    let gravity = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+    for (solid, keys) in rigid(scene) {
+        for joint in &keys.joints {
+            let JointKind::Spring { at, to } = joint.kind else { continue };
+            let long = (0..3).map(|d| (to[d] - at[d]).powi(2)).sum::<f64>().sqrt();
+            let force = joint.stiffness * (long - joint.rest).abs();
+            let said = keys.bodies.iter().find(|body| body.name == joint.body).and_then(|body| body.mass);
+            let mass = said.or_else(|| Mass::of(scene, layout, solid, &joint.body).map(|shapes| shapes.mass));
+            let Some(weight) = mass.map(|mass| mass * gravity).filter(|weight| *weight > 0.0) else {
+                continue;
+            };
+            if force > PULLS * weight {
+                all.push(format!(
+                    "the spring `{}` begins {} m long and rests at {} m: it {} `{}` with {:.0} times its weight at the \
+                     start (without `rest` it rests as it begins)",
+                    joint.name,
+                    length(long),
+                    length(joint.rest),
+                    if long > joint.rest { "pulls" } else { "pushes" },
+                    joint.body,
+                    force / weight
+                ));
+            }
+        }
+    }
+}
+
+/// Velocities at the start that a joint takes away.
+pub(super) fn starts(scene: &Scene, all: &mut Vec<String>) {
+    for (solid, keys) in rigid(scene) {
+        for joint in keys.joints.iter().filter(|joint| is_grounded(scene, joint)) {
+            let (name, body) = (&joint.name, &joint.body);
+            let velocities = || shapes(scene, solid, body).map(|shape| shape.velocity);
+            let moves = velocities().any(|v| v != [0.0; 3]);
+            let said = keys.bodies.iter().find(|said| said.name == *body);
+            let turns = said.is_some_and(|said| said.angular_velocity != [0.0; 3]);
+            let lost = match joint.kind {
+                JointKind::Fixed if moves || turns => "the joint holds it",
+                JointKind::Rail { turns: false, .. } if turns => {
+                    "the rail does not let it turn (`turns = true` does)"
+                }
+                JointKind::Rail { axis, .. } if moves && velocities().all(|v| is_across(&v, &axis)) => {
+                    "it is across the rail"
+                }
+                _ => continue,
+            };
+            let what = if turns && !moves { "angular velocity" } else { "velocity" };
+            all.push(format!("the {what} that `{body}` begins with is lost at the joint `{name}`: {lost}"));
+        }
+    }
+}
+
+fn is_across(v: &[f64; 3], axis: &[f64; 3]) -> bool {
+    let size = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    (0..3).map(|d| v[d] * axis[d]).sum::<f64>().abs() <= 1e-9 * size
+}
+
+/// Two joints of one body that leave no way together, in the plane.
+pub(super) fn locks(scene: &Scene, all: &mut Vec<String>) {
+    if scene.dimension != 2 {
+        return;
+    }
+    for (_, keys) in rigid(scene) {
+        let grounded = || keys.joints.iter().filter(|joint| is_grounded(scene, joint));
+        for (k, a) in grounded().enumerate() {
+            if let Some(b) = grounded().skip(k + 1).find(|b| b.body == a.body && lock(a, b)) {
+                all.push(format!(
+                    "`{}` cannot move: the joints `{}` and `{}` leave no way together (kind = \"fixed\" holds it alone)",
+                    a.body, a.name, b.name
+                ));
+            }
+        }
+    }
+}
+
+fn lock(a: &Joint, b: &Joint) -> bool {
+    use JointKind::{Hinge, Rail};
+    match (a.kind, b.kind) {
+        (Hinge { at, .. }, Hinge { at: other, .. }) => at != other,
+        (Hinge { .. }, Rail { turns, .. }) | (Rail { turns, .. }, Hinge { .. }) => !turns,
+        (Rail { axis, turns: false, .. }, Rail { axis: other, turns: false, .. }) => {
+            (axis[0] * other[1] - axis[1] * other[0]).abs() > 1e-9
+        }
+        _ => false,
+    }
+}
+
+/// Flaps whose hinge is far from them.
+pub(super) fn far_hinges(scene: &Scene, all: &mut Vec<String>) {
+    for (solid, keys) in rigid(scene) {
+        for joint in keys.joints.iter().filter(|joint| is_grounded(scene, joint)) {
+            let JointKind::Hinge { at, .. } = joint.kind else { continue };
+            let boxes = shapes(scene, solid, &joint.body).map(|shape| geometry::bounding_box(shape, scene));
+            let Some(around) = geometry::around(boxes) else { continue };
+            let [thin, long] = sides(&around, scene.dimension);
+            let away = geometry::distance(&Geometry::Box(around), &at);
+            if long > FLAP * thin && away > FAR * long {
+                all.push(format!(
+                    "the hinge `{}` is {} m away from `{}`, which is {} m long: it swings about it on an arm that is \
+                     not there (`at` is in the scene's coordinates)",
+                    joint.name,
+                    length(away),
+                    joint.body,
+                    length(long)
+                ));
+            }
+        }
+    }
+}
+
+/// The shortest and the longest side of a box.
+fn sides(block: &Block, dimension: usize) -> [f64; 2] {
+    let sides = (0..dimension).map(|d| block.max[d] - block.min[d]);
+    sides.fold([f64::INFINITY, 0.0], |[low, high], side| [low.min(side), high.max(side)])
+}

@@ -1,0 +1,122 @@
+//! Remarks on what moves as prescribed into walls and solids that do not stop it.
+
+use super::water::INSTANTS;
+use super::{meet, overlap};
+use halfstep_scene::{Block, Geometry, Phase, Scene, Shape, TankSide, geometry};
+
+/// What moves, with the boxes around it at the instants of the run.
+struct Mover<'s> {
+    shape: &'s Shape,
+    way: Vec<Block>,
+}
+
+/// Walls and rigid bodies that move as prescribed and do not turn.
+fn movers(scene: &Scene) -> impl Iterator<Item = Mover<'_>> {
+    let rigid = |shape: &Shape| shape.solid.is_some_and(|k| scene.solids[k].rigid().is_some());
+    let moves = move |shape: &&Shape| shape.phase == Phase::Wall || rigid(shape);
+    scene.shapes.iter().filter(moves).filter_map(|shape| Mover::of(scene, shape))
+}
+
+fn instant(scene: &Scene, k: usize) -> f64 {
+    scene.end_time * k as f64 / INSTANTS as f64
+}
+
+impl<'s> Mover<'s> {
+    fn of(scene: &Scene, shape: &'s Shape) -> Option<Self> {
+        let motion = shape.motion.as_ref().filter(|motion| motion.pivot().is_none())?;
+        let block = geometry::bounding_box(shape, scene);
+        let at = |k: usize| {
+            let (way, mut now) = (motion.at(instant(scene, k)).displacement, block);
+            (0..3).for_each(|a| (now.min[a], now.max[a]) = (now.min[a] + way[a], now.max[a] + way[a]));
+            now
+        };
+        Some(Self { shape, way: (0..=INSTANTS).map(at).collect() })
+    }
+
+    /// The first instant at which it is in what stays; `None` where it begins in it, or never comes there.
+    fn enters(&self, fixed: &Block, scene: &Scene) -> Option<usize> {
+        let first = self.way.iter().position(|now| overlap(now, fixed, scene))?;
+        (first > 0).then_some(first)
+    }
+}
+
+/// All that moves through what it cannot.
+pub(super) fn passages(scene: &Scene, all: &mut Vec<String>) {
+    for mover in movers(scene) {
+        through_solids(scene, &mover, all);
+        through_walls(scene, &mover, all);
+    }
+}
+
+/// Walls that do not touch solids, through which they go.
+fn through_solids(scene: &Scene, mover: &Mover<'_>, all: &mut Vec<String>) {
+    let name = &mover.shape.name;
+    if mover.shape.phase != Phase::Wall || mover.shape.contact {
+        return;
+    }
+    for solid in scene.shapes.iter().filter(|s| s.phase == Phase::Solid && s.motion.is_none()) {
+        let along = solid.clamp_with.iter().flatten().any(|with| with == name);
+        let fixed = geometry::bounding_box(solid, scene);
+        if let (false, Some(meets)) = (along, mover.enters(&fixed, scene)) {
+            all.push(format!(
+                "`{name}` goes through `{}` from about {:.3} s on: its `contact` is false, so it does not touch solids",
+                solid.name,
+                instant(scene, meets)
+            ));
+        }
+    }
+}
+
+/// Walls at rest through which it goes where fluid is: what is dry may overlap.
+fn through_walls(scene: &Scene, mover: &Mover<'_>, all: &mut Vec<String>) {
+    let fluid = geometry::fluid_boxes(scene);
+    let walls = scene.shapes.iter().filter(|s| s.phase == Phase::Wall && s.motion.is_none());
+    for (what, fixed, tank) in walls.flat_map(|wall| parts(scene, wall)) {
+        let Some(meets) = mover.enters(&fixed, scene) else { continue };
+        let wet = |now: &Block| {
+            fluid.iter().any(|f| {
+                let between = meet(now, f, scene) && meet(&fixed, f, scene);
+                between || (!tank && overlap(now, f, scene))
+            })
+        };
+        if mover.way[..=meets].iter().any(wet) {
+            let why = match mover.shape.phase {
+                Phase::Wall => "walls do not stop each other",
+                _ => "nothing stops what `motion` moves",
+            };
+            all.push(format!(
+                "`{}` goes through {what} from about {:.3} s on: {why}, and fluid between them is crushed",
+                mover.shape.name,
+                instant(scene, meets)
+            ));
+        }
+    }
+}
+
+const SIDES: [[(TankSide, &str); 2]; 3] = [
+    [(TankSide::Left, "the left wall"), (TankSide::Right, "the right wall")],
+    [(TankSide::Bottom, "the bottom"), (TankSide::Top, "the top")],
+    [(TankSide::Back, "the back wall"), (TankSide::Front, "the front wall")],
+];
+
+/// A wall's boxes, each with what it is called and whether it is a tank's: of other walls what slides along them and
+/// what meets them is not told apart.
+fn parts(scene: &Scene, wall: &Shape) -> Vec<(String, Block, bool)> {
+    match &wall.geometry {
+        Geometry::Box(block) => vec![(format!("`{}`", wall.name), *block, false)],
+        Geometry::Tank { cavity, open } => {
+            let around = geometry::bounding_box(wall, scene);
+            let side = |axis: usize, k: usize| {
+                let (side, called) = SIDES[axis][k];
+                let mut block = around;
+                match k {
+                    0 => block.max[axis] = cavity.min[axis],
+                    _ => block.min[axis] = cavity.max[axis],
+                }
+                (!open.contains(&side)).then(|| (format!("{called} of `{}`", wall.name), block, true))
+            };
+            (0..scene.dimension).flat_map(|axis| (0..2).filter_map(move |k| side(axis, k))).collect()
+        }
+        _ => Vec::new(),
+    }
+}
