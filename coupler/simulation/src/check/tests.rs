@@ -75,3 +75,64 @@ fn a_time_has_a_unit_that_suits_it() {
     let said = two_blocks("").to_string();
     assert!(said.contains(" steps, one thread a role ("), "{said}");
 }
+
+#[test]
+fn loads_and_probes_are_listed_as_they_begin() {
+    let text = "resolution = 0.01\nend_time = 0.5\n[output]\nprobe_interval = 0.01\n[fluid]\ndensity = 1000.0\n\
+        [solid]\ndensity = 1100.0\nyoungs_modulus = 12e6\npoissons_ratio = 0.4\n\
+        [[shape]]\nname = \"tank\"\nphase = \"wall\"\ntank = { min = [0.0, 0.0], max = [0.4, 0.3], open = [\"top\"] }\n\
+        [[shape]]\nname = \"water\"\nphase = \"fluid\"\nbox = { min = [0.0, 0.0], max = [0.1, 0.1] }\n\
+        [[shape]]\nname = \"plate\"\nphase = \"solid\"\nbox = { min = [0.2, 0.0], max = [0.24, 0.1] }\n\
+        clamp = { min = [0.2, 0.0], max = [0.24, 0.02] }\n\
+        load = { within = { min = [0.19, 0.08], max = [0.21, 0.11] }, traction = [50.0, 0.0], ramp = 0.1 }\n";
+    let probes = [
+        (
+            "tip",
+            "kind = \"displacement\"\nat = [0.22, 0.1]",
+            "displacement of plate at [0.22, 0.1]; begins in it",
+        ),
+        ("root", "kind = \"stress\"\nat = [0.22, 0.0]", "stress of plate at [0.22, 0]; begins in it"),
+        (
+            "held",
+            "kind = \"position\"\nat = [0.22, 0.0]",
+            "position of plate at [0.22, 0]; begins in a clamp",
+        ),
+        ("wet", "kind = \"pressure\"\nat = [0.05, 0.0]", "pressure at [0.05, 0]; begins in fluid"),
+        ("dry", "kind = \"velocity\"\nat = [0.3, 0.1]", "velocity at [0.3, 0.1]; begins dry"),
+        (
+            "gauges",
+            "kind = \"water-level\"\nx = [0.05, 0.3]",
+            "water-level at x = 0.05, 0.3 m; begins at 0.1 m, dry",
+        ),
+        (
+            "section",
+            "kind = \"flux\"\nfrom = [0.05, 0.0]\nto = [0.05, 0.2]",
+            "flux from [0.05, 0] to [0.05, 0.2], positive toward [1, 0]; begins with 50 % in fluid",
+        ),
+        (
+            "push",
+            "kind = \"force\"\nshape = \"plate\"\nwithin = { min = [0.2, 0.0], max = [0.21, 0.1] }",
+            "force of plate within [0.2, 0] to [0.21, 0.1]; begins with 10 particles",
+        ),
+        ("reach", "kind = \"front\"", "front along +x; begins at 0.1 m"),
+        ("stored", "kind = \"strain-energy\"", "strain-energy of solid"),
+    ];
+    let of_probe = |(name, keys, _): &(&str, &str, &str)| format!("[[probe]]\nname = \"{name}\"\n{keys}\n");
+    let text = text.to_owned() + &probes.iter().map(of_probe).collect::<String>();
+    let scene = halfstep_scene::parse(&text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}"));
+    let found = check(&scene, Isa::detect()).expect("in the plane");
+    let said = found.to_string();
+    assert!(
+        said.contains(
+            "loads           1\n  plate         traction [50, 0] Pa on 2 particles in [0.19, 0.08] to [0.21, 0.11], \
+             grows for 0.1 s\nprobes          10, a row each 0.01 s\n"
+        ),
+        "{said}"
+    );
+    for (name, _, line) in probes {
+        assert!(said.contains(&format!("  {name:<13} {line}\n")), "{name}: {said}");
+    }
+    let json = serde_json::to_value(&found).expect("JSON");
+    assert_eq!(json["probes"][3]["begins"], "in fluid");
+    assert_eq!(json["loads"][0]["particles"], 2);
+}

@@ -35,10 +35,9 @@ impl<const D: usize> Reach<'_, D> {
 
     /// Whether it comes into the columns that a gauge looks at, below the top of all shapes.
     fn rises_at(&self, x: f64) -> bool {
-        let middle = |k: i64| (k as f64 + 0.5) * self.scene.resolution;
-        let beside = |k: i64| (middle(k) - x).abs() <= 1.5 * self.scene.resolution;
-        let Block { min, max } = &self.around;
-        x < min[0] || x > max[0] || self.places.iter().any(|at| beside(at[0]) && middle(at[1]) < max[1])
+        let dx = self.scene.resolution;
+        let beside = |k: i64| ((k as f64 + 0.5) * dx - x).abs() <= 1.5 * dx;
+        x < self.around.min[0] || x > self.around.max[0] || self.places.iter().any(|at| beside(at[0]))
     }
 
     /// Whether it can come beyond a place along x.
@@ -92,7 +91,10 @@ pub(super) fn walled<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mu
     else {
         return;
     };
-    let places = reached(scene, layout, &Matter::at_rest(scene, layout), true);
+    let mut places = reached(scene, layout, &Matter::at_rest(scene, layout), true);
+    // The last cells reach out of the box: over the rims of tanks.
+    let dx = scene.resolution;
+    places.retain(|k| geometry::holds(&around, &k.map(|k| (k as f64 + 0.5) * dx), 0.0));
     let reach = Reach { scene, places, around };
     let support = 2.0 * scene.smoothing_ratio * scene.resolution;
     let front = front_at(scene, layout);

@@ -160,12 +160,12 @@ fn about<const D: usize>(around: &Around<'_, D>, probe: &Probe) -> [Option<Strin
         }
         ProbeKind::WaterLevel { x } => {
             let levels = x.iter().map(|x| match level_at(scene, around.layout, *x) {
-                Some(level) => format!("{} m", length(level)),
+                Some(level) => format!("at {} m", length(level)),
                 None => "dry".to_owned(),
             });
             let levels: Vec<String> = levels.collect();
             let x: Vec<String> = x.iter().map(|x| length(*x)).collect();
-            [None, Some(format!("at x = {} m", x.join(", "))), Some(format!("at {}", levels.join(", ")))]
+            [None, Some(format!("at x = {} m", x.join(", "))), Some(levels.join(", "))]
         }
         ProbeKind::Force { within, shape } => around.in_box(probe, *shape, within.as_ref()),
         ProbeKind::Moment { about, within, shape } => {
