@@ -27,11 +27,14 @@ fn a_plate_in_the_floor_whose_clamp_was_forgotten() {
     assert!(has(&found, said) && !has(&found, "nothing is below"), "{found:?}");
     let clamp = "clamp = { min = [0.2, -0.02], max = [0.22, 0.0] }";
     let slot =
-        "[[shape]]\nname = \"slot\"\nphase = \"void\"\nbox = { min = [0.19, -0.03], max = [0.23, 0.0] }\n";
+        "[[shape]]\nname = \"slot\"\nphase = \"void\"\nbox = { min = [0.19, -0.03], max = [0.23, 0.0] }\n"
+            .to_owned();
     // It stands on the floor, is clamped in it, or in a slot of it.
-    for scene in
-        [[TANK, WATER, &plate(0.0, "")], [TANK, WATER, &plate(-0.02, clamp)], [slot, TANK, &plate(-0.02, "")]]
-    {
+    for scene in [
+        [TANK, WATER, &plate(0.0, "")],
+        [TANK, WATER, &plate(-0.02, clamp)],
+        [&(slot + TANK), WATER, &plate(-0.02, "")],
+    ] {
         assert!(!has(&plain(&scene), "deep in"), "{:?}", plain(&scene));
     }
 }

@@ -6,7 +6,7 @@ use super::shapes::{length, place};
 use halfstep_scene::geometry::{self, Layout, cell};
 use halfstep_scene::{Block, ProbeKind, Scene};
 
-/// Distance from places that the fluid reaches up to which a point is at a wall's face and not in the wall, in spacings.
+/// Distance from places that the fluid reaches, in spacings, up to which a point is at a wall's face, not in the wall.
 const AT_FACE: f64 = 1.0;
 /// Distance from a line at which a wall is right beside it, in spacings.
 const RIGHT_BESIDE: f64 = 0.75;

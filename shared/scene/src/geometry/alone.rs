@@ -6,7 +6,7 @@ use super::region::{Region, voids_before};
 use super::{Geometry, Polygon, TOLERANCE};
 use crate::{Phase, Scene};
 
-/// Places of the particles that the shape of that index would have if there were nothing but it and the voids before it.
+/// Places of the particles that the shape of an index would have with nothing but the voids before it.
 pub fn places_alone<const D: usize>(scene: &Scene, index: usize) -> Vec<[f64; D]> {
     let shape = &scene.shapes[index];
     let spacing = Spacing::of(scene, shape);

@@ -98,8 +98,8 @@ fn a_bar_that_spins_fast_turns_evenly() {
     assert!(energy.abs() < 1e-13 && (state.center[0] - 0.2).abs() < 1e-12, "{state:?}");
 }
 
-/// A disc meets a box off its centre, with friction and restitution: the whole angular momentum stays, that of the cells
-/// about their own middles among it.
+/// A disc meets a box off its centre, with friction and restitution: the whole angular momentum stays, that of the
+/// cells about their own middles among it.
 #[test]
 fn an_impact_off_the_centre_keeps_angular_momentum() {
     let disc = "[[shape]]\nname = \"disc\"\nphase = \"solid\"\ndisc = { center = [0.18, 0.2], radius = 0.05 }\n\
