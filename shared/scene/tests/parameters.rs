@@ -143,7 +143,7 @@ fn angles_of_whole_numbers_are_known() {
     assert_eq!(of("0.01 * abs(sin((slope * 2)) + cos(30))").len(), 2);
     for radians in [
         "0.01 * sin(slope * pi / 180)",
-        "0.01 * cos(3)",
+        "0.01 * abs(cos(3))",
         "0.001 * atan(slope)",
         "0.01 * abs(sin(k * slope))",
         "0.01 * sin(0.5)",
