@@ -101,7 +101,7 @@ fn a_step_above_a_limit_is_taken_with_a_warning() {
     warns(&run.outcome, "solid", 0.6 * 0.0015 / c_p);
     assert!(!run.outcome.stderr.contains("fluid's stability limit"), "{}", run.outcome.stderr);
     let auto = scene("elastic-gate").set("resolution", 0.0025).set("shape.plate.across", 5).until(1e-4).run();
-    assert_eq!(auto.outcome.stderr, "");
+    assert!(!auto.outcome.stderr.contains("stability limit"), "{}", auto.outcome.stderr);
 }
 
 #[test]
