@@ -10,7 +10,8 @@ fn of(lines: &str, motion: &str, rest: &str) -> Vec<String> {
     let tank = with(TANK, motion);
     on(&format!(
         "resolution = 0.005\nend_time = 1.0\n{lines}\n[fluid]\ndensity = 1000.0\n{tank}{WATER}\
-         [[probe]]\nname = \"g\"\nkind = \"water-level\"\nx = [0.05, 0.3]\n[[probe]]\nname = \"f\"\nkind = \"front\"\n{rest}"
+         [[probe]]\nname = \"g\"\nkind = \"water-level\"\nx = [0.05, 0.3]\n[[probe]]\nname = \"f\"\nkind = \
+                             \"front\"\n{rest}"
     ))
 }
 
@@ -27,8 +28,8 @@ fn intervals_that_leave_no_curve() {
     assert_eq!(rows(0.2, ""), [said]);
     assert_eq!(rows(0.1, ""), [""; 0]);
     let motion = "motion = { amplitude = [0.001, 0.0], period = 0.2 }\n";
-    let said = "output.probe_interval is 0.05 s and `tank` swings with a period of 0.2 s: the curves of the probes have 4.0 \
-                points a period";
+    let said = "output.probe_interval is 0.05 s and `tank` swings with a period of 0.2 s: the curves of the probes \
+                have 4.0 points a period";
     assert!(has(&rows(0.05, motion), said), "{:?}", rows(0.05, motion));
     assert!(!has(&rows(0.02, motion), "points a period"));
 }
@@ -43,7 +44,8 @@ fn levels_that_nothing_comes_to() {
     let said = "the metric `m` has level = 40 m, and f.x stays in the domain, from";
     assert!(has(&metric("f.x", "first-above", 40.0), said));
     assert_eq!(metric("f.x", "first-above", 0.3), [""; 0]);
-    let said = "the metric `m` has level = 0 m, and g.level-1 begins at 0.1 m over a floor at 0 m: it does not swing about it";
+    let said = "the metric `m` has level = 0 m, and g.level-1 begins at 0.1 m over a floor at 0 m: it does not swing \
+                about it";
     assert_eq!(metric("g.level-1", "period", 0.0), [said]);
     assert_eq!(metric("g.level-1", "period", 0.1), [""; 0]);
     let said = "the metric `m` has level = 0.05 m, and g.level-1 begins at 0.1 m: it is above from the start";
@@ -74,8 +76,8 @@ fn curves_in_other_units() {
         );
         remarks(&parse(&text, &folder.path().join("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}")))
     };
-    let said = "the curve `exp` of p.pressure has the column `p [kPa]`, whose title says kPa, times scale = 1, in Pa (scale \
-                = 1000 makes Pa of it)";
+    let said = "the curve `exp` of p.pressure has the column `p [kPa]`, whose title says kPa, times scale = 1, in Pa \
+                (scale = 1000 makes Pa of it)";
     assert_eq!(curve("t [s]", "p [kPa]", 1.0), [said]);
     assert_eq!(curve("t [s]", "p [kPa]", 1000.0), [""; 0]);
     assert_eq!(curve("t [s]", "p [Pa]", 1.0), [""; 0]);
@@ -91,7 +93,8 @@ fn sines_of_degrees() {
         on(&format!("resolution = 0.005\nend_time = 1.0\n{text}[fluid]\ndensity = 1000.0\n{TANK}{water}"))
     };
     let found = water("0.1 * abs(tan(slope))");
-    let said = "`tan(slope)` in shape.water.box.max.1 takes 15 radians, 859 degrees: that of 15 degrees is `tan((slope) * pi / 180)`";
+    let said = "`tan(slope)` in shape.water.box.max.1 takes 15 radians, 859 degrees: that of 15 degrees is \
+                `tan((slope) * pi / 180)`";
     assert!(has(&found, said), "{found:?}");
     assert!(!has(&water("0.4 * tan(slope * pi / 180)"), "radians"));
 }

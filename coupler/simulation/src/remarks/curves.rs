@@ -40,7 +40,8 @@ pub(super) fn intervals(scene: &Scene, all: &mut Vec<String>) {
     }
     if interval * POINTS > end * (1.0 + 1e-9) {
         all.push(format!(
-            "output.probe_interval is {interval} s and the run ends at {end} s: the curves of the probes have {} points",
+            "output.probe_interval is {interval} s and the run ends at {end} s: the curves of the probes have {} \
+             points",
             (end / interval).floor() + 1.0
         ));
         return;

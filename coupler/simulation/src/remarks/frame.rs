@@ -14,8 +14,8 @@ pub(super) fn twice(scene: &Scene, all: &mut Vec<String>) {
     let along = |shape: &&Shape| shape.phase == Phase::Wall && shape.motion.as_ref() == Some(&frame.motion);
     if let Some(wall) = scene.shapes.iter().find(along) {
         all.push(format!(
-            "`{}` has the motion of the `[frame]` once more, so the fluid feels it twice: what has no `motion` rests in \
-             the frame, and moves with it in space",
+            "`{}` has the motion of the `[frame]` once more, so the fluid feels it twice: what has no `motion` rests \
+             in the frame, and moves with it in space",
             wall.name
         ));
     }

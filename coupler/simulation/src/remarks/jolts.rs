@@ -153,8 +153,8 @@ pub(super) fn cut_off(scene: &Scene, all: &mut Vec<String>) {
         let way = part.translation.iter().map(|x| x * x).sum::<f64>().sqrt();
         let (size, unit) = if part.angle == 0.0 { (way, "m/s") } else { (part.angle, "rad/s") };
         all.push(format!(
-            "the recording of {name} ends at {} s in the middle of its motion, at {} {unit}, and the run at {} s: {then} \
-             (a recording as long as the run, or one that comes to rest)",
+            "the recording of {name} ends at {} s in the middle of its motion, at {} {unit}, and the run at {} s: \
+             {then} (a recording as long as the run, or one that comes to rest)",
             length(spline.ends()[1]),
             length((size * spline.last_rate()).abs()),
             scene.end_time

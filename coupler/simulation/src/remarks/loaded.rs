@@ -119,8 +119,8 @@ pub(super) fn points<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mu
         let (name, shape) = (&probe.name, &scene.shapes[shape].name);
         if let Some(away) = away {
             all.push(format!(
-                "the probe `{name}` at {} is beside `{shape}`: it measures the {what} of its nearest particle, at {}, {} \
-                 m away",
+                "the probe `{name}` at {} is beside `{shape}`: it measures the {what} of its nearest particle, at {}, \
+                 {} m away",
                 place(&at[..D]),
                 place(&nearest),
                 length(away)

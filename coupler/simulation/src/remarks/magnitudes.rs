@@ -155,8 +155,8 @@ pub(super) fn parameters(scene: &Scene, all: &mut Vec<String>) {
     }
     for WholeAngle { key, call, angle, radians } in &scene.whole_angles {
         all.push(format!(
-            "`{call}` in {key} takes {radians} radians, {:.0} degrees: that of {radians} degrees is `{}(({angle}) * pi / \
-             180)`",
+            "`{call}` in {key} takes {radians} radians, {:.0} degrees: that of {radians} degrees is `{}(({angle}) * \
+             pi / 180)`",
             radians.to_degrees(),
             &call[..3]
         ));

@@ -34,8 +34,8 @@ fn columns_of_rates_and_of_other_times() {
         let columns = format!("{{ FILE, columns = {{ time = \"{time}\", x = \"{title}\" }} }}");
         recorded(&format!("{time},{title}"), "0,0\n500,0.01\n1000,0", &columns)
     };
-    let said = "the motion of `tank` goes by the column `acc [m/s2]`, whose title says an acceleration: its numbers are \
-                taken as ways in m, up to 0.01, and nothing integrates them";
+    let said = "the motion of `tank` goes by the column `acc [m/s2]`, whose title says an acceleration: its numbers \
+                are taken as ways in m, up to 0.01, and nothing integrates them";
     assert!(has(&by("t", "acc [m/s2]"), said), "{:?}", by("t", "acc [m/s2]"));
     for title in ["a (m/s^2)", "surge [mm/s2]", "Acceleration x"] {
         assert!(has(&by("t", title), "says an acceleration"), "{title}");
@@ -46,8 +46,8 @@ fn columns_of_rates_and_of_other_times() {
     for title in ["x [m]", "velvet", "accumulated way [m]", "x"] {
         assert!(!has(&by("t [s]", title), "whose title"), "{title}");
     }
-    let said = "the motion of `tank` takes the times of the column `t_ms`, whose title says ms, as seconds: they last from \
-                0 to 1000 s, and the run 1 s (times have no `scale`: in the file they need to be divided by 1000)";
+    let said = "the motion of `tank` takes the times of the column `t_ms`, whose title says ms, as seconds: they last \
+                from 0 to 1000 s, and the run 1 s (times have no `scale`: in the file they need to be divided by 1000)";
     assert!(has(&by("t_ms", "x [m]"), said), "{:?}", by("t_ms", "x [m]"));
     assert!(has(&by("time (min)", "x [m]"), "need to be times 60"));
     assert!(!has(&by("time [s]", "x [m]"), "whose title") && !has(&by("items", "x [m]"), "whose title"));

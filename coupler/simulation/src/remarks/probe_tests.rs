@@ -17,8 +17,8 @@ fn a_box_of_forces_without_particles() {
     let within =
         |shape: &str, box_: &str| of(&format!("kind = \"force\"\nshape = \"{shape}\"\nwithin = {box_}"));
     let dry = within("tank", "{ min = [0.3, 0.0], max = [0.35, 0.1] }");
-    let said = "the probe `p` measures 0 throughout: its `within`, [0.3, 0] to [0.35, 0.1], holds no particle of `tank`, \
-                the nearest of which is at [";
+    let said = "the probe `p` measures 0 throughout: its `within`, [0.3, 0] to [0.35, 0.1], holds no particle of \
+                `tank`, the nearest of which is at [";
     assert!(dry.len() == 1 && dry[0].starts_with(said), "{dry:?}");
     assert_eq!(within("tank", "{ min = [0.3, -0.01], max = [0.35, 0.1] }"), [""; 0], "a piece of the floor");
     let thin = "kind = \"moment\"\nabout = [0.2, 0.0]\nwithin = { min = [0.2, 0.05], max = [0.202, 0.1] }";
@@ -29,8 +29,8 @@ fn a_box_of_forces_without_particles() {
 #[test]
 fn an_axis_in_millimetres() {
     let about = |x: f64| of(&format!("kind = \"moment\"\nshape = \"tank\"\nabout = [{x}, 0.0]"));
-    let said = "the probe `p` takes moments about [200, 0], 199.6 m beside the scene, 464 times its size: lengths are in \
-                metres";
+    let said = "the probe `p` takes moments about [200, 0], 199.6 m beside the scene, 464 times its size: lengths are \
+                in metres";
     assert_eq!(about(200.0), [said]);
     assert_eq!(about(10.0), [""; 0]);
 }
@@ -38,8 +38,8 @@ fn an_axis_in_millimetres() {
 #[test]
 fn what_a_clamp_holds() {
     let at = |kind: &str, y: f64| of(&format!("kind = \"{kind}\"\nat = [0.21, {y}]"));
-    let said = "the displacement of the probe `p` is 0 throughout: a clamp of `plate` holds what it looks at (the nearest \
-                that is free is at [0.2075, 0.0125])";
+    let said = "the displacement of the probe `p` is 0 throughout: a clamp of `plate` holds what it looks at (the \
+                nearest that is free is at [0.2075, 0.0125])";
     assert_eq!(at("displacement", 0.0), [said]);
     assert!(has(&at("position", 0.0), "the position of the probe `p` never changes"));
     assert_eq!(at("displacement", 0.1), [""; 0]);
@@ -56,8 +56,8 @@ fn what_a_clamp_holds() {
 #[test]
 fn a_point_beside_its_solid() {
     let at = |y: f64| of(&format!("kind = \"displacement\"\nat = [0.21, {y}]"));
-    let said = "the probe `p` at [0.21, 0.109] is beside `plate`: it measures the displacement of its nearest particle, at \
-                [0.2075, 0.0975], 0.01177 m away";
+    let said = "the probe `p` at [0.21, 0.109] is beside `plate`: it measures the displacement of its nearest \
+                particle, at [0.2075, 0.0975], 0.01177 m away";
     assert_eq!(at(0.109), [said]);
     assert_eq!(at(0.104), [""; 0]);
 }
@@ -65,7 +65,8 @@ fn a_point_beside_its_solid() {
 #[test]
 fn probes_in_walls() {
     let found = of("kind = \"velocity\"\nat = [-0.007, 0.05]");
-    let said = "the probe `p` at [-0.007, 0.05] is in a wall: it measures the fluid beside the wall, up to 2h = 0.015 m away";
+    let said = "the probe `p` at [-0.007, 0.05] is in a wall: it measures the fluid beside the wall, up to 2h = 0.015 \
+                m away";
     assert_eq!(found, [said]);
     assert_eq!(of("kind = \"velocity\"\nat = [0.0, 0.05]"), [""; 0], "at the face");
     assert_eq!(of("kind = \"velocity\"\nat = [0.39, 0.25]"), [""; 0], "where water may splash");
@@ -73,8 +74,8 @@ fn probes_in_walls() {
         "[[shape]]\nname = \"block\"\nphase = \"wall\"\nbox = { min = [0.3, 0.0], max = [0.36, 0.06] }\n";
     let beside = |keys: &str| plain(&[TANK, WATER, block, PLATE, &probe(keys)]);
     let within = beside("kind = \"pressure\"\nat = [0.33, 0.03]");
-    let said = "the probe `p` at [0.33, 0.03] is in a wall: no fluid comes within 2h = 0.015 m of it, and it measures 0 \
-                throughout";
+    let said = "the probe `p` at [0.33, 0.03] is in a wall: no fluid comes within 2h = 0.015 m of it, and it measures \
+                0 throughout";
     assert_eq!(within, [said]);
     assert_eq!(beside("kind = \"pressure\"\nat = [0.31, 0.03]"), [""; 0], "near its face");
     assert_eq!(beside("kind = \"pressure\"\nfrom = [0.33, 0.03]\nto = [0.33, 0.08]"), [""; 0]);
@@ -87,7 +88,8 @@ fn probes_in_walls() {
 #[test]
 fn gauges_and_lines_in_walls() {
     let gauge = |x: f64| of(&format!("kind = \"water-level\"\nx = {x}"));
-    let said = "the gauge `p` at x = 0.41 m has walls alone below and above it: fluid comes there over their top at most";
+    let said = "the gauge `p` at x = 0.41 m has walls alone below and above it: fluid comes there over their top at \
+                most";
     assert_eq!(gauge(0.41), [said]);
     assert_eq!(gauge(0.404), [""; 0], "it looks at what is within a spacing");
     let front = |to: f64| {
@@ -98,8 +100,8 @@ fn gauges_and_lines_in_walls() {
     assert!(has(&front(0.4), said), "{:?}", front(0.4));
     assert!(!has(&front(0.35), "throughout"));
     let flux = |from: &str, to: &str| of(&format!("kind = \"flux\"\nfrom = {from}\nto = {to}"));
-    let said = "the flux `p` is 0 throughout: a wall is beside all of its line, [0.25, 0] to [0.39, 0], and nothing crosses \
-                it";
+    let said = "the flux `p` is 0 throughout: a wall is beside all of its line, [0.25, 0] to [0.39, 0], and nothing \
+                crosses it";
     assert_eq!(flux("[0.25, 0.0]", "[0.39, 0.0]"), [said]);
     assert_eq!(flux("[0.3, 0.0]", "[0.3, 0.2]"), [""; 0]);
     assert_eq!(flux("[0.25, 0.02]", "[0.39, 0.02]"), [""; 0]);

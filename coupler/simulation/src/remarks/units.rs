@@ -64,8 +64,8 @@ pub(super) fn times(what: &str, column: &Column, [first, last]: [f64; 2], end: f
         false => format!("times {seconds}"),
     };
     Some(format!(
-        "{what} takes the times of the column `{}`, whose title says {unit}, as seconds: they last from {} to {} s, and \
-         the run {end} s (times have no `scale`: in the file they need to be {remedy})",
+        "{what} takes the times of the column `{}`, whose title says {unit}, as seconds: they last from {} to {} s, \
+         and the run {end} s (times have no `scale`: in the file they need to be {remedy})",
         column.time,
         length(first),
         length(last)
@@ -124,8 +124,8 @@ fn of_column(name: &str, part: &Part, spline: &Spline, column: &Column) -> Optio
     if let Some(rate) = rate(title) {
         let (goes, taken) = if turns { ("turns", "angles in rad") } else { ("goes", "ways in m") };
         return Some(format!(
-            "{name} {goes} by the column `{title}`, whose title says {rate}: its numbers are taken as {taken}, up to {}, \
-             and nothing integrates them",
+            "{name} {goes} by the column `{title}`, whose title says {rate}: its numbers are taken as {taken}, up to \
+             {}, and nothing integrates them",
             length(most)
         ));
     }
