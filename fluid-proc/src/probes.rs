@@ -3,10 +3,11 @@
 use crate::effects::FluidEffect;
 use crate::fluid::Fluid;
 use crate::riders::Riders;
-use halfstep_scene::geometry::{Layout, WallPoint, holds};
+use halfstep_scene::geometry::{self, Layout, WallPoint, holds};
 use halfstep_scene::{Block, EnergyPart, Phase, ProbeKind, Scene};
 use halfstep_sph::kernel;
 use halfstep_sph::neighbours::PADDING;
+use halfstep_wire::narrow;
 
 /// A probe of the fluid, or of what the fluid does to walls.
 pub(crate) enum Gauge<const D: usize> {
@@ -53,7 +54,7 @@ pub(crate) fn of_fluid<const D: usize>(scene: &Scene, layout: &Layout<D>) -> (Ve
     };
     let mut gauge = |kind: &ProbeKind| match kind {
         ProbeKind::Pressure { at, to, shape } => {
-            let points = to.map_or(vec![narrow(*at)], |to| along(scene, at, &to));
+            let points = to.map_or(vec![narrow(*at)], |to| geometry::along(scene, at, &to));
             let on_solid = shape.and_then(|shape| riders.add(scene, layout, shape, &points));
             Some(Gauge::Pressure(match (on_solid, shape) {
                 (Some(places), _) => Points::OnSolid(places),
@@ -67,7 +68,7 @@ pub(crate) fn of_fluid<const D: usize>(scene: &Scene, layout: &Layout<D>) -> (Ve
             let length = way.iter().map(|x| x * x).sum::<f64>().sqrt();
             let mut normal = [0.0; D];
             (normal[0], normal[1]) = (way[1] / length, -way[0] / length);
-            Some(Gauge::Flux { points: along(scene, from, to), normal, length })
+            Some(Gauge::Flux { points: geometry::along(scene, from, to), normal, length })
         }
         ProbeKind::WaterLevel { x } => Some(Gauge::WaterLevel(x.clone())),
         ProbeKind::Front => Some(Gauge::Front),
@@ -83,18 +84,6 @@ pub(crate) fn of_fluid<const D: usize>(scene: &Scene, layout: &Layout<D>) -> (Ve
     let of_fluid = scene.probes.iter().filter(|probe| probe.phase() == Phase::Fluid);
     let gauges = of_fluid.filter_map(|probe| gauge(&probe.kind)).collect();
     (gauges, riders)
-}
-
-fn narrow<const D: usize>(point: [f64; 3]) -> [f64; D] {
-    std::array::from_fn(|d| point[d])
-}
-
-/// The middles of parts of a line that are at most half a spacing long.
-fn along<const D: usize>(scene: &Scene, from: &[f64; 3], to: &[f64; 3]) -> Vec<[f64; D]> {
-    let length = (0..D).map(|d| (to[d] - from[d]).powi(2)).sum::<f64>().sqrt();
-    let parts = (2.0 * length / scene.resolution).ceil().max(1.0);
-    let at = |part: usize| (part as f64 + 0.5) / parts;
-    (0..parts as usize).map(|part| std::array::from_fn(|d| from[d] + at(part) * (to[d] - from[d]))).collect()
 }
 
 /// Kernel averages at a point.

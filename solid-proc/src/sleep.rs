@@ -45,7 +45,7 @@ impl Sleep {
         let longest = lengths.iter().copied().fold(0.0, f64::max);
         let shortest = lengths.iter().copied().fold(f64::INFINITY, f64::min);
         let tolerance = TOLERANCE * spacing;
-        let gravity = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+        let gravity = scene.gravity_magnitude();
         let fall = if gravity > 0.0 { (8.0 * tolerance / gravity).sqrt() } else { 0.0 };
         Self {
             window: fall.max(0.5 * slowest_period(solid, longest, shortest)),

@@ -157,11 +157,6 @@ impl ExternalSolid {
 
     fn choose(&self, kind: &ProbeKind) -> Vec<usize> {
         match *kind {
-            ProbeKind::Displacement { at }
-            | ProbeKind::Position { at }
-            | ProbeKind::Stress { at }
-            | ProbeKind::SolidVelocity { at }
-            | ProbeKind::CauchyStress { of: Spot::At(at) } => nearest(self.first.iter().copied(), at),
             ProbeKind::Force { within, shape } | ProbeKind::Moment { within, shape, .. } => {
                 let of_shape = |x: &[f64; 3]| {
                     let shape = shape.and_then(|shape| self.shapes.get(shape));
@@ -179,7 +174,10 @@ impl ExternalSolid {
                 let inside = |i: &usize| shapes.iter().any(|shape| self.is_of(shape, &self.first[*i]));
                 (0..self.first.len()).filter(inside).collect()
             }
-            _ => Vec::new(),
+            _ => {
+                let point = kind.point_of_solid();
+                point.map_or(Vec::new(), |at| nearest(self.first.iter().copied(), at))
+            }
         }
     }
 

@@ -210,7 +210,7 @@ const SOFT: f64 = 0.1;
 
 /// Contacts that the weight of the lighter solid presses far in. A body rests on at most its longest side.
 fn too_soft(scene: &Scene, contact: &ContactAsks) -> Vec<String> {
-    let gravity = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+    let gravity = scene.gravity_magnitude();
     let soft = |(solids, stiffness): &([usize; 2], f64)| {
         // What rests on the longer side is as high as the shorter one.
         let pressure = |(shape, side): (&scene::Shape, f64)| {

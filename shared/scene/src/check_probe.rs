@@ -61,21 +61,17 @@ impl Check<'_> {
             return;
         }
         let solids = || self.scene.shapes.iter().filter(|s| s.phase == Phase::Solid);
-        match &probe.kind {
-            ProbeKind::Displacement { at }
-            | ProbeKind::Position { at }
-            | ProbeKind::Stress { at }
-            | ProbeKind::SolidVelocity { at }
-            | ProbeKind::Strain { of: Spot::At(at) }
-            | ProbeKind::CauchyStress { of: Spot::At(at) } => {
-                let near = |s: &Shape| {
-                    let bounds = geometry::bounding_box(s, self.scene);
-                    geometry::holds(&bounds, at, 2.0 * self.scene.resolution)
-                };
-                if !solids().any(near) {
-                    self.wrong(&format!("{key}.at"), "is in or beside no solid shape");
-                }
+        if let Some(at) = probe.kind.point_of_solid() {
+            let near = |s: &Shape| {
+                let bounds = geometry::bounding_box(s, self.scene);
+                geometry::holds(&bounds, &at, 2.0 * self.scene.resolution)
+            };
+            if !solids().any(near) {
+                self.wrong(&format!("{key}.at"), "is in or beside no solid shape");
             }
+            return;
+        }
+        match &probe.kind {
             ProbeKind::Pressure { at, to, shape } => {
                 let first = if to.is_some() { "from" } else { "at" };
                 if let Some(shape) = shape.map(|shape| &self.scene.shapes[shape]) {

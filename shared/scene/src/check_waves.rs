@@ -17,7 +17,7 @@ impl Check<'_> {
             }
         }
         // Gravity moves a particle by its spacing in about that time.
-        let g = self.scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+        let g = self.scene.gravity_magnitude();
         let most = if g > 0.0 { (g / self.scene.resolution).sqrt() } else { f64::MAX };
         if beach.rate > most {
             let reason = format!(

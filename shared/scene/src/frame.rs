@@ -24,6 +24,13 @@ pub struct Gravity {
     motion: Option<Motion>,
 }
 
+impl Scene {
+    /// Of gravity as the scene has it at rest, m/s².
+    pub fn gravity_magnitude(&self) -> f64 {
+        self.gravity.iter().map(|g| g * g).sum::<f64>().sqrt()
+    }
+}
+
 impl Gravity {
     /// Of a scene.
     pub fn of(scene: &Scene) -> Self {

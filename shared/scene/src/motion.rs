@@ -90,6 +90,14 @@ impl Motion {
         }
     }
 
+    /// What a composed motion adds up; nothing of the others.
+    pub fn parts(&self) -> &[Part] {
+        match self {
+            Self::Composed(composed) => &composed.parts,
+            Self::Steady { .. } | Self::Oscillating { .. } => &[],
+        }
+    }
+
     /// Least and largest displacement until `end_time` along each axis, m, of what does not turn: bounds.
     pub fn reach(&self, end_time: f64) -> [(f64, f64); 3] {
         match self {

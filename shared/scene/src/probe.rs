@@ -225,6 +225,19 @@ impl BodyQuantity {
 }
 
 impl ProbeKind {
+    /// The point of a solid that it looks at, m.
+    pub fn point_of_solid(&self) -> Option<[f64; 3]> {
+        match self {
+            Self::Displacement { at }
+            | Self::Position { at }
+            | Self::Stress { at }
+            | Self::SolidVelocity { at }
+            | Self::Strain { of: Spot::At(at) }
+            | Self::CauchyStress { of: Spot::At(at) } => Some(*at),
+            _ => None,
+        }
+    }
+
     /// Its name as the key `kind`.
     pub fn name(&self) -> &'static str {
         match self {

@@ -113,13 +113,9 @@ pub(super) fn probe(
         }
     };
     let mut probe = Probe { name, kind, solid: None };
+    let point = probe.kind.point_of_solid();
     probe.solid = match probe.kind {
-        ProbeKind::Displacement { at }
-        | ProbeKind::Position { at }
-        | ProbeKind::Stress { at }
-        | ProbeKind::SolidVelocity { at }
-        | ProbeKind::Strain { of: Spot::At(at) }
-        | ProbeKind::CauchyStress { of: Spot::At(at) } => nearest_solid(shapes, &at),
+        _ if point.is_some() => point.and_then(|at| nearest_solid(shapes, &at)),
         ProbeKind::Force { shape: Some(shape), .. } | ProbeKind::Moment { shape: Some(shape), .. } => {
             shapes[shape].solid
         }

@@ -24,6 +24,11 @@ pub fn wide<const D: usize>(v: [f64; D]) -> [f64; 3] {
     std::array::from_fn(|d| if d < D { v[d] } else { 0.0 })
 }
 
+/// Of three components those of the scene's dimension.
+pub fn narrow<const D: usize>(v: [f64; 3]) -> [f64; D] {
+    std::array::from_fn(|d| v[d])
+}
+
 /// Place of component (a, b), a <= b, in a record's stress: xx, yy, zz, xy, yz, xz.
 pub fn wire_component(a: usize, b: usize) -> usize {
     match (a, b) {

@@ -54,8 +54,8 @@ pub(super) fn beach(scene: &Scene, all: &mut Vec<String>) {
         let felt = decay(&beach, around.min[0]).min(decay(&beach, around.max[0]));
         if felt > FELT * beach.rate {
             all.push(format!(
-                "fluid.beach acts at `{}`, which makes waves: velocities decay at {} 1/s there, since they decay from x \
-                 = {} m (`from`) over {} m (`to`) to the end of the water",
+                "fluid.beach acts at `{}`, which makes waves: velocities decay at {} 1/s there, since they decay from \
+                 x = {} m (`from`) over {} m (`to`) to the end of the water",
                 paddle.name,
                 length(felt),
                 length(beach.from),

@@ -45,7 +45,7 @@ pub(super) fn free(scene: &Scene, bodies: &[Body], all: &mut Vec<String>) {
 
 /// Bodies on which gravity alone acts: all of them fall as they are, and nothing bends.
 fn falling(scene: &Scene, bodies: &[Body], all: &mut Vec<String>) {
-    let size = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+    let size = scene.gravity_magnitude();
     if size == 0.0 || scene.fluid.is_some() {
         return;
     }
@@ -271,7 +271,7 @@ pub(super) fn standing<const D: usize>(
     bodies: &[Body],
     all: &mut Vec<String>,
 ) {
-    let size = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+    let size = scene.gravity_magnitude();
     let Some(fluid) = scene.fluid.as_ref().filter(|_| size > 0.0) else { return };
     let down = |x: &[f64; D]| (0..D).map(|d| x[d] * scene.gravity[d]).sum::<f64>() / size;
     for body in bodies.iter().filter(|body| !body.held) {

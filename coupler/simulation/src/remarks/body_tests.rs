@@ -80,8 +80,8 @@ fn copies_in_each_other() {
         rigid(&[TANK, WATER, &shape("block", "solid", [0.15, 0.1], [0.2, 0.15], &repeat)])
     };
     let found = blocks(0.001, "");
-    let said = "2 of the 3 copies of `block` lie in earlier ones, which have their places: each is 0.001 m from the one \
-                before (`step` is from copy to copy), and they are 0.05 m wide";
+    let said = "2 of the 3 copies of `block` lie in earlier ones, which have their places: each is 0.001 m from the \
+                one before (`step` is from copy to copy), and they are 0.05 m wide";
     // Those have no particles, and are no bodies that contact could throw.
     assert!(has(&found, said) && !has(&found, "contact throws"), "{found:?}");
     let found = blocks(0.04, "");

@@ -144,8 +144,8 @@ pub(super) fn of_walls(scene: &Scene, bodies: &[Body], all: &mut Vec<String>) {
         let rubs = solid.contact().unwrap_or_default() != ContactKeys::default();
         if rubs && bodies.iter().filter(own).count() > 1 {
             all.push(format!(
-                "the bodies of `{name}` touch each other without friction: its `contact` is about walls (a [[solid]] for \
-                 each and [[contact]] say how they touch)"
+                "the bodies of `{name}` touch each other without friction: its `contact` is about walls (a [[solid]] \
+                 for each and [[contact]] say how they touch)"
             ));
         }
     }
@@ -160,8 +160,8 @@ pub(super) fn debris(scene: &Scene, all: &mut Vec<String>) {
         let Some(broken) = contact.solids.iter().copied().find(breaks) else { continue };
         let [a, b] = contact.solids.map(|k| &scene.solids[k].name);
         all.push(format!(
-            "`{a}` and `{b}` touch with the surfaces that they begin with: what cracks open in `{}` is not held against \
-             the other, and a piece that breaks off takes its part of the surface along",
+            "`{a}` and `{b}` touch with the surfaces that they begin with: what cracks open in `{}` is not held \
+             against the other, and a piece that breaks off takes its part of the surface along",
             scene.solids[broken].name
         ));
     }

@@ -10,19 +10,16 @@ const POINTS: f64 = 10.0;
 
 /// The period of the widest swing of a motion, s.
 fn period(motion: &Motion) -> Option<f64> {
-    match motion {
-        Motion::Oscillating { period, .. } => Some(*period),
-        Motion::Steady { .. } => None,
-        Motion::Composed(composed) => {
-            let swings = composed.parts.iter().filter_map(|part| match part.course {
-                Course::Sine { period, .. } => {
-                    Some((period, part.angle.abs() + part.translation.iter().map(|x| x.abs()).sum::<f64>()))
-                }
-                _ => None,
-            });
-            swings.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(period, _)| period)
-        }
+    if let Motion::Oscillating { period, .. } = motion {
+        return Some(*period);
     }
+    let swings = motion.parts().iter().filter_map(|part| match part.course {
+        Course::Sine { period, .. } => {
+            Some((period, part.angle.abs() + part.translation.iter().map(|x| x.abs()).sum::<f64>()))
+        }
+        _ => None,
+    });
+    swings.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(period, _)| period)
 }
 
 /// Intervals of frames and rows beside the run's length and the motions' periods.

@@ -3,8 +3,10 @@
 use super::curves::front_at;
 use super::reached::{Matter, Places, reached};
 use super::shapes::{length, place};
+use super::walls::kernel_support;
 use halfstep_scene::geometry::{self, Layout, cell};
 use halfstep_scene::{Block, ProbeKind, Scene};
+use halfstep_wire::narrow;
 
 /// Distance from places that the fluid reaches, in spacings, up to which a point is at a wall's face, not in the wall.
 const AT_FACE: f64 = 1.0;
@@ -47,29 +49,17 @@ impl<const D: usize> Reach<'_, D> {
     }
 
     /// Whether a wall is right beside all of a line.
-    fn walled(&self, from: &[f64; D], to: &[f64; D]) -> bool {
+    fn walled(&self, from: &[f64; 3], to: &[f64; 3]) -> bool {
         let dx = self.scene.resolution;
-        let way: [f64; D] = std::array::from_fn(|a| to[a] - from[a]);
-        let size = way.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let parts = (2.0 * size / dx).ceil().max(1.0);
-        let normal = |a: usize| match a {
-            0 => way[1] / size,
-            1 => -way[0] / size,
-            _ => 0.0,
-        };
-        (0..parts as usize).all(|part| {
-            let along = (part as f64 + 0.5) / parts;
+        let [x, y] = [0, 1].map(|a| to[a] - from[a]);
+        let normal = [y / x.hypot(y), -x / x.hypot(y), 0.0];
+        geometry::along::<D>(self.scene, from, to).iter().all(|at| {
             [-RIGHT_BESIDE, RIGHT_BESIDE].into_iter().any(|side| {
-                let beside: [f64; D] =
-                    std::array::from_fn(|a| from[a] + along * way[a] + side * dx * normal(a));
+                let beside: [f64; D] = std::array::from_fn(|a| at[a] + side * dx * normal[a]);
                 geometry::holds(&self.around, &beside, 0.0) && !self.places.contains(&cell(&beside, dx))
             })
         })
     }
-}
-
-fn narrow<const D: usize>(x: &[f64; 3]) -> [f64; D] {
-    std::array::from_fn(|a| x[a])
 }
 
 /// Probes in and at walls that stay, where no fluid comes.
@@ -96,13 +86,13 @@ pub(super) fn walled<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mu
     let dx = scene.resolution;
     places.retain(|k| geometry::holds(&around, &k.map(|k| (k as f64 + 0.5) * dx), 0.0));
     let reach = Reach { scene, places, around };
-    let support = 2.0 * scene.smoothing_ratio * scene.resolution;
+    let support = kernel_support(scene);
     let front = front_at(scene, layout);
     for probe in probes {
         let name = &probe.name;
         match &probe.kind {
-            ProbeKind::Velocity { at } if !reach.comes_within(&narrow(at), AT_FACE * scene.resolution) => {
-                let measured = match reach.comes_within(&narrow(at), support) {
+            ProbeKind::Velocity { at } if !reach.comes_within(&narrow(*at), AT_FACE * scene.resolution) => {
+                let measured = match reach.comes_within(&narrow(*at), support) {
                     true => format!("it measures the fluid beside the wall, up to 2h = {} m away", length(support)),
                     false => "no fluid comes near it, and it measures 0 throughout".to_owned(),
                 };
@@ -110,7 +100,7 @@ pub(super) fn walled<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mu
             }
             ProbeKind::Pressure { at, to, .. } => {
                 let ends = [Some(at), to.as_ref()];
-                if !ends.into_iter().flatten().any(|at| reach.comes_within(&narrow(at), support)) {
+                if !ends.into_iter().flatten().any(|at| reach.comes_within(&narrow(*at), support)) {
                     all.push(format!(
                         "the probe `{name}` at {} is in a wall: no fluid comes within 2h = {} m of it, and it measures \
                          0 throughout",
@@ -133,7 +123,7 @@ pub(super) fn walled<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mu
                  wall",
                 length(front)
             )),
-            ProbeKind::Flux { from, to } if reach.walled(&narrow(from), &narrow(to)) => all.push(format!(
+            ProbeKind::Flux { from, to } if reach.walled(from, to) => all.push(format!(
                 "the flux `{name}` is 0 throughout: a wall is beside all of its line, {} to {}, and nothing crosses it",
                 place(&from[..D]),
                 place(&to[..D])

@@ -54,8 +54,8 @@ pub(super) fn enclosed<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &
                 beside.iter().map(|p| scene.shapes[p.body as usize].name.as_str()).collect();
             let names: Vec<String> = names.into_iter().map(|name| format!("`{name}`")).collect();
             all.push(format!(
-                "{} of the particles of `{}` begin inside of {}, parted from the rest (a void listed before `{}` leaves \
-                 them out)",
+                "{} of the particles of `{}` begin inside of {}, parted from the rest (a void listed before `{}` \
+                 leaves them out)",
                 part.len(),
                 shape.name,
                 names.join(" and "),

@@ -10,7 +10,7 @@ const INTO_WALLS: f64 = 0.2;
 
 /// Fields of other walls, depths or gravity than the scene's.
 pub(super) fn fields<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
-    let gravity = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+    let gravity = scene.gravity_magnitude();
     for (index, shape) in scene.shapes.iter().enumerate() {
         let Some(field) = &shape.velocity_field else { continue };
         if matches!(field, VelocityField::StandingWave { .. }) && -scene.gravity[1] < gravity
@@ -35,8 +35,8 @@ fn other_depth(scene: &Scene, shape: &Shape, field: &VelocityField) -> Option<St
     let off = level - (origin[1] + depth);
     (off.abs() > DEPTH * depth + 0.5 * scene.resolution).then(|| {
         format!(
-            "the standing wave of `{}` is that of a surface at y = {} m, {} m above its origin, and the water's is at {} \
-             m: it has another frequency",
+            "the standing wave of `{}` is that of a surface at y = {} m, {} m above its origin, and the water's is at \
+             {} m: it has another frequency",
             shape.name,
             length(origin[1] + depth),
             length(*depth),

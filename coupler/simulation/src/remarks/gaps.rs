@@ -37,8 +37,8 @@ pub(super) fn below<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut
         let Some(gap) = gap(&depths, row_to_row, BELOW.map(|rows| rows * dx)) else { continue };
         if is_wet(scene, layout, &row, (axis, down), gap) {
             all.push(format!(
-                "`{}` ends {} m, {:.1} spacings, above the wall below it: fluid neither stays behind so narrow a gap nor \
-                 flows through it as it should (from four spacings on it does)",
+                "`{}` ends {} m, {:.1} spacings, above the wall below it: fluid neither stays behind so narrow a gap \
+                 nor flows through it as it should (from four spacings on it does)",
                 shape.name,
                 length(gap),
                 gap / dx

@@ -73,8 +73,8 @@ pub(super) fn sound_speed(scene: &Scene, all: &mut Vec<String>) {
     let times = fluid.sound_speed / auto;
     if auto > 0.0 && times >= FASTER {
         all.push(format!(
-            "fluid.sound_speed = {} m/s is {times:.1} times what \"auto\" would give, {} m/s: the run takes as many times \
-             more steps, and its fluid is stiff enough for {} m/s without",
+            "fluid.sound_speed = {} m/s is {times:.1} times what \"auto\" would give, {} m/s: the run takes as many \
+             times more steps, and its fluid is stiff enough for {} m/s without",
             length(fluid.sound_speed),
             length(auto),
             length(expected_speed(scene))

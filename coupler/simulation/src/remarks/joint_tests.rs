@@ -91,8 +91,8 @@ fn a_spring_far_from_its_rest() {
     };
     // 6 kg/m weigh 58.9 N/m.
     let found = spring("stiffness = 1000.0, rest = 2.0");
-    let said = "the spring `line` begins 0.02 m long and rests at 2 m: it pushes `flap` with 34 times its weight at the \
-                start";
+    let said = "the spring `line` begins 0.02 m long and rests at 2 m: it pushes `flap` with 34 times its weight at \
+                the start";
     assert!(has(&found, said), "{found:?}");
     for keys in ["stiffness = 1000.0, rest = 1.0", "stiffness = 1e6", "damping = 10.0"] {
         assert!(!has(&spring(keys), "the spring"), "{keys}: {:?}", spring(keys));

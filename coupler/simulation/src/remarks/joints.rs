@@ -69,7 +69,7 @@ pub(super) fn angles(scene: &Scene, all: &mut Vec<String>) {
 
 /// Springs that begin far from where they rest.
 pub(super) fn springs<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
-    let gravity = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+    let gravity = scene.gravity_magnitude();
     for (solid, keys) in rigid(scene) {
         for joint in &keys.joints {
             let JointKind::Spring { at, to } = joint.kind else { continue };

@@ -34,10 +34,7 @@ fn pushing<const D: usize>(
 
 /// The parts of a motion; not of wave makers, which begin by themselves.
 fn parts(motion: &Motion) -> &[Part] {
-    match motion {
-        Motion::Composed(composed) if composed.makes.is_none() => &composed.parts,
-        _ => &[],
-    }
+    if motion.makes().is_some() { &[] } else { motion.parts() }
 }
 
 /// Whether a part goes to and fro. What goes one way may be a gate, whose edge alone pushes.
@@ -68,7 +65,7 @@ fn is_swing(motion: &Motion) -> bool {
 
 /// Walls that begin to push fluid at once, and walls that push it too hard.
 pub(super) fn pushed<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
-    let gravity = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+    let gravity = scene.gravity_magnitude();
     let Some(depth) = depth(scene).filter(|_| gravity > 0.0) else { return };
     let waves = (gravity * depth).sqrt();
     let mut fluid = Cells::new(AT_FLUID * scene.resolution);

@@ -2,7 +2,7 @@
 
 use super::shapes::{length, place};
 use halfstep_scene::geometry::{self, Layout, SolidPoint};
-use halfstep_scene::{Block, Probe, ProbeKind, Scene, Spot};
+use halfstep_scene::{Block, Probe, ProbeKind, Scene};
 
 /// Distance from a solid's nearest particle from which on a point is not in the solid, in spacings of the solid. On the
 /// corner of a cell it is 0.9, in the nodal lattice twice that.
@@ -58,14 +58,12 @@ pub(super) fn empty<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut
 
 /// What a probe at a point measures of a solid.
 pub(super) fn at_point(kind: &ProbeKind) -> Option<([f64; 3], &'static str)> {
-    match kind {
-        ProbeKind::Displacement { at } => Some((*at, "displacement")),
-        ProbeKind::Position { at } => Some((*at, "position")),
-        ProbeKind::SolidVelocity { at } => Some((*at, "velocity")),
-        ProbeKind::Stress { at } | ProbeKind::CauchyStress { of: Spot::At(at) } => Some((*at, "stress")),
-        ProbeKind::Strain { of: Spot::At(at) } => Some((*at, "strain")),
-        _ => None,
-    }
+    let what = match kind {
+        ProbeKind::SolidVelocity { .. } => "velocity",
+        ProbeKind::CauchyStress { .. } => "stress",
+        _ => kind.name(),
+    };
+    Some((kind.point_of_solid()?, what))
 }
 
 /// What a probe at a point of a solid looks at.

@@ -87,8 +87,8 @@ pub(super) fn tractions<const D: usize>(scene: &Scene, layout: &Layout<D>, all: 
         let force = size * dx.powi(D as i32 - 1) * places.len() as f64;
         let unit = if D == 2 { "N/m" } else { "N" };
         all.push(format!(
-            "the traction on `{name}` acts on one face of each of {} particles in {rows:.0} rows: {force:.3e} {unit} in \
-             all, {rows:.0} times that on a surface (a box around one row loads a surface)",
+            "the traction on `{name}` acts on one face of each of {} particles in {rows:.0} rows: {force:.3e} {unit} \
+             in all, {rows:.0} times that on a surface (a box around one row loads a surface)",
             places.len()
         ));
     }
@@ -118,8 +118,8 @@ fn inside<const D: usize>(
     let count = places.iter().filter(enclosed).count();
     if count as f64 > INSIDE * places.len() as f64 {
         all.push(format!(
-            "the traction on `{}` acts inside of it: of {} particles {count} have others on all sides (a box around the \
-             outermost row loads a surface)",
+            "the traction on `{}` acts inside of it: of {} particles {count} have others on all sides (a box around \
+             the outermost row loads a surface)",
             shape.name,
             places.len()
         ));

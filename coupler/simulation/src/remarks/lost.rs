@@ -1,8 +1,8 @@
 //! Remarks on shapes whose places others have: other shapes, or copies of the same one.
 
 use super::overlap;
-use super::shapes::{Placed, length};
-use halfstep_scene::geometry::{self, Layout, Moved, Regions};
+use super::shapes::{Placed, around_copy, length};
+use halfstep_scene::geometry::{self, Layout, Regions};
 use halfstep_scene::{Geometry, Phase, Scene, Shape};
 
 /// From which share of its particles on a loss to other shapes is remarked.
@@ -79,8 +79,7 @@ pub(super) fn copies<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mu
         if moved.count < 2 || !shape.body.is_empty() {
             continue;
         }
-        let one = Geometry::Moved(Moved { count: 1, ..moved.clone() });
-        let around = geometry::bounding_box(&Shape { geometry: one, ..shape.clone() }, scene);
+        let around = around_copy(scene, shape, moved, 0);
         let extent = |a: usize| around.max[a] - around.min[a];
         if (0..D).any(|a| moved.step[a].abs() > extent(a) - 0.5 * scene.spacing(shape)) {
             continue;

@@ -47,7 +47,7 @@ pub(super) fn materials(scene: &Scene, all: &mut Vec<String>) {
 
 /// Gravity that is none of a planet's.
 pub(super) fn gravity(scene: &Scene, all: &mut Vec<String>) {
-    let size = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+    let size = scene.gravity_magnitude();
     if size > 0.0 && !(GRAVITY[0]..=GRAVITY[1]).contains(&size) {
         all.push(format!(
             "gravity is {} m/s², {} times that of the Earth: are the units metres and seconds?",
@@ -63,8 +63,8 @@ pub(super) fn viscosity(scene: &Scene, all: &mut Vec<String>) {
     let Some(fluid) = scene.fluid.as_ref().filter(|fluid| water(fluid.density)) else { return };
     if (KINEMATIC[0]..=KINEMATIC[1]).contains(&fluid.viscosity) {
         all.push(format!(
-            "fluid.viscosity = {:e} Pa s in a fluid of the density of water is the kinematic viscosity of water, in m²/s: \
-             it has 0.001 Pa s",
+            "fluid.viscosity = {:e} Pa s in a fluid of the density of water is the kinematic viscosity of water, in \
+             m²/s: it has 0.001 Pa s",
             fluid.viscosity
         ));
     }

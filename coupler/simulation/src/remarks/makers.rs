@@ -86,11 +86,7 @@ fn flooded(
 
 /// Swings that are a wave maker's: those of all parts whose course is a sine.
 fn swings(motion: &Motion) -> impl Iterator<Item = (&Part, f64)> {
-    let parts = match motion {
-        Motion::Composed(composed) => &composed.parts[..],
-        _ => &[],
-    };
-    parts.iter().filter_map(|part| match part.course {
+    motion.parts().iter().filter_map(|part| match part.course {
         Course::Sine { start, .. } => Some((part, start)),
         _ => None,
     })

@@ -2,7 +2,7 @@
 
 use super::water::INSTANTS;
 use super::{meet, overlap};
-use halfstep_scene::{Block, Geometry, Phase, Scene, Shape, TankSide, geometry};
+use halfstep_scene::{Block, Geometry, Phase, Scene, Shape, geometry};
 
 /// What moves, with the boxes around it at the instants of the run.
 struct Mover<'s> {
@@ -93,11 +93,9 @@ fn through_walls(scene: &Scene, mover: &Mover<'_>, all: &mut Vec<String>) {
     }
 }
 
-const SIDES: [[(TankSide, &str); 2]; 3] = [
-    [(TankSide::Left, "the left wall"), (TankSide::Right, "the right wall")],
-    [(TankSide::Bottom, "the bottom"), (TankSide::Top, "the top")],
-    [(TankSide::Back, "the back wall"), (TankSide::Front, "the front wall")],
-];
+/// Names of a tank's sides along each axis.
+const SIDES: [[&str; 2]; 3] =
+    [["the left wall", "the right wall"], ["the bottom", "the top"], ["the back wall", "the front wall"]];
 
 /// A wall's boxes, each with what it is called and whether it is a tank's: of other walls what slides along them and
 /// what meets them is not told apart.
@@ -107,7 +105,7 @@ fn parts(scene: &Scene, wall: &Shape) -> Vec<(String, Block, bool)> {
         Geometry::Tank { cavity, open } => {
             let around = geometry::bounding_box(wall, scene);
             let side = |axis: usize, k: usize| {
-                let (side, called) = SIDES[axis][k];
+                let (side, called) = (geometry::sides(axis)[k], SIDES[axis][k]);
                 let mut block = around;
                 match k {
                     0 => block.max[axis] = cavity.min[axis],

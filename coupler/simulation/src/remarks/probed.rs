@@ -4,8 +4,9 @@ use super::curves::level_at;
 use super::loaded::{Site, at_point, site};
 use super::near;
 use super::shapes::{length, place};
-use halfstep_scene::geometry::{Cells, Layout};
+use halfstep_scene::geometry::{self, Cells, Layout};
 use halfstep_scene::{Block, Phase, Probe, ProbeKind, Scene, Spot};
+use halfstep_wire::narrow;
 use serde::Serialize;
 use std::fmt;
 
@@ -63,7 +64,7 @@ impl<'s, const D: usize> Around<'s, D> {
 
     /// What is at a point.
     fn at(&self, at: &[f64; 3]) -> String {
-        match self.phase_at(&narrow(at)) {
+        match self.phase_at(&narrow(*at)) {
             Some(Phase::Fluid) => "in fluid",
             Some(Phase::Solid) => "in a solid",
             Some(Phase::Wall) => "in a wall",
@@ -74,18 +75,11 @@ impl<'s, const D: usize> Around<'s, D> {
 
     /// What is along a line.
     fn along(&self, from: &[f64; 3], to: &[f64; 3]) -> String {
-        let size = (0..D).map(|a| (to[a] - from[a]).powi(2)).sum::<f64>().sqrt();
-        let parts = (2.0 * size / self.scene.resolution).ceil().max(1.0);
-        let at = |part: usize| -> [f64; D] {
-            let along = (part as f64 + 0.5) / parts;
-            std::array::from_fn(|a| from[a] + along * (to[a] - from[a]))
-        };
-        let all = 0..parts as usize;
-        let wet = all.clone().filter(|part| self.phase_at(&at(*part)) == Some(Phase::Fluid)).count();
-        match wet {
+        let all = geometry::along(self.scene, from, to);
+        match all.iter().filter(|at| self.phase_at(at) == Some(Phase::Fluid)).count() {
             0 => "without fluid".to_owned(),
             wet if wet == all.len() => "in fluid".to_owned(),
-            wet => format!("with {:.0} % in fluid", 100.0 * wet as f64 / parts),
+            wet => format!("with {:.0} % in fluid", 100.0 * wet as f64 / all.len() as f64),
         }
     }
 
@@ -98,14 +92,10 @@ impl<'s, const D: usize> Around<'s, D> {
         };
         let place = within.map(|b| format!("within {} to {}", place(&b.min[..D]), place(&b.max[..D])));
         let count = super::loaded::measured(scene, self.layout, probe, shape)
-            .filter(|x| within.is_none_or(|b| halfstep_scene::geometry::holds(b, x, 0.0)))
+            .filter(|x| within.is_none_or(|b| geometry::holds(b, x, 0.0)))
             .count();
         [of, place, Some(format!("with {count} particles"))]
     }
-}
-
-fn narrow<const D: usize>(x: &[f64; 3]) -> [f64; D] {
-    std::array::from_fn(|a| x[a])
 }
 
 /// The probes of a scene, in its order.

@@ -2,6 +2,7 @@
 
 use super::near;
 use super::shapes::{Placed, length};
+use super::walls::kernel_support;
 use super::water::INSTANTS;
 use halfstep_scene::geometry::{Cells, Layout};
 use halfstep_scene::{Course, Motion, Phase, ProbeKind, Scene, geometry};
@@ -34,17 +35,14 @@ pub(super) fn motions(scene: &Scene, all: &mut Vec<String>) {
 
 /// When all swings of a motion have reached their amplitude, s; `None` without any.
 fn full_from(motion: &Motion) -> Option<f64> {
-    match motion {
-        Motion::Oscillating { start, ramp, .. } => Some(start + ramp),
-        Motion::Steady { .. } => None,
-        Motion::Composed(composed) => {
-            let full = composed.parts.iter().filter_map(|part| match part.course {
-                Course::Sine { start, ramp, .. } => Some(start + ramp),
-                _ => None,
-            });
-            full.reduce(f64::max)
-        }
+    if let Motion::Oscillating { start, ramp, .. } = motion {
+        return Some(start + ramp);
     }
+    let full = motion.parts().iter().filter_map(|part| match part.course {
+        Course::Sine { start, ramp, .. } => Some(start + ramp),
+        _ => None,
+    });
+    full.reduce(f64::max)
 }
 
 /// Solitary waves whose maker goes away from all water.
@@ -122,8 +120,8 @@ pub(super) fn fluxes(scene: &Scene, all: &mut Vec<String>) {
         let long = (0..3).map(|a| (to[a] - from[a]).powi(2)).sum::<f64>().sqrt();
         if long < SHORT * scene.resolution {
             all.push(format!(
-                "the line of the probe `{}` is {:.1} spacings long: a flux counts where fluid fills half of the kernel, \
-                 which a stream of less than about three spacings does not",
+                "the line of the probe `{}` is {:.1} spacings long: a flux counts where fluid fills half of the \
+                 kernel, which a stream of less than about three spacings does not",
                 probe.name,
                 long / scene.resolution
             ));
@@ -133,7 +131,7 @@ pub(super) fn fluxes(scene: &Scene, all: &mut Vec<String>) {
 
 /// Gauges on plates so thin that the kernel reaches the fluid behind them.
 pub(super) fn thin_gauges(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
-    let reach = 2.0 * scene.smoothing_ratio * scene.resolution;
+    let reach = kernel_support(scene);
     for probe in &scene.probes {
         let ProbeKind::Pressure { shape: Some(index), .. } = &probe.kind else { continue };
         let (shape, placed) = (&scene.shapes[*index], &placed[*index]);

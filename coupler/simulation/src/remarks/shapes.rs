@@ -3,8 +3,8 @@
 use super::beams::{self, Bends};
 use super::nodal;
 use super::thickness::{self, Thinnest};
-use halfstep_scene::geometry::{self, Layout, Plate};
-use halfstep_scene::{Geometry, Phase, Plane, Scene, Shape, SolidModelName};
+use halfstep_scene::geometry::{self, Layout, Moved, Plate};
+use halfstep_scene::{Block, Geometry, Phase, Plane, Scene, Shape, SolidModelName};
 use serde::{Serialize, Serializer};
 use std::fmt;
 
@@ -351,4 +351,11 @@ pub(super) fn locking(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
             ));
         }
     }
+}
+
+/// The box around one of the copies of a shape.
+pub(super) fn around_copy(scene: &Scene, shape: &Shape, moved: &Moved, copy: u32) -> Block {
+    let translate = std::array::from_fn(|a| moved.translate[a] + f64::from(copy) * moved.step[a]);
+    let one = Geometry::Moved(Moved { count: 1, translate, ..moved.clone() });
+    geometry::bounding_box(&Shape { geometry: one, ..shape.clone() }, scene)
 }

@@ -30,8 +30,8 @@ pub(super) fn arms(scene: &Scene, all: &mut Vec<String>) {
             ));
         } else if longest < AT_ONCE * wave {
             all.push(format!(
-                "the Maxwell arms of `{}` relax at once, and do nothing: the longest tau is {} s, and a wave needs {} s \
-                 from one particle to the next",
+                "the Maxwell arms of `{}` relax at once, and do nothing: the longest tau is {} s, and a wave needs {} \
+                 s from one particle to the next",
                 solid.name,
                 length(longest),
                 length(wave)
@@ -46,7 +46,7 @@ const STUCK: f64 = 1000.0;
 
 /// Side friction that holds all.
 pub(super) fn side_friction(scene: &Scene, all: &mut Vec<String>) {
-    let gravity = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+    let gravity = scene.gravity_magnitude();
     let fluid = scene.fluid.as_ref().map_or(0.0, |fluid| fluid.density);
     let pushed = |k: usize| {
         let own = scene.shapes.iter().filter(move |shape| shape.solid == Some(k));

@@ -51,8 +51,8 @@ pub(super) fn spills<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mu
             if count > 0 {
                 let lid = if lidded.is_empty() { "" } else { " (its tank is closed above and `open` there)" };
                 all.push(format!(
-                    "`{}` flows out of the scene toward {}: nothing is beside {count} of its particles up to {} = {} m, \
-                     where all walls end{lid}",
+                    "`{}` flows out of the scene toward {}: nothing is beside {count} of its particles up to {} = {} \
+                     m, where all walls end{lid}",
                     shape.name,
                     TOWARD[axis][side],
                     ["x", "y", "z"][axis],

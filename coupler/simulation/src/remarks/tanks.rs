@@ -1,7 +1,8 @@
 //! Remarks on tanks that stand in each other, and on walls beside tanks and in their floors.
 
+use super::shapes::around_copy;
 use super::{meet, overlap};
-use halfstep_scene::geometry::{self, Moved};
+use halfstep_scene::geometry;
 use halfstep_scene::{Block, Geometry, Phase, ProbeKind, Scene, Shape, TankSide};
 
 /// Tanks with their cavities and the boxes around their walls.
@@ -36,8 +37,8 @@ pub(super) fn overlapping(scene: &Scene, all: &mut Vec<String>) {
             let nested = holds(&a.cavity, &b.around, scene) || holds(&b.cavity, &a.around, scene);
             if !nested && overlap(&a.around, &b.cavity, scene) && overlap(&b.around, &a.cavity, scene) {
                 all.push(format!(
-                    "`{}` and `{}` overlap: walls of each stand in the other's cavity (`open` at both leaves out a wall \
-                     between them; walls are outside of `min` and `max`)",
+                    "`{}` and `{}` overlap: walls of each stand in the other's cavity (`open` at both leaves out a \
+                     wall between them; walls are outside of `min` and `max`)",
                     a.shape.name, b.shape.name
                 ));
             }
@@ -57,8 +58,8 @@ pub(super) fn copies_outside(scene: &Scene, all: &mut Vec<String>) {
             let beyond = copies.iter().filter(|copy| is_beyond(scene, tank, copy) && elsewhere(copy)).count();
             if inside > 0 && beyond > 0 {
                 all.push(format!(
-                    "{beyond} of the {} copies of `{}` stand outside of `{}`, beyond its closed sides, and the others in \
-                     it: is `count` or `step` right?",
+                    "{beyond} of the {} copies of `{}` stand outside of `{}`, beyond its closed sides, and the others \
+                     in it: is `count` or `step` right?",
                     copies.len(),
                     shape.name,
                     tank.shape.name
@@ -66,12 +67,6 @@ pub(super) fn copies_outside(scene: &Scene, all: &mut Vec<String>) {
             }
         }
     }
-}
-
-fn around_copy(scene: &Scene, shape: &Shape, moved: &Moved, copy: u32) -> Block {
-    let translate = std::array::from_fn(|a| moved.translate[a] + f64::from(copy) * moved.step[a]);
-    let one = Geometry::Moved(Moved { count: 1, translate, ..moved.clone() });
-    geometry::bounding_box(&Shape { geometry: one, ..shape.clone() }, scene)
 }
 
 /// Whether a box lies beyond a side of a tank that is closed.
@@ -104,8 +99,8 @@ pub(super) fn hidden(scene: &Scene, all: &mut Vec<String>) {
         });
         if let (Some(tank), false) = (within, is_named) {
             all.push(format!(
-                "`{}` lies in the walls of `{}` altogether, which are outside of its `min` and `max`: nothing is another \
-                 one for it",
+                "`{}` lies in the walls of `{}` altogether, which are outside of its `min` and `max`: nothing is \
+                 another one for it",
                 shape.name, tank.shape.name
             ));
         }

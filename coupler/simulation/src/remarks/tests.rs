@@ -140,8 +140,8 @@ fn a_clamp_in_a_wall_that_moves() {
     assert_eq!(
         found,
         [
-            "the clamp of `plate` stands in `tank`, which moves: the clamp stays where it is (`with = \"tank\"` at the clamp \
-          takes it along)"
+            "the clamp of `plate` stands in `tank`, which moves: the clamp stays where it is (`with = \"tank\"` at the \
+          clamp takes it along)"
         ]
     );
 }
@@ -185,8 +185,8 @@ fn shapes_that_touch_are_bodies_of_their_own() {
     assert_eq!(
         found,
         [
-            "`plate` and `block` touch and are bodies of their own, which repel each other and may part (the same `body` \
-          at both makes them one piece)"
+            "`plate` and `block` touch and are bodies of their own, which repel each other and may part (the same \
+          `body` at both makes them one piece)"
         ]
     );
     // Whoever names bodies knows.
@@ -446,8 +446,8 @@ fn a_traction_on_several_rows() {
     assert_eq!(
         loaded(0.21),
         [
-            "the traction on `plate` acts on one face of each of 36 particles in 2 rows: 1.800e2 N/m in all, 2 times that \
-             on a surface (a box around one row loads a surface)"
+            "the traction on `plate` acts on one face of each of 36 particles in 2 rows: 1.800e2 N/m in all, 2 times \
+             that on a surface (a box around one row loads a surface)"
         ]
     );
 }

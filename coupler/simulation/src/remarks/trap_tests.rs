@@ -89,8 +89,8 @@ fn a_plate_of_which_a_void_leaves_one_row() {
     assert_eq!(
         one,
         [
-            "`plate` is about 1.0 dx thick at [0.2025, 0.0475], and 2 dx are needed: fluid on one face reaches the other \
-          through it (2h) and leaks"
+            "`plate` is about 1.0 dx thick at [0.2025, 0.0475], and 2 dx are needed: fluid on one face reaches the \
+          other through it (2h) and leaks"
         ]
     );
     assert_eq!(plain(&[TANK, WATER, &void(0.21), PLATE]), [""; 0], "two rows are enough");
@@ -177,8 +177,8 @@ fn what_is_hardly_meant() {
     assert_eq!(
         scene("12e6", "2e3"),
         [
-            "the fluid's full head would bend `plate` by 1.216 m by beam theory, whose free length is 0.09 m (it is dry at \
-          the start: this is fluid that stands at it as high as fluid begins): is solid.youngs_modulus = 2e3 Pa right?"
+            "the fluid's full head would bend `plate` by 1.216 m by beam theory, whose free length is 0.09 m (it is \
+          dry at the start: this is fluid that stands at it as high as fluid begins): is solid.youngs_modulus = 2e3 Pa right?"
         ]
     );
     assert_eq!(

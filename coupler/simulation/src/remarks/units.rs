@@ -19,11 +19,7 @@ pub(super) fn about(scale: f64, unit: f64) -> bool {
 
 /// The parts of a motion that files say, with their columns.
 fn of_files(motion: &Motion) -> impl Iterator<Item = (&Part, &Spline, &Column)> + Clone {
-    let parts = match motion {
-        Motion::Composed(composed) => &composed.parts[..],
-        _ => &[],
-    };
-    parts.iter().filter_map(|part| match &part.course {
+    motion.parts().iter().filter_map(|part| match &part.course {
         Course::Points(spline) => Some((part, spline, spline.column()?)),
         _ => None,
     })

@@ -175,7 +175,7 @@ const MISSING: f64 = 0.02;
 pub(super) fn stacked<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
     let (Some((axis, down)), Some(fluid)) = (falls::<D>(scene), &scene.fluid) else { return };
     let reach = 1.5 * scene.resolution;
-    let size = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+    let size = scene.gravity_magnitude();
     let mut cells = Cells::new(reach);
     layout.fluid.iter().for_each(|p| cells.add(&p.position, p));
     let top = |index: usize| {

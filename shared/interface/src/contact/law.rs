@@ -92,7 +92,7 @@ impl Law {
             derived.min((THETA / step).powi(2) / give)
         });
         self.limit = THETA / (self.stiffness * give).sqrt();
-        let gravity = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+        let gravity = scene.gravity_magnitude();
         self.rest = REST * gravity * self.limit;
     }
 

@@ -7,7 +7,7 @@ use super::stamp::{Rect, Scale, Sheet, WALL};
 use super::view::{View, layout};
 use crate::OutputError;
 use halfstep_scene::geometry::{self, Layout};
-use halfstep_scene::{Block, Phase, ProbeKind, Scene, Spot, dispatch};
+use halfstep_scene::{Block, Phase, ProbeKind, Scene, dispatch};
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 use std::path::Path;
@@ -196,17 +196,11 @@ fn label_size(area: &Area<'_>, name: &str) -> Result<(i32, i32), Box<dyn std::er
 /// Points, or ends of lines, at which a probe measures, m.
 fn marks(kind: &ProbeKind) -> Vec<[f64; 3]> {
     match kind {
-        ProbeKind::Displacement { at }
-        | ProbeKind::Position { at }
-        | ProbeKind::Stress { at }
-        | ProbeKind::SolidVelocity { at }
-        | ProbeKind::Strain { of: Spot::At(at) }
-        | ProbeKind::CauchyStress { of: Spot::At(at) }
-        | ProbeKind::Velocity { at } => vec![*at],
+        ProbeKind::Velocity { at } => vec![*at],
         ProbeKind::Pressure { at, to, .. } => [Some(*at), *to].into_iter().flatten().collect(),
         ProbeKind::Flux { from, to } => vec![*from, *to],
         ProbeKind::Moment { about, .. } => vec![*about],
-        _ => Vec::new(),
+        _ => kind.point_of_solid().into_iter().collect(),
     }
 }
 

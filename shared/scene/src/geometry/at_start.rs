@@ -25,7 +25,7 @@ fn in_plane<const D: usize>(position: &[f64; D]) -> [f64; 2] {
 }
 
 pub(super) fn field_velocity<const D: usize>(scene: &Scene, shape: &Shape, position: &[f64; D]) -> [f64; 2] {
-    let gravity = scene.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+    let gravity = scene.gravity_magnitude();
     shape.velocity_field.map_or([0.0; 2], |field| field.velocity(in_plane(position), gravity))
 }
 
