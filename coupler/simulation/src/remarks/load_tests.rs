@@ -27,7 +27,7 @@ fn a_load_that_grows_for_longer_than_the_run() {
     let said =
         "the load of `beam` comes to 10 % of its traction: its `ramp` takes 1 s, and the run ends at 0.1 s";
     assert!(has(&end(1.0), said), "{:?}", end(1.0));
-    assert_eq!(end(0.1), [""; 0]);
+    assert_eq!(end(0.11), [""; 0], "to 91 %");
 }
 
 #[test]
@@ -78,11 +78,9 @@ fn arms_that_do_nothing() {
                 0.1 s. They make it 1.5 times as stiff in shear, and damp nothing";
     assert!(has(&slow, said), "{slow:?}");
     let fast = beam("prony = [[0.5, 1e-7]]", "");
-    assert!(
-        has(&fast, "the Maxwell arms of `solid` relax at once, and do nothing: the longest tau is 1e-7 s")
-            || has(&fast, "the longest tau is 0.0000001 s"),
-        "{fast:?}"
-    );
+    let said = "the Maxwell arms of `solid` relax at once, and do nothing: the longest tau is 1e-7 s, and a wave needs \
+                5.9e-5 s from one particle to the next";
+    assert!(has(&fast, said), "{fast:?}");
     // A fit over many decades has arms of all kinds.
     for arms in ["[[0.5, 0.06]]", "[[0.5, 9.0]]", "[[0.5, 1e-7], [0.3, 0.01], [0.2, 1000.0]]"] {
         assert_eq!(beam(&format!("prony = {arms}"), ""), [""; 0], "{arms}");

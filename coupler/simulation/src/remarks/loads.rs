@@ -126,14 +126,18 @@ fn inside<const D: usize>(
     }
 }
 
+/// Part of its traction that a load comes to at least where its ramp is meant.
+const REACHED: f64 = 0.9;
+
 /// Loads that the run's end cuts off as they grow.
 pub(super) fn ramps(scene: &Scene, all: &mut Vec<String>) {
     for (shape, load) in scene.shapes.iter().filter_map(|shape| Some((shape, shape.load?))) {
-        if load.ramp > scene.end_time {
+        let share = load.share(scene.end_time);
+        if share < REACHED {
             all.push(format!(
                 "the load of `{}` comes to {} % of its traction: its `ramp` takes {} s, and the run ends at {} s",
                 shape.name,
-                length(100.0 * load.share(scene.end_time)),
+                length(100.0 * share),
                 load.ramp,
                 scene.end_time
             ));

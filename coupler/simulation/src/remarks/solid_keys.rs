@@ -30,11 +30,9 @@ pub(super) fn arms(scene: &Scene, all: &mut Vec<String>) {
             ));
         } else if longest < AT_ONCE * wave {
             all.push(format!(
-                "the Maxwell arms of `{}` relax at once, and do nothing: the longest tau is {} s, and a wave needs {} \
-                 s from one particle to the next",
-                solid.name,
-                length(longest),
-                length(wave)
+                "the Maxwell arms of `{}` relax at once, and do nothing: the longest tau is {longest:e} s, and a wave \
+                 needs {wave:.1e} s from one particle to the next",
+                solid.name
             ));
         }
     }

@@ -4,7 +4,7 @@ use super::bodies::{names, on_spring};
 use super::overlap;
 use super::shapes::length;
 use halfstep_scene::geometry::{self, Layout, Surface};
-use halfstep_scene::{Body, Phase, Scene};
+use halfstep_scene::{Body, Geometry, Phase, Scene, Shape};
 use halfstep_wire::wide;
 
 /// Solids that strain and begin in a wall: the clamp that roots them there was forgotten.
@@ -21,14 +21,16 @@ pub(super) fn sunk<const D: usize>(
     let in_void =
         |at: &[f64; D]| scene.voids.iter().any(|void| geometry::distance(&void.geometry, &wide(*at)) == 0.0);
     for (index, shape) in scene.shapes.iter().enumerate() {
-        let strains = shape.solid.is_some_and(|k| scene.solids[k].rigid().is_none());
-        if !strains || held(index) {
+        if !strains(scene, shape) || held(index) {
             continue;
         }
         for (wall, around, surface) in &walls {
-            let own = layout.solid.iter().filter(|p| p.body as usize == index).map(|p| p.position);
+            let own = || layout.solid.iter().filter(|p| p.body as usize == index).map(|p| p.position);
+            if !own().any(|at| geometry::holds(around, &at, 0.0)) {
+                continue;
+            }
             let mut deepest = 0.0_f64;
-            for at in own.filter(|at| geometry::holds(around, at, 0.0) && !in_void(at)) {
+            for at in own().filter(|at| !in_void(at)) {
                 surface.nearest(at, &mut |distance, _| deepest = deepest.max(-distance));
             }
             if deepest > 0.0 {
@@ -53,8 +55,11 @@ pub(super) fn beside_walls(scene: &Scene, bodies: &[Body], all: &mut Vec<String>
     if moved(Phase::Wall) || moved(Phase::Solid) {
         return;
     }
+    // A tank's walls have no end toward rigid bodies.
+    let tank = scene.walls_to_touch().any(|wall| matches!(wall.geometry.unmoved(), Geometry::Tank { .. }));
+    let endless = |body: &Body| tank && !strains(scene, &scene.shapes[body.shapes[0]]);
     let box_of = |k: usize| geometry::bounding_box(&scene.shapes[k], scene);
-    for body in bodies.iter().filter(|body| !body.held && !on_spring(scene, body)) {
+    for body in bodies.iter().filter(|body| !body.held && !on_spring(scene, body) && !endless(body)) {
         let thrown = body.shapes.iter().any(|&k| scene.shapes[k].velocity != [0.0; 3]);
         let Some(own) = geometry::around(body.shapes.iter().map(|&k| box_of(k))).filter(|_| !thrown) else {
             continue;
@@ -77,6 +82,11 @@ pub(super) fn beside_walls(scene: &Scene, bodies: &[Body], all: &mut Vec<String>
             all.push(text);
         }
     }
+}
+
+/// A shape of a solid that is not rigid.
+fn strains(scene: &Scene, shape: &Shape) -> bool {
+    shape.solid.is_some_and(|k| scene.solids[k].rigid().is_none())
 }
 
 /// The axis along which gravity acts, and gravity, m/s²; `None` where it is zero or oblique.
