@@ -18,7 +18,8 @@ fn of(lines: &str, motion: &str, rest: &str) -> Vec<String> {
 #[test]
 fn intervals_that_leave_no_curve() {
     let frames = |interval: f64| of(&format!("[output]\nframe_interval = {interval}"), "", "");
-    let said = "output.frame_interval is 2 s and the run ends at 1 s: it makes no frame after its first";
+    let said =
+        "output.frame_interval is 2 s and the run ends at 1 s: it has frames of its start and its end alone";
     assert_eq!(frames(2.0), [said]);
     assert_eq!(frames(1.0), [""; 0]);
     let rows =

@@ -27,7 +27,7 @@ pub(super) fn intervals(scene: &Scene, all: &mut Vec<String>) {
     let (end, output) = (scene.end_time, &scene.output);
     if output.frame_interval > end {
         all.push(format!(
-            "output.frame_interval is {} s and the run ends at {end} s: it makes no frame after its first",
+            "output.frame_interval is {} s and the run ends at {end} s: it has frames of its start and its end alone",
             output.frame_interval
         ));
     }
