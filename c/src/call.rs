@@ -1,6 +1,6 @@
 //! The border to C: codes, texts, pointers.
 
-use halfstep_link::LinkError;
+use halfstep_client::Error;
 use std::cell::RefCell;
 use std::ffi::{CString, c_char, c_int};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -42,15 +42,17 @@ impl Fault {
     pub(crate) fn state(text: &str) -> Self {
         Self::new(Code::State, text)
     }
-
-    pub(crate) fn run(text: impl Into<String>) -> Self {
-        Self::new(Code::Run, text)
-    }
 }
 
-impl From<LinkError> for Fault {
-    fn from(error: LinkError) -> Self {
-        Self::run(error.to_string())
+impl From<Error> for Fault {
+    fn from(error: Error) -> Self {
+        let code = match &error {
+            Error::Count(_) => Code::Count,
+            Error::Value(_) => Code::Value,
+            Error::State(_) => Code::State,
+            Error::Run(_) => Code::Run,
+        };
+        Self::new(code, error.to_string())
     }
 }
 
@@ -105,7 +107,33 @@ pub(crate) unsafe fn input<'a, T>(pointer: *const T, count: usize, name: &str) -
     Ok(unsafe { std::slice::from_raw_parts(pointer, count) })
 }
 
-/// The same, or nothing where it is null.
+/// An array of vectors of N numbers each, all of them one after the other.
+///
+/// # Safety
+/// As for [`input`] with N times as many elements.
+pub(crate) unsafe fn vectors<'a, const N: usize>(
+    pointer: *const f64,
+    count: usize,
+    name: &str,
+) -> Result<&'a [[f64; N]], Fault> {
+    // SAFETY: as of this function; an array of numbers has their alignment and no gaps.
+    unsafe { input(pointer.cast(), count, name) }
+}
+
+/// The same to write.
+///
+/// # Safety
+/// As for [`output`] with N times as many elements.
+pub(crate) unsafe fn vectors_mut<'a, const N: usize>(
+    pointer: *mut f64,
+    count: usize,
+    name: &str,
+) -> Result<&'a mut [[f64; N]], Fault> {
+    // SAFETY: as of this function; an array of numbers has their alignment and no gaps.
+    unsafe { output(pointer.cast(), count, name) }
+}
+
+/// The same as [`input`], or nothing where it is null.
 ///
 /// # Safety
 /// As for [`input`].

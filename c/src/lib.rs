@@ -5,22 +5,38 @@
 //! text, and nothing unwinds into C.
 
 mod call;
-mod solid;
-mod table;
 
 pub use call::Code;
-use call::{Fault, call, input, optional, output, text};
-use solid::Solid;
-pub use solid::Step;
+use call::{Fault, call, input, optional, output, text, vectors, vectors_mut};
+use halfstep_client::{Contact, Particles, Quantity, Run, Solid};
 use std::cell::RefCell;
 use std::ffi::{c_char, c_int};
 use std::mem::ManuallyDrop;
-use table::Table;
+
+/// A half step, as the header has it.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C)]
+pub struct Step {
+    number: u64,
+    stage: u32,
+    reserved: u32,
+    time: f64,
+    dt: f64,
+    next_time: f64,
+    span: f64,
+}
+
+impl From<halfstep_client::Step> for Step {
+    fn from(step: halfstep_client::Step) -> Self {
+        let halfstep_client::Step { number, stage, time, dt, next_time, span } = step;
+        Self { number, stage, reserved: 0, time, dt, next_time, span }
+    }
+}
 
 thread_local! {
     /// Not dropped where the thread ends: the transport's own objects of the thread may be gone by then.
     static SOLID: RefCell<Option<ManuallyDrop<Solid>>> = const { RefCell::new(None) };
-    static TABLE: RefCell<Option<Table>> = const { RefCell::new(None) };
+    static PARTICLES: RefCell<Option<Particles>> = const { RefCell::new(None) };
 }
 
 /// Calls `act` with the solid of this thread.
@@ -44,11 +60,11 @@ pub extern "C" fn halfstep_error() -> *const c_char {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn halfstep_particle_count(count: *mut usize) -> c_int {
     call(|| {
-        let table = Table::read()?;
+        let particles = Particles::of_scene()?;
         // SAFETY: as of this function.
         let count = unsafe { output(count, 1, "count")? };
-        count[0] = table.count();
-        TABLE.set(Some(table));
+        count[0] = particles.count();
+        PARTICLES.set(Some(particles));
         Ok(Code::Ok)
     })
 }
@@ -67,22 +83,25 @@ pub unsafe extern "C" fn halfstep_particles(
     clamped: *mut u8,
 ) -> c_int {
     call(|| {
-        let table = match TABLE.take() {
-            Some(table) => table,
-            None => Table::read()?,
+        let particles = match PARTICLES.take() {
+            Some(particles) => particles,
+            None => Particles::of_scene()?,
         };
-        call::same_count(count, table.count())?;
+        call::same_count(count, particles.count())?;
         // SAFETY: as of this function.
         unsafe {
-            let vectors = [(position, 0, "position"), (velocity, 3, "velocity")];
-            for (to, first, name) in vectors {
-                table.copy(first..first + 3, output(to, 3 * count, name)?);
+            let columns =
+                [(position, &particles.position, "position"), (velocity, &particles.velocity, "velocity")];
+            for (to, from, name) in columns {
+                output(to, 3 * count, name)?.copy_from_slice(from.as_flattened());
             }
-            for (to, column, name) in [(mass, 6, "mass"), (density, 7, "density")] {
-                table.copy(column..column + 1, output(to, count, name)?);
+            for (to, from, name) in
+                [(mass, &particles.mass, "mass"), (density, &particles.density, "density")]
+            {
+                output(to, count, name)?.copy_from_slice(from);
             }
-            for (to, value) in output(clamped, count, "clamped")?.iter_mut().zip(table.column(8)) {
-                *to = u8::from(value != 0.0);
+            for (to, held) in output(clamped, count, "clamped")?.iter_mut().zip(&particles.clamped) {
+                *to = u8::from(*held);
             }
         }
         Ok(Code::Ok)
@@ -107,18 +126,22 @@ pub unsafe extern "C" fn halfstep_open(
         if SOLID.with_borrow(Option::is_some) {
             return Err(Fault::state("a solid is open already: a program is one participant"));
         }
-        let plan = solid::Plan::of_run(count)?;
+        let run = Run::of_environment()?;
+        run.room_for(count)?;
         // SAFETY: as of this function; the count fits into a message.
-        let solid = unsafe {
-            let records = solid::records(
-                input(position, 3 * count, "position")?,
-                input(velocity, 3 * count, "velocity")?,
-                input(mass, count, "mass")?,
-                input(density, count, "density")?,
-                optional(clamped, count, "clamped")?,
-            )?;
-            Solid::open(plan, records, own_walls != 0)?
+        let particles = unsafe {
+            Particles {
+                position: vectors(position, count, "position")?.to_vec(),
+                velocity: vectors(velocity, count, "velocity")?.to_vec(),
+                mass: input(mass, count, "mass")?.to_vec(),
+                density: input(density, count, "density")?.to_vec(),
+                clamped: match optional(clamped, count, "clamped")? {
+                    Some(clamped) => clamped.iter().map(|held| *held != 0).collect(),
+                    None => vec![false; count],
+                },
+            }
         };
+        let solid = run.join(&particles, if own_walls != 0 { Contact::Own } else { Contact::Coupler })?;
         SOLID.set(Some(ManuallyDrop::new(solid)));
         Ok(Code::Ok)
     })
@@ -134,8 +157,11 @@ pub unsafe extern "C" fn halfstep_wait(step: *mut Step, count: usize, forces: *m
         with(|solid| {
             call::same_count(count, solid.count())?;
             // SAFETY: as of this function.
-            let (step, forces) = unsafe { (output(step, 1, "step")?, output(forces, 3 * count, "forces")?) };
-            solid.wait(&mut step[0], forces)
+            let (step, forces) = unsafe { (output(step, 1, "step")?, vectors_mut(forces, count, "forces")?) };
+            let Some(told) = solid.wait()? else { return Ok(Code::Stopped) };
+            step[0] = told.into();
+            forces.copy_from_slice(solid.forces());
+            Ok(Code::Ok)
         })
     })
 }
@@ -151,8 +177,9 @@ pub unsafe extern "C" fn halfstep_publish(count: usize, position: *const f64, ve
             call::same_count(count, solid.count())?;
             // SAFETY: as of this function.
             let [x, v] =
-                unsafe { [input(position, 3 * count, "position")?, input(velocity, 3 * count, "velocity")?] };
-            solid.publish(x, v)
+                unsafe { [vectors(position, count, "position")?, vectors(velocity, count, "velocity")?] };
+            solid.publish(x, v)?;
+            Ok(Code::Ok)
         })
     })
 }
@@ -167,7 +194,8 @@ pub unsafe extern "C" fn halfstep_stress(count: usize, stress: *const f64) -> c_
         with(|solid| {
             call::same_count(count, solid.count())?;
             // SAFETY: as of this function.
-            solid.stress(unsafe { input(stress, 6 * count, "stress")? })
+            solid.stress(unsafe { vectors(stress, count, "stress")? })?;
+            Ok(Code::Ok)
         })
     })
 }
@@ -175,13 +203,25 @@ pub unsafe extern "C" fn halfstep_stress(count: usize, stress: *const f64) -> c_
 /// Says the largest time step that the solid allows from the next state on, s.
 #[unsafe(no_mangle)]
 pub extern "C" fn halfstep_dt_limit(seconds: f64) -> c_int {
-    call(|| with(|solid| solid.limit(seconds)))
+    call(|| {
+        with(|solid| {
+            solid.dt_limit(seconds)?;
+            Ok(Code::Ok)
+        })
+    })
 }
 
 /// Ends the run: a quantity of a particle left its bounds.
 #[unsafe(no_mangle)]
 pub extern "C" fn halfstep_diverged(quantity: c_int, particle: u32, value: f64) -> c_int {
-    call(|| with(|solid| solid.diverged(quantity, particle, value)))
+    call(|| {
+        with(|solid| {
+            let known = u32::try_from(quantity).ok().and_then(Quantity::from_wire);
+            let unknown = || Fault::new(Code::Value, format!("no quantity has the number {quantity}"));
+            solid.diverged(known.ok_or_else(unknown)?, particle, value)?;
+            Ok(Code::Ok)
+        })
+    })
 }
 
 /// Leaves the run. Where it is not over it ends with it: the solid has failed.
@@ -189,6 +229,9 @@ pub extern "C" fn halfstep_diverged(quantity: c_int, particle: u32, value: f64) 
 pub extern "C" fn halfstep_close() -> c_int {
     call(|| match SOLID.take() {
         None => Ok(Code::Ok),
-        Some(solid) => ManuallyDrop::into_inner(solid).close(),
+        Some(solid) => {
+            ManuallyDrop::into_inner(solid).close()?;
+            Ok(Code::Ok)
+        }
     })
 }

@@ -1,4 +1,5 @@
-//! A solid in C on the library `c`: compiled here, and run by the real program beside the same solid in Python.
+//! Solids in programs of their own in Rust and in C, which is compiled here: run by the real program beside the same
+//! solid in Python.
 
 use halfstep_tests::python::python;
 use halfstep_tests::run::{repository, scene, whole_machine};
@@ -31,13 +32,19 @@ fn compiled(source: &Path, folder: &Path) -> PathBuf {
     program
 }
 
-/// Both sum the forces of 448 particles, in another order: the last bits differ, and nothing else.
+/// The block of `examples/joined_solid.rs`.
+const IN_RUST: &str = env!("CARGO_BIN_EXE_joined-solid-under-test");
+
+/// They sum the forces of 448 particles, in another order in Python: the last bits differ, and nothing else.
 #[test]
-fn a_block_in_c_moves_as_the_one_in_python() {
+fn a_block_in_rust_or_in_c_moves_as_the_one_in_python() {
     let folder = tempfile::tempdir().expect("a folder");
     let program = compiled(&repository().join("c/examples/spring_block.c"), folder.path());
     let block = |line: String| scene("spring-block").until(0.2).argument("--solid").argument(line).run();
     let in_c = block(format!("{} {STIFFNESS}", program.display()));
+    let in_rust = block(format!("{IN_RUST} {STIFFNESS}"));
+    assert_eq!(in_rust.curve("block.x"), in_c.curve("block.x"));
+    assert_eq!(in_rust.report.audit.state_hash, in_c.report.audit.state_hash);
     let script = repository().join("tests/python/spring_block.py");
     let in_python = block(format!("{} {} {STIFFNESS}", python().display(), script.display()));
     let [c, python] = [&in_c, &in_python].map(|run| run.curve("block.x"));
@@ -83,6 +90,17 @@ fn a_run_says_what_a_solid_in_c_says() {
         println!("{how}: {error}");
         assert!(error.contains(told), "{how}: {error}");
     }
+}
+
+/// A solid in Rust that ends before the run does: whoever drops it leaves, and the run says who ended it.
+#[test]
+fn a_solid_in_rust_that_fails_says_so() {
+    let outcome = scene("spring-block").until(0.05).argument("--solid").argument(IN_RUST).outcome();
+    assert_eq!(outcome.code(), Some(2), "{}", outcome.stderr);
+    assert!(outcome.log().contains("usage: joined-solid STIFFNESS"), "{}", outcome.log());
+    let alone = Command::new(IN_RUST).arg("20000").output().expect("it starts");
+    let said = String::from_utf8_lossy(&alone.stderr).into_owned();
+    assert!(!alone.status.success() && said.contains("halfstep run SCENE --solid"), "{said}");
 }
 
 /// How long a half-step of the block takes by the Rust library (which the C library is) and by the Python package: from
