@@ -1,7 +1,7 @@
 //! The passes over neighbours of a half-step, and what each effect takes of their time.
 
 use crate::composition::{Pass, Shares};
-use crate::effects::{Effects, FluidEffect, List, Neighbourhood, evaluations};
+use crate::effects::{Effects, FluidEffect, List, Neighbourhood, OnParticle, evaluations};
 use crate::fluid::Fluid;
 use crate::rates::{PairEffect, RateLaw, RateSum};
 use crate::walls::{WallLaw, Walls};
@@ -27,9 +27,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         self.wall_rates(kernel, &mut sums);
         self.effects.on_particles(&mut |name, of| {
             let _phase = timeline::phase(name);
-            for (slot, particle) in self.columns.now.sources.iter().enumerate() {
-                sums[slot / LANES].add(slot % LANES, of(&particle.position, &particle.velocity), 0.0);
-            }
+            self.add_on_particles(of, &mut sums);
         });
         self.sums = sums;
         self.pair_evaluations += evaluations(&self.fluid_list) + evaluations(&self.wall_list);
@@ -74,6 +72,13 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         self.effects.at_walls().run(OverWalls { kernel, fluid: self, walls, sums });
     }
 
+    /// Adds what an effect does to single particles.
+    fn add_on_particles(&self, of: OnParticle<'_, D>, sums: &mut [RateSum<D>]) {
+        for (slot, particle) in self.columns.now.sources.iter().enumerate() {
+            sums[slot / LANES].add(slot % LANES, of(&particle.position, &particle.velocity), 0.0);
+        }
+    }
+
     /// Parts of the sums' time, each effect's measured by leaving it out.
     pub(crate) fn costs<K: Kernel<D>>(&mut self, kernel: K) -> Costs {
         let mut costs = Costs::default();
@@ -82,8 +87,14 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         let rates = fastest(|| self.rates(kernel, self.effects.pairs(), &mut sums));
         let mut own_passes = Vec::new();
         self.among(kernel, |effects, around| effects.measure(around, &mut own_passes));
+        self.effects.on_particles(&mut |name, of| {
+            own_passes.push((name, fastest(|| self.add_on_particles(of, &mut sums))));
+        });
+        let placing = self.walls.as_mut().map_or(0.0, |walls| fastest(|| walls.place_again()));
         let total = walls + rates + own_passes.iter().map(|(_, own)| own).sum::<f64>();
         costs.walls = walls / total;
+        // It comes before the sums, once for each.
+        costs.moving_walls = placing / total;
         for (name, own) in own_passes {
             let without = fastest(|| self.rates(kernel, self.effects.pairs_without(name), &mut sums));
             // What a further effect takes is counted as the fluid's own.

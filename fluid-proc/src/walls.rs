@@ -102,6 +102,13 @@ impl<const D: usize> Walls<D> {
         moving.place(time, Seen { position, velocity, normal: &mut self.normal });
     }
 
+    /// Places them where they are, which changes nothing.
+    pub(crate) fn place_again(&mut self) {
+        if let Some(now) = self.moving.as_ref().map(|moving| moving.time) {
+            self.set_time(now);
+        }
+    }
+
     /// Where a point of the scene is that goes along with the wall of a shape.
     pub(crate) fn carry(&self, shape: usize, point: [f64; D]) -> [f64; D] {
         self.moving.as_ref().map_or(point, |moving| moving.carry(shape, point))

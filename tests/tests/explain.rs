@@ -84,6 +84,10 @@ fn what_a_scene_prescribes_has_its_rows() {
     let moving = row(&flume, "moving-walls");
     assert_eq!((&moving["on"], &moving["bytes_per_particle"]), (&Value::Bool(true), &Value::from(56.0)));
     assert!(moving["why"].as_str().unwrap().contains("`paddle`"), "{moving}");
+    assert!(moving["share"].as_f64().is_some_and(|share| share > 0.0), "{moving}");
+    let beach = effects("wave-paddle", &["resolution=0.02", "fluid.beach={ from = 2.0, to = 4.0 }"]);
+    let share = row(&beach, "beach")["share"].as_f64();
+    assert!(share.is_some_and(|share| share > 0.0 && share < 0.2), "{beach:#}");
     let why = row(&flume, "wave-maker")["why"].as_str().unwrap();
     assert!(why.contains("0.02 m in 0.2 m of water with a stroke of 0.017 m"), "{why}");
     let cracked = effects("kalthoff-winkler", &["resolution=0.0025"]);

@@ -103,3 +103,19 @@ fn particles_that_leave_are_no_drift() {
     let said = format!("{lost} of {} fluid particles left the domain", report.particles.fluid);
     assert!(report.warnings.contains(&said), "{:?}", report.warnings);
 }
+
+#[test]
+fn what_begins_outside_of_the_domain_counts_among_what_left_it() {
+    // The border goes through the middle of the second drop.
+    let domain = "numerics.domain={ min = [-0.2, -0.2], max = [0.056, 0.3] }".to_owned();
+    let end = "end_time=1e-5".to_owned();
+    let scene =
+        scene::parse(FREE, Path::new("free.toml"), &[domain, end]).unwrap_or_else(|e| panic!("{e:?}"));
+    let layout = halfstep_scene::geometry::layout::<2>(&scene);
+    let outside = layout.fluid.iter().filter(|p| p.position[0] > 0.056).count();
+    assert!(outside > 10, "{outside}");
+    let report = Simulation::new(scene).run().expect("a run");
+    assert_eq!(report.particles.removed, outside as u64);
+    let said = format!("{outside} of {} fluid particles left the domain", layout.fluid.len());
+    assert!(report.warnings.contains(&said), "{:?}", report.warnings);
+}

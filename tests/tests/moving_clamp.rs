@@ -106,3 +106,19 @@ fn a_baffle_goes_with_its_tank_and_keeps_the_water() {
     assert!(report.audit.density_error.is_some_and(|error| error < 0.03), "{:?}", report.audit);
     assert!(report.audit.min_gap.is_some_and(|gap| gap > 0.5), "{:?}", report.audit);
 }
+
+/// The same baffle whose clamp stays in space: the tank slides away from it and water falls out, which is said before
+/// the run and after it.
+#[test]
+fn a_baffle_whose_clamp_stays_lets_the_water_out_and_it_is_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("baffle.toml");
+    std::fs::write(&path, BAFFLE.replace(", with = \"tank\"", "")).expect("a scene");
+    let run = halfstep_tests::run::scene_at(&path).in_process().run();
+    let report = &run.report;
+    let said = "the clamp of `baffle` stands in `tank`, which moves: the clamp stays where it is";
+    assert!(report.warnings.iter().any(|warning| warning.contains(said)), "{:?}", report.warnings);
+    let lost = format!("{} of {} fluid particles left", report.particles.removed, report.particles.fluid);
+    assert!(report.particles.removed > 0, "{:?}", report.audit);
+    assert!(run.outcome.stderr.contains(&lost), "{}", run.outcome.stderr);
+}

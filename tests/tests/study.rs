@@ -168,6 +168,10 @@ fn what_cannot_be_studied_is_said_before_anything_runs() {
         assert!(said.contains(message), "{said}");
         assert!(study.done().is_empty());
     }
+    // What is physical is no error, and is said before the first run; here the goal is refused.
+    let density = study.run(&["--vary", "fluid.density=500", "--metric", "speed", "--error", "1%"]);
+    let said = String::from_utf8_lossy(&density.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(said.contains("warning: --vary fluid.density changes what is computed and not how"), "{said}");
 }
 
 #[test]

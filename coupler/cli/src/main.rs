@@ -79,10 +79,15 @@ fn load(arguments: &SceneArguments) -> Result<scene::Scene, ExitCode> {
     }
     let mut overrides = arguments.set.clone();
     overrides.extend(arguments.until.iter().map(|t| format!("end_time={t}")));
-    scene::load(&arguments.scene, &overrides).map_err(|errors| {
+    let mut scene = scene::load(&arguments.scene, &overrides).map_err(|errors| {
         say::warn(format_args!("{:?}", miette::Report::new(errors)));
         ExitCode::from(1)
-    })
+    })?;
+    if arguments.until.is_some() {
+        let own = scene::load(&arguments.scene, &arguments.set).ok().map(|own| own.end_time);
+        scene.whole = own.filter(|own| *own > scene.end_time);
+    }
+    Ok(scene)
 }
 
 /// The scene of an earlier run, from the `scene.json` in its folder: exactly as it was computed. Its numbers were

@@ -12,6 +12,8 @@ const FLUID: &str = "fluid";
 const SOLID: &str = "solid";
 /// Walls toward the fluid.
 const WALLS: &str = "walls";
+/// Walls that move as prescribed, toward the fluid.
+pub(crate) const MOVING_WALLS: &str = "moving-walls";
 /// Sums across the interface.
 const INTERFACE: &str = "interface";
 /// Contact between two solids.
@@ -127,13 +129,14 @@ pub(crate) fn share(report: &mut RunReport, reports: &[(Phase, Report)], coupler
     if walls > 0.0 {
         share_row(report, WALLS, walls);
     }
+    share_row(report, MOVING_WALLS, sum(&|own| own.moving_walls));
     share_row(report, INTERFACE, sum(&|own| own.interface));
     share_row(report, CROSS_VISCOSITY, coupler / total);
     for (name, phase) in [(FLUID, Phase::Fluid), (SOLID, Phase::Solid)] {
         let rest = |own: &Report| {
             let shown = own.effects.iter().filter(|(effect, _)| is_on(report, *effect));
             let effects: f64 = shown.map(|(_, seconds)| seconds).sum();
-            (own.compute - own.walls - own.interface - effects).max(0.0)
+            (own.compute - own.walls - own.moving_walls - own.interface - effects).max(0.0)
         };
         let share: f64 = reports.iter().filter(|(p, _)| *p == phase).map(|(_, own)| rest(own)).sum();
         share_row(report, name, share / total);

@@ -1,7 +1,7 @@
 //! Rows of `explain` for what a scene prescribes: motion, waves, loads and cracks. A scene without them has no such
 //! row.
 
-use crate::effects::row;
+use crate::effects::{MOVING_WALLS, row};
 use halfstep_output::run_json::EffectReport;
 use halfstep_scene::geometry::{Counts, Layout};
 use halfstep_scene::{Course, Decision, Motion, Phase, Scene, Shape, dispatch};
@@ -27,12 +27,12 @@ pub(crate) fn rows(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
         let bytes = (3 * scene.dimension + 1) * REAL;
         let of_all = match scene.fluid.is_some() {
             true => {
-                format!("all {} wall particles are placed anew, within the share of `fluid`", counts.wall)
+                format!("all {} wall particles are placed anew", counts.wall)
             }
             false => "they are where it says, within the share of `solid`".into(),
         };
         let bytes = scene.fluid.is_some().then_some(bytes);
-        put("moving-walls", bytes, format!("`motion` of {names}: at each half-step {of_all}"));
+        put(MOVING_WALLS, bytes, format!("`motion` of {names}: at each half-step {of_all}"));
     }
     for shape in &scene.shapes {
         let Some(motion) = &shape.motion else { continue };
@@ -46,7 +46,7 @@ pub(crate) fn rows(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
             None,
             format!(
                 "`motion` of `{}` makes {} of {} m in {} m of water with a stroke of {:.3} m: {} at each half-step, \
-                 within the share of `fluid`",
+                 within the share of `moving-walls`",
                 shape.name, waves, makes.height, makes.depth, makes.stroke, by
             ),
         );

@@ -78,6 +78,8 @@ pub fn remarks(scene: &Scene) -> Vec<String> {
 
 /// The same with its particles and shapes at hand.
 pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Placed]) -> Vec<String> {
+    let whole = scene.whole.map(|end_time| Scene { end_time, ..scene.clone() });
+    let scene = whole.as_ref().unwrap_or(scene);
     let mut all = Vec::new();
     moving::clamps(scene, &mut all);
     moving::clamps_that_leave(scene, layout, &mut all);
@@ -161,6 +163,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     settings::checkpoints(scene, &mut all);
     settings::probes(scene, &mut all);
     dry::walled(scene, layout, &mut all);
+    dry::driven::<D>(scene, &mut all);
     settings::fluxes(scene, &mut all);
     settings::thin_gauges(scene, placed, &mut all);
     magnitudes::materials(scene, &mut all);

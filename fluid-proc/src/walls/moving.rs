@@ -16,7 +16,7 @@ pub struct Moving<const D: usize> {
     /// When the last sort was, s.
     pub(crate) sorted_at: f64,
     /// Now, s.
-    time: f64,
+    pub(crate) time: f64,
     /// Distance of each shape's farthest particle from the pivot about which it turns, m.
     radius: Vec<f64>,
     /// Shape of each slot: a whole number, as a column that is sorted with the others.

@@ -24,6 +24,8 @@ pub struct Report {
     pub pair_evaluations: u64,
     /// Walls toward this participant.
     pub walls: f64,
+    /// Placing the walls that move.
+    pub moving_walls: f64,
     /// Sums across the interface.
     pub interface: f64,
     /// Effects that took measurable time.

@@ -28,6 +28,8 @@ pub struct Costs {
     pub effects: [f64; EffectName::ALL.len()],
     /// Walls toward this phase.
     pub walls: f64,
+    /// Placing the walls that move; not part of the sums.
+    pub moving_walls: f64,
     /// The numbers are parts of one of the whole computing time; else of [`Role::own_sums`].
     pub of_whole: bool,
 }
@@ -36,7 +38,12 @@ impl Costs {
     /// The same in seconds, for this much time in the sums and in all.
     pub fn of(self, sums: f64, compute: f64) -> Self {
         let seconds = if self.of_whole { compute } else { sums };
-        Self { effects: self.effects.map(|e| e * seconds), walls: self.walls * seconds, ..self }
+        Self {
+            effects: self.effects.map(|e| e * seconds),
+            walls: self.walls * seconds,
+            moving_walls: self.moving_walls * seconds,
+            ..self
+        }
     }
 }
 

@@ -255,6 +255,7 @@ impl Track {
             round_trip_us: [0.5, 0.99].map(|share| self.latency.percentile(share)),
             pair_evaluations: self.member.role.pair_evaluations(),
             walls: costs.walls,
+            moving_walls: costs.moving_walls,
             interface: self.cross.as_secs_f64(),
             effects: effects.filter(|(_, seconds)| *seconds > 0.0).collect(),
             energy: self.member.role.ledger().map_or_else(Vec::new, Ledger::entries),

@@ -114,6 +114,9 @@ pub struct Scene {
     pub smoothing_ratio: f64,
     /// Simulated time, s.
     pub end_time: f64,
+    /// End of the whole run, s, where only its beginning is computed: what is said of the scene is of the whole.
+    #[serde(skip)]
+    pub whole: Option<f64>,
     /// How the time step is chosen.
     pub time_step: TimeStep,
     /// Gravity, m/s²: in space, see [`Gravity`].

@@ -106,6 +106,7 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&s
         resolution: top.number("resolution", None),
         smoothing_ratio,
         end_time,
+        whole: None,
         time_step: match top.number_or_auto("time_step", fixed(defaults.time_step)) {
             Some(dt) => TimeStep::Fixed(dt),
             None => TimeStep::Auto,

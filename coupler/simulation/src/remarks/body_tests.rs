@@ -125,6 +125,11 @@ fn what_moves_through_a_tank() {
         assert!(!has(&gate(motion), "goes through"), "{motion}: {:?}", gate(motion));
     }
     assert!(has(&gate("{ velocity = [-0.2, 0.0] }"), "`gate` goes through the left wall of `tank`"));
+    let slot =
+        "[[shape]]\nname = \"slot\"\nphase = \"void\"\nbox = { min = [0.1, -0.03], max = [0.12, 0.0] }\n";
+    let lines = "motion = { velocity = [0.0, -1.5], end = 0.1 }";
+    let through = plain(&[slot, &shape("gate", "wall", [0.1, 0.0], [0.12, 0.2], lines), TANK, WATER, PLATE]);
+    assert!(!has(&through, "goes through"), "{through:?}");
     // It stands in the floor, and goes further into it.
     let rooted = shape("gate", "wall", [0.1, -0.01], [0.12, 0.2], "motion = { velocity = [0.0, -0.1] }");
     assert!(!has(&plain(&[&rooted, TANK, WATER, PLATE]), "goes through"));

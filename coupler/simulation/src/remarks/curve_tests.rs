@@ -22,6 +22,13 @@ fn intervals_that_leave_no_curve() {
         "output.frame_interval is 2 s and the run ends at 1 s: it has frames of its start and its end alone";
     assert_eq!(frames(2.0), [said]);
     assert_eq!(frames(1.0), [""; 0]);
+    // The beginning of a run that is long enough.
+    let text = format!("resolution = 0.005\nend_time = 1.0\n[fluid]\ndensity = 1000.0\n{TANK}{WATER}");
+    let text = text + "[output]\nframe_interval = 0.5\n";
+    let mut scene = parse(&text, std::path::Path::new("t.toml"), &["end_time=0.1".into()]).unwrap();
+    assert_eq!(remarks(&scene).len(), 1);
+    scene.whole = Some(1.0);
+    assert_eq!(remarks(&scene), [""; 0]);
     let rows =
         |interval: f64, motion: &str| of(&format!("[output]\nprobe_interval = {interval}"), motion, "");
     let said =

@@ -1,11 +1,12 @@
-//! Remarks on probes of the fluid in walls.
+//! Remarks on probes of the fluid in walls, at rest and moving.
 
 use super::curves::front_at;
+use super::passages::movers;
 use super::reached::{Matter, Places, reached};
 use super::shapes::{length, place};
 use super::walls::kernel_support;
 use halfstep_scene::geometry::{self, Layout, cell};
-use halfstep_scene::{Block, ProbeKind, Scene};
+use halfstep_scene::{Block, Phase, ProbeKind, Scene};
 use halfstep_wire::narrow;
 
 /// Distance from places that the fluid reaches, in spacings, up to which a point is at a wall's face, not in the wall.
@@ -129,6 +130,38 @@ pub(super) fn walled<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mu
                 place(&to[..D])
             )),
             _ => (),
+        }
+    }
+}
+
+/// Probes of the fluid that a wall holds in itself wherever it moves.
+pub(super) fn driven<const D: usize>(scene: &Scene, all: &mut Vec<String>) {
+    let support = kernel_support(scene);
+    let walls = movers(scene).filter(|mover| mover.shape.phase == Phase::Wall);
+    for (mover, inside) in walls.filter_map(|mover| Some((mover.shape, mover.throughout()?))) {
+        let deep = |at: &[f64; 3], by: f64| geometry::holds::<D>(&inside, &narrow(*at), -by);
+        for probe in &scene.probes {
+            let place = match &probe.kind {
+                ProbeKind::Velocity { at } if deep(at, support) => {
+                    format!("probe `{}` at {}", probe.name, place(&at[..D]))
+                }
+                ProbeKind::Pressure { at, to, shape: None }
+                    if [Some(at), to.as_ref()].into_iter().flatten().all(|at| deep(at, support)) =>
+                {
+                    format!("probe `{}` at {}", probe.name, place(&at[..D]))
+                }
+                ProbeKind::WaterLevel { x } => {
+                    let beside = scene.resolution;
+                    let within = |x: &&f64| inside.min[0] + beside <= **x && **x <= inside.max[0] - beside;
+                    let Some(x) = x.iter().find(within) else { continue };
+                    format!("gauge `{}` at x = {} m", probe.name, length(*x))
+                }
+                _ => continue,
+            };
+            all.push(format!(
+                "the {place} is in `{}` throughout, which moves: no fluid comes there",
+                mover.name
+            ));
         }
     }
 }

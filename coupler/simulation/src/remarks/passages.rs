@@ -5,13 +5,13 @@ use super::{meet, overlap};
 use halfstep_scene::{Block, Geometry, Phase, Scene, Shape, geometry};
 
 /// What moves, with the boxes around it at the instants of the run.
-struct Mover<'s> {
-    shape: &'s Shape,
+pub(super) struct Mover<'s> {
+    pub(super) shape: &'s Shape,
     way: Vec<Block>,
 }
 
 /// Walls and rigid bodies that move as prescribed and do not turn.
-fn movers(scene: &Scene) -> impl Iterator<Item = Mover<'_>> {
+pub(super) fn movers(scene: &Scene) -> impl Iterator<Item = Mover<'_>> {
     let rigid = |shape: &Shape| shape.solid.is_some_and(|k| scene.solids[k].rigid().is_some());
     let moves = move |shape: &&Shape| shape.phase == Phase::Wall || rigid(shape);
     scene.shapes.iter().filter(moves).filter_map(|shape| Mover::of(scene, shape))
@@ -33,11 +33,40 @@ impl<'s> Mover<'s> {
         Some(Self { shape, way: (0..=INSTANTS).map(at).collect() })
     }
 
-    /// The first instant at which it is in what stays; `None` where it begins in it, or never comes there.
+    /// The first instant at which it is in what stays; `None` where it begins in it, never comes there, or through a
+    /// slot.
     fn enters(&self, fixed: &Block, scene: &Scene) -> Option<usize> {
-        let first = self.way.iter().position(|now| overlap(now, fixed, scene))?;
+        let is_in = |now: &Block| overlap(now, fixed, scene) && !in_a_slot(now, fixed, scene);
+        let first = self.way.iter().position(is_in)?;
         (first > 0).then_some(first)
     }
+
+    /// The box that it fills throughout; `None` where there is none, or its shape is no box.
+    pub(super) fn throughout(&self) -> Option<Block> {
+        let Geometry::Box(_) = self.shape.geometry else { return None };
+        let common = self.way.iter().copied().reduce(|a, b| common(&a, &b))?;
+        (0..3).all(|a| common.min[a] <= common.max[a]).then_some(common)
+    }
+}
+
+/// The box that two have in common: one whose least corner is beyond its largest where there is none.
+fn common(a: &Block, b: &Block) -> Block {
+    let [mut min, mut max] = [a.min, a.max];
+    for k in 0..3 {
+        (min[k], max[k]) = (min[k].max(b.min[k]), max[k].min(b.max[k]));
+    }
+    Block { min, max }
+}
+
+/// Whether a void is where two boxes meet, to half a spacing.
+fn in_a_slot(a: &Block, b: &Block, scene: &Scene) -> bool {
+    let both = common(a, b);
+    let corner = |code: usize| [0, 1, 2].map(|k| if code >> k & 1 == 0 { both.min[k] } else { both.max[k] });
+    let half = 0.5 * scene.resolution;
+    scene
+        .voids
+        .iter()
+        .any(|void| (0..8).all(|code| geometry::distance(&void.geometry, &corner(code)) <= half))
 }
 
 /// All that moves through what it cannot.

@@ -106,3 +106,27 @@ fn gauges_and_lines_in_walls() {
     assert_eq!(flux("[0.3, 0.0]", "[0.3, 0.2]"), [""; 0]);
     assert_eq!(flux("[0.25, 0.02]", "[0.39, 0.02]"), [""; 0]);
 }
+
+#[test]
+fn probes_in_a_paddle() {
+    let paddle = |stroke: f64| {
+        let lines = format!("motion = {{ amplitude = [{stroke}, 0.0], period = 1.0 }}\n");
+        format!(
+            "[[shape]]\nname = \"paddle\"\nphase = \"wall\"\nbox = {{ min = [0.3, 0.0], max = [0.38, 0.2] }}\n{lines}"
+        )
+    };
+    let on = |keys: &str, stroke: f64| plain(&[&paddle(stroke), TANK, WATER, PLATE, &probe(keys)]);
+    let gauge = "kind = \"water-level\"\nx = 0.34";
+    let said = "the gauge `p` at x = 0.34 m is in `paddle` throughout, which moves: no fluid comes there";
+    assert!(has(&on(gauge, 0.03), said), "{:?}", on(gauge, 0.03));
+    // It goes by 40 mm to both sides of the gauge, which is 40 mm from its faces.
+    assert!(!has(&on(gauge, 0.04), "throughout"), "{:?}", on(gauge, 0.04));
+    for kind in ["pressure", "velocity"] {
+        let point = format!("kind = \"{kind}\"\nat = [0.34, 0.1]");
+        let said =
+            "the probe `p` at [0.34, 0.1] is in `paddle` throughout, which moves: no fluid comes there";
+        assert!(has(&on(&point, 0.02), said), "{kind}: {:?}", on(&point, 0.02));
+        // Fluid is within 2h of it, 15 mm.
+        assert!(!has(&on(&point, 0.03), "throughout"), "{kind}: {:?}", on(&point, 0.03));
+    }
+}

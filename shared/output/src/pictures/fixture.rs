@@ -18,6 +18,7 @@ pub(crate) fn scene() -> Scene {
         dimension: 2,
         resolution: SPACING,
         smoothing_ratio: 1.33,
+        whole: None,
         end_time: 0.4,
         time_step: TimeStep::Auto,
         gravity: [0.0, -9.81, 0.0],

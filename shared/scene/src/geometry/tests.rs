@@ -14,6 +14,7 @@ fn scene(shapes: Vec<Shape>) -> Scene {
         resolution: DX,
         smoothing_ratio: 1.33,
         end_time: 1.0,
+        whole: None,
         time_step: TimeStep::Auto,
         gravity: [0.0, -10.0, 0.0],
         fluid: Some(Fluid {
