@@ -359,6 +359,69 @@ fn a_block_in_space_breaks() {
     assert!((summary.area / (0.02 * 0.015) - 1.0).abs() < 1e-12);
 }
 
+/// A bar of four by two rows in space, torn as the one in the plane: the band takes the same energy per area.
+#[test]
+fn a_bar_in_space_takes_its_fracture_energy() {
+    let mut scene = halfstep_scene::parse(&bar(0.005, 0.05), "test.toml".as_ref(), &[]).unwrap();
+    scene.dimension = 3;
+    for shape in &mut scene.shapes {
+        let Geometry::Box(block) = &mut shape.geometry else { panic!("a box") };
+        block.max[2] = 0.01;
+        let load = shape.load.as_mut().map(|load| &mut load.within);
+        for within in shape.clamp.iter_mut().chain(load) {
+            (within.min[2], within.max[2]) = (0.0, 0.01);
+        }
+    }
+    let mut run = Run::<3>::of_scene(&scene);
+    while run.model.summary().bodies == 1 {
+        run.step();
+    }
+    let area = 0.02 * 0.01;
+    let taken = run.model.summary().energy / (100.0 * area);
+    println!("{taken} of G_f A, rest {:e} J", run.rest());
+    assert!((taken - 1.0).abs() < 0.02, "{taken}");
+    assert!((run.model.summary().area / area - 1.0).abs() < 1e-12);
+    assert!(run.rest().abs() < 1e-3 * 100.0 * area, "{}", run.rest());
+}
+
+/// Damaged, cut and whole particles alike, in the middle of a break.
+#[test]
+fn forces_among_cracks_are_the_slope_of_the_energy() {
+    let mut run = Run::<2>::of(&halves(0.0));
+    while run.model.summary().area == 0.0 {
+        run.step();
+    }
+    let model = &mut run.model;
+    model.now.velocity.iter_mut().for_each(|v| v.fill(0.0));
+    // Nothing grows any more.
+    let fracture = model.fracture.as_mut().unwrap();
+    fracture.keys.strength = f64::INFINITY;
+    let damaged = fracture.damaged.clone();
+    damaged.iter().for_each(|&slot| fracture.strain[slot] *= 1.1);
+    model.evaluate(0.0);
+    let acceleration = model.now.acceleration.clone();
+    let all: Vec<usize> = model.slot_of.iter().map(|&slot| slot as usize).collect();
+    let largest = all.iter().map(|&slot| acceleration[0][slot].abs()).fold(0.0, f64::max);
+    let (step, mass) = (1e-8, model.particles().mass[0]);
+    let mut among = 0;
+    for &slot in all.iter().step_by(3).chain(&damaged) {
+        for d in 0..2 {
+            let at = model.now.displacement[d][slot];
+            let [ahead, behind] = [step, -step].map(|by| {
+                model.now.displacement[d][slot] = at + by;
+                model.evaluate(0.0);
+                model.energy()
+            });
+            model.now.displacement[d][slot] = at;
+            let found = (behind - ahead) / (2.0 * step * mass);
+            let expected = acceleration[d][slot];
+            assert!((found - expected).abs() < 1e-5 * largest, "{slot} {d}: {found} {expected}");
+            among += usize::from(expected.abs() > 0.01 * largest);
+        }
+    }
+    assert!(among > 10 && damaged.len() > 3, "{among}, {} damaged", damaged.len());
+}
+
 #[test]
 fn a_solid_that_holds_is_one_that_cannot_break() {
     let text = halves(0.0)
