@@ -319,7 +319,7 @@ impl Comparison {
                 let mark = Mark::of(k);
                 let finite: Vec<_> = points.iter().copied().filter(|p| p.1.is_finite()).collect();
                 if k < own {
-                    chart.line(&finite, stroke(mark.color, 2))?;
+                    chart.line(&finite, stroke(mark.color, width(k, own)))?;
                 } else {
                     finite.iter().try_for_each(|point| chart.mark(*point, mark, false))?;
                 }
@@ -329,9 +329,21 @@ impl Comparison {
     }
 }
 
+/// Width of the k-th of several curves, pixels: the later are narrower, so that those below them are seen.
+fn width(k: usize, curves: usize) -> i32 {
+    let step = if curves <= 3 { 2 } else { 1 };
+    2 + step * (curves - 1 - k) as i32
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn later_curves_are_narrower() {
+        assert_eq!([0, 1].map(|k| width(k, 2)), [4, 2]);
+        assert_eq!([0, 1, 2, 3, 4].map(|k| width(k, 5)), [6, 5, 4, 3, 2]);
+    }
 
     #[test]
     fn solids_are_models_or_programs() {
