@@ -177,7 +177,7 @@ fn what_cannot_be_studied_is_said_before_anything_runs() {
 #[test]
 fn a_sweep_tells_what_physics_does() {
     let study = Study::new();
-    let sweep = ["--sweep", "fluid.density=500,1000,2000", "--sweep", "gravity.1=-4.905,-9.81", "--json"];
+    let sweep = ["--sweep", "fluid.density=500,1000,2000,1e3", "--sweep", "gravity.1=-4.905,-9.81", "--json"];
     let done = study.run(&sweep);
     assert_eq!(done.status.code(), Some(0), "{done:?}");
     let told: serde_json::Value = serde_json::from_slice(&done.stdout).expect("JSON and nothing else");
@@ -185,6 +185,10 @@ fn a_sweep_tells_what_physics_does() {
     assert_eq!(told, serde_json::from_slice::<serde_json::Value>(&written).unwrap());
     let rows = told["rows"].as_array().unwrap();
     assert_eq!((rows.len(), told["keys"].as_array().unwrap().len()), (6, 2));
+    let notes: Vec<&str> =
+        told["notes"].as_array().unwrap().iter().filter_map(|note| note.as_str()).collect();
+    let repeated = "fluid.density=1e3 gravity.1=-9.81 makes the scene of fluid.density=1000 gravity.1=-9.81, and is not run";
+    assert!(notes.iter().any(|note| note.starts_with(repeated)), "{notes:?}");
     let reach = |density: &str, gravity: &str| {
         let row = rows.iter().find(|row| row["values"] == serde_json::json!([density, gravity])).unwrap();
         assert_eq!(row["status"], "finished");

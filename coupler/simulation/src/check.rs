@@ -1,7 +1,7 @@
 //! What a scene asks for, before anything is run.
 
 use crate::forecast::{self, Forecast, megabytes};
-use crate::remarks::{Loaded, Placed, Probed};
+use crate::remarks::{Joined, Loaded, Massive, Placed, Probed};
 use crate::step_cost::step_cost;
 use crate::{effects, remarks};
 use halfstep_coupling::clock::times_above_limit;
@@ -29,6 +29,8 @@ pub struct Check {
     particles: Particles,
     shapes: Vec<Placed>,
     bodies: Vec<Body>,
+    rigid_bodies: Vec<Massive>,
+    joints: Vec<Joined>,
     loads: Vec<Loaded>,
     probes: Vec<Probed>,
     /// Between rows of the probes, s.
@@ -65,6 +67,9 @@ pub struct Check {
     #[serde(skip)]
     bodies_listed: Option<String>,
 }
+
+/// Most rigid bodies that are listed.
+const MOST_LISTED: usize = 8;
 
 /// m/s.
 #[derive(Clone, Debug, Serialize)]
@@ -166,6 +171,8 @@ fn check_in<const D: usize>(scene: &Scene, isa: Isa) -> Check {
         particles: Particles { fluid, solid, wall },
         bodies_listed: (solid > 0).then(|| remarks::bodies_listed(scene, &bodies)),
         bodies: bodies.iter().map(|body| named(scene, body)).collect(),
+        rigid_bodies: remarks::massive(scene, &layout),
+        joints: remarks::joined(scene),
         loads: remarks::loaded(scene, &layout),
         probes: remarks::probed(scene, &layout),
         probe_interval: scene.output.probe_interval,
@@ -275,6 +282,13 @@ impl Display for Check {
             line(&format!("  {}", shape.name), shape)?;
         }
         self.bodies_listed.iter().try_for_each(|bodies| line("bodies", bodies))?;
+        for body in self.rigid_bodies.iter().take(MOST_LISTED) {
+            line(&format!("  {}", body.body), body)?;
+        }
+        if !self.joints.is_empty() {
+            line("joints", &self.joints.len())?;
+        }
+        self.joints.iter().try_for_each(|joint| line(&format!("  {}", joint.name), joint))?;
         if !self.loads.is_empty() {
             line("loads", &self.loads.len())?;
         }

@@ -5,6 +5,7 @@ use crate::advice::advice;
 use crate::checkpoint::Checkpoint;
 use crate::options::SolidSource;
 use crate::participants::{report_outcome, report_participants};
+use crate::through_walls::through_walls;
 use crate::{last_frame, remarks, run};
 use halfstep_coupling::checkpoints::Checkpoints;
 use halfstep_coupling::clock::Clock;
@@ -115,7 +116,13 @@ pub(crate) fn end(
             Err(error) => tracing::warn!("the probes' extremes are not known: {error}"),
         }
     }
-    let remarked = remarks::outcome(scene, &report);
+    let mut remarked = remarks::outcome(scene, &report);
+    if let Some(folder) = folder {
+        match through_walls(scene, folder.path()) {
+            Ok(entered) => remarked.extend(entered),
+            Err(error) => tracing::warn!("whether solids went through walls is not known: {error}"),
+        }
+    }
     remarked.iter().for_each(|warning| tracing::warn!("{warning}"));
     report.warnings.extend(remarked);
     if let Some(folder) = folder {

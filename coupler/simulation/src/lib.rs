@@ -41,6 +41,7 @@ mod session;
 mod silence;
 mod simulation;
 mod step_cost;
+mod through_walls;
 mod timeline;
 
 pub use error::Error;

@@ -16,6 +16,7 @@ mod fields;
 mod frame;
 mod gaps;
 mod idle;
+mod joined;
 mod joints;
 mod jolts;
 mod loaded;
@@ -43,6 +44,7 @@ mod walls;
 mod water;
 
 pub(crate) use bodies::listed as bodies_listed;
+pub(crate) use joined::{Joined, Massive, joined, massive};
 pub(crate) use loads::{Loaded, listed as loaded};
 pub use outcome::outcome;
 pub(crate) use probed::{Probed, probed};
@@ -106,6 +108,8 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     cracks::cracks(scene, layout, &mut all);
     loads::tractions(scene, layout, &mut all);
     loaded::empty(scene, layout, &mut all);
+    loaded::in_clamps(scene, layout, &mut all);
+    loaded::partial(scene, layout, &mut all);
     loaded::points(scene, layout, &mut all);
     loads::ramps(scene, &mut all);
     modes::cantilevers(scene, &mut all);
@@ -146,6 +150,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     water::wave_makers(scene, &mut all);
     makers::makers(scene, &mut all);
     fields::fields(scene, layout, &mut all);
+    fields::steps(scene, layout, &mut all);
     units::columns(scene, &mut all);
     magnitudes::axes(scene, &mut all);
     passages::passages(scene, &mut all);
@@ -170,6 +175,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     magnitudes::gravity(scene, &mut all);
     magnitudes::viscosity(scene, &mut all);
     magnitudes::lengths(scene, &mut all);
+    magnitudes::pivots(scene, &mut all);
     magnitudes::motions(scene, &mut all);
     units::degrees(scene, &mut all);
     curves::intervals(scene, &mut all);
@@ -198,6 +204,8 @@ mod motion_tests;
 mod probe_tests;
 #[cfg(test)]
 mod silence_tests;
+#[cfg(test)]
+mod start_tests;
 #[cfg(test)]
 mod tank_tests;
 #[cfg(test)]

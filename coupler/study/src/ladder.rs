@@ -133,19 +133,29 @@ pub fn strip(scene: &mut serde_json::Value) {
     }
 }
 
+/// The settings of a ladder.
+#[derive(Debug)]
+pub struct Settings {
+    /// Each once.
+    pub runs: Vec<Setting>,
+    /// Changes that make the scene of another setting: both labels.
+    pub repeated: Vec<[String; 2]>,
+}
+
 /// The settings of a ladder, each once.
 ///
 /// # Errors
 /// A combination is no valid scene.
-pub fn settings(path: &Path, base: &[String], vary: &[Vary], full: bool) -> Result<Vec<Setting>, StudyError> {
-    let mut settings: Vec<Setting> = Vec::new();
+pub fn settings(path: &Path, base: &[String], vary: &[Vary], full: bool) -> Result<Settings, StudyError> {
+    let (mut runs, mut repeated): (Vec<Setting>, _) = (Vec::new(), Vec::new());
     for changes in combinations(vary, full) {
         let setting = Setting::load(path, base, &changes)?;
-        if !settings.iter().any(|s| s.same_run(&setting)) {
-            settings.push(setting);
+        match runs.iter().find(|s| s.same_run(&setting)) {
+            Some(other) => repeated.push([setting.label(), other.label()]),
+            None => runs.push(setting),
         }
     }
-    Ok(settings)
+    Ok(Settings { runs, repeated })
 }
 
 /// The thinnest extent of a shape that moves, m: of those whose spacing is the scene's, where there are any.
@@ -244,7 +254,7 @@ mod tests {
         // 10 particles over sqrt(2), 2 and 2 sqrt(2): 7, 5, 4.
         let spacings: Vec<f64> = ladder.values.iter().map(|v| v.parse().unwrap()).collect();
         assert_eq!(spacings, [1.0 / 7.0, 0.2, 0.25]);
-        let settings = settings(&path, &[], &[ladder], false).unwrap();
+        let settings = settings(&path, &[], &[ladder], false).unwrap().runs;
         assert_eq!(settings.len(), 4);
         assert_eq!(settings[0].label(), "resolution=0.1");
     }
@@ -253,7 +263,8 @@ mod tests {
     fn a_value_that_is_the_scenes_own_makes_no_further_run() {
         let (_dir, path) = scene_file();
         let ladder = [vary("resolution=0.1,0.2"), vary("numerics.cfl=0.25,0.4")];
-        let settings = settings(&path, &[], &ladder, false).unwrap();
+        let Settings { runs: settings, repeated } = settings(&path, &[], &ladder, false).unwrap();
+        assert_eq!(repeated, [["numerics.cfl=0.4", "resolution=0.1"]]);
         let labels: Vec<String> = settings.iter().map(Setting::label).collect();
         assert_eq!(labels, ["resolution=0.1", "resolution=0.2", "numerics.cfl=0.25"]);
         assert_eq!(settings[2].choices(), ["numerics.cfl=0.25"]);

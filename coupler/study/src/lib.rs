@@ -68,6 +68,7 @@ pub struct Session<'s> {
     scene: Scene,
     metrics: Vec<Metric>,
     left_out: Vec<String>,
+    repeated: Vec<[String; 2]>,
     rows: Vec<Row>,
     /// Held as long as the session lives: two studies in one folder would remove each other's runs.
     _claim: File,
@@ -92,7 +93,18 @@ impl<'s> Session<'s> {
         let claim = claim(&folder)?;
         let left_out = left_out.into_iter().map(|m| m.name).collect();
         let program = Program::own()?.with_solids(&options.solids);
-        Ok(Self { options, program, stop, folder, scene, metrics, left_out, rows: Vec::new(), _claim: claim })
+        Ok(Self {
+            options,
+            program,
+            stop,
+            folder,
+            scene,
+            metrics,
+            left_out,
+            repeated: Vec::new(),
+            rows: Vec::new(),
+            _claim: claim,
+        })
     }
 
     /// Where everything goes.
@@ -109,7 +121,8 @@ impl<'s> Session<'s> {
         let default = || ladder::default_ladder(scene, base).map(|vary| vec![vary]);
         let vary = if vary.is_empty() { default()? } else { vary.clone() };
         let settings = ladder::settings(scene, base, &vary, *full)?;
-        self.run(&settings, false)
+        self.repeated = settings.repeated;
+        self.run(&settings.runs, false)
     }
 
     /// Runs settings that have not been run, and adds their rows.
@@ -161,6 +174,7 @@ impl<'s> Session<'s> {
             rows: self.rows.clone(),
             metrics: (0..self.metrics.len()).map(of_metric).collect(),
             left_out: self.left_out.clone(),
+            repeated: self.repeated.clone(),
         }
     }
 }

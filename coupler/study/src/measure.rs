@@ -1,5 +1,6 @@
 //! The numbers that metrics take from curves.
 
+use crate::report::short;
 use halfstep_output::Table;
 use halfstep_scene::{Metric, MetricKind, MetricReference, Scene};
 
@@ -60,6 +61,27 @@ pub fn measure(scene: &Scene, metric: &Metric, probes: &Table) -> Result<f64, Un
         _ => number(metric, &curve),
     }
 }
+
+/// What a metric's number is not: a peak is the largest value, and not the largest in size.
+pub fn remark(metric: &Metric, probes: &Table) -> Option<String> {
+    let values = probes.column(&metric.probe).filter(|_| metric.kind == MetricKind::Peak)?;
+    let curve: Curve = probes.times().into_iter().zip(values).map(|(t, v)| [t, v]).collect();
+    let part = window(metric, &curve).ok()?;
+    let (least, largest) =
+        part.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p[1]), h.max(p[1])));
+    (-least > MUCH * largest.abs().max(f64::MIN_POSITIVE) || largest < 0.0).then(|| {
+        format!(
+            "`{}` is the largest value of {}, {}, which goes down to {}: `peak` is not the largest in size",
+            metric.name,
+            metric.probe,
+            short(largest),
+            short(least)
+        )
+    })
+}
+
+/// Least value of a curve over its largest, from which on a peak is hardly meant.
+const MUCH: f64 = 3.0;
 
 /// The metric's reference as a number, where it has one.
 pub fn target(scene: &Scene, metric: &Metric) -> Option<Target> {
@@ -218,6 +240,21 @@ mod tests {
 
     fn sampled(f: impl Fn(f64) -> f64) -> Curve {
         (0..=2000).map(|k| 1e-3 * f64::from(k)).map(|t| [t, f(t)]).collect()
+    }
+
+    #[test]
+    fn a_peak_of_what_is_negative_is_told() {
+        let metric = |from: f64| Metric { from, ..metric(MetricKind::Peak) };
+        let table = |values: &[f64]| {
+            let rows = values.iter().enumerate().map(|(k, v)| vec![k as f64, *v]).collect();
+            Table { columns: vec!["time [s]".into(), "p.x [m]".into()], rows }
+        };
+        let sags = table(&[0.0, -0.008, 1e-5, -0.005]);
+        let said = "`m` is the largest value of p.x, 1.000e-5, which goes down to -0.008000: `peak` is not the largest \
+                    in size";
+        assert_eq!(remark(&metric(0.0), &sags).as_deref(), Some(said));
+        assert_eq!(remark(&metric(0.0), &table(&[0.0, -0.2, 0.1])), None);
+        assert!(remark(&metric(1.0), &table(&[5.0, -3.0, -2.0])).is_some_and(|said| said.contains("-2.000")));
     }
 
     #[test]

@@ -26,6 +26,8 @@ pub struct Study {
     pub metrics: Vec<MetricResult>,
     /// Metrics of the scene that need a longer run.
     pub left_out: Vec<String>,
+    /// Settings that make the scene of another one, and are not run: both.
+    pub repeated: Vec<[String; 2]>,
 }
 
 /// A number with four significant digits.
@@ -89,7 +91,26 @@ impl Study {
         for left_out in &self.left_out {
             let _ = writeln!(text, "\n{left_out} needs a longer run and is left out");
         }
-        text
+        text + &self.warned()
+    }
+
+    /// What runs warned of, each once with the settings that it is said of.
+    pub fn warned(&self) -> String {
+        let mut told: Vec<(&String, Vec<&str>)> = Vec::new();
+        for row in &self.rows {
+            for warning in &row.warnings {
+                match told.iter_mut().find(|(text, _)| *text == warning) {
+                    Some((_, labels)) => labels.push(&row.label),
+                    None => told.push((warning, vec![&row.label])),
+                }
+            }
+        }
+        let line = |(warning, labels): (&String, Vec<&str>)| match labels.len() == self.rows.len() {
+            true => format!("\nwarning: {warning}"),
+            false => format!("\nwarning: {}: {warning}", labels.join(", ")),
+        };
+        let text: String = told.into_iter().map(line).collect();
+        if text.is_empty() { text } else { text + "\n" }
     }
 
     fn costs(&self) -> String {

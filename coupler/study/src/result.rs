@@ -50,6 +50,8 @@ pub struct Row {
     pub chosen: bool,
     /// Folders of the repeats.
     pub folders: Vec<PathBuf>,
+    /// What the first run warned of, in the scene and of its result, and what its numbers are not.
+    pub warnings: Vec<String>,
 }
 
 impl Row {
@@ -66,7 +68,10 @@ impl Row {
             }
             _ => Err("the run did not finish".into()),
         };
+        let of_curve = |metric: &Metric| measure::remark(metric, probes.as_ref()?);
+        let warnings = first.warnings.into_iter().chain(metrics.iter().filter_map(of_curve)).collect();
         Self {
+            warnings,
             label: setting.label() + if chosen { " (chosen)" } else { "" },
             changes: setting.changes.clone(),
             choices: setting.choices(),
@@ -312,6 +317,7 @@ pub(crate) mod tests {
             values: vec![Ok(value)],
             chosen: false,
             folders: Vec::new(),
+            warnings: Vec::new(),
         }
     }
 

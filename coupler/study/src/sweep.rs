@@ -57,6 +57,8 @@ pub struct Sweep {
     pub metrics: Vec<Measured>,
     /// The runs.
     pub rows: Vec<SweepRow>,
+    /// What else is to be said of them.
+    pub notes: Vec<String>,
 }
 
 /// A number that was taken from each run.
@@ -105,7 +107,14 @@ impl Sweep {
         };
         let measured =
             |m: &super::result::MetricResult| Measured { name: m.name.clone(), unit: m.unit.clone() };
+        let late = study.left_out.iter().map(|name| format!("{name} needs a longer run and is left out"));
+        let repeated = study.repeated.iter().map(|[one, other]| {
+            format!("{one} makes the scene of {other}, and is not run: no key that matters depends on it")
+        });
+        let warned = study.warned();
+        let warned = warned.lines().filter(|line| !line.is_empty()).map(str::to_owned);
         Self {
+            notes: late.chain(repeated).chain(warned).collect(),
             scene: study.scene.clone(),
             rows: study.rows.iter().map(row).collect(),
             metrics: study.metrics.iter().map(measured).collect(),
@@ -133,6 +142,9 @@ impl Sweep {
             if let Some(error) = &row.error {
                 text.push_str(&format!("{}: {error}\n", row.values.join(", ")));
             }
+        }
+        for note in &self.notes {
+            text.push_str(&format!("\n{note}\n"));
         }
         text
     }
@@ -299,6 +311,7 @@ mod tests {
             folders: vec!["runs/a".into()],
         };
         Sweep {
+            notes: vec!["warning: fluid came close".into()],
             scene: "gate".into(),
             keys: vec!["solid.youngs_modulus".into(), "solid.density".into()],
             metrics: vec![Measured { name: "tip".into(), unit: "m".into() }],

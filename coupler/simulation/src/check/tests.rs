@@ -136,3 +136,36 @@ fn loads_and_probes_are_listed_as_they_begin() {
     assert_eq!(json["probes"][3]["begins"], "in fluid");
     assert_eq!(json["loads"][0]["particles"], 2);
 }
+
+#[test]
+fn bodies_and_joints_are_listed_as_they_begin() {
+    let text = "resolution = 0.01\nend_time = 0.5\n[fluid]\ndensity = 1000.0\n[solid]\nmodel = \"rigid\"\ndensity = 500.0\n\
+        [[solid.bodies]]\nname = \"box\"\nmass = 6.0\n\
+        [[solid.joints]]\nname = \"pin\"\nkind = \"hinge\"\nbody = \"flap\"\nwith = \"tank\"\nat = [0.1, 0.0]\n\
+        stiffness = 4.0\nrest = 0.5\nlimits = [-0.7853981633974483, 0.0]\n\
+        [[solid.joints]]\nname = \"line\"\nkind = \"spring\"\nbody = \"box\"\nat = [0.3, 0.1]\nto = [0.3, 0.0]\n\
+        stiffness = 20.0\nrest = 0.15\n\
+        [[shape]]\nname = \"tank\"\nphase = \"wall\"\ntank = { min = [0.0, 0.0], max = [0.5, 0.3], open = [\"top\"] }\n\
+        [[shape]]\nname = \"flap\"\nphase = \"solid\"\nbox = { min = [0.09, 0.0], max = [0.11, 0.2] }\n\
+        [[shape]]\nname = \"box\"\nphase = \"solid\"\nbox = { min = [0.25, 0.1], max = [0.35, 0.2] }\n\
+        [[shape]]\nname = \"water\"\nphase = \"fluid\"\nbox = { min = [0.0, 0.0], max = [0.5, 0.15] }\n";
+    let scene = halfstep_scene::parse(text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}"));
+    let found = check(&scene, Isa::detect()).expect("in the plane");
+    let said = found.to_string();
+    // 0.02 x 0.2 m of 500 kg/m3: 2 kg/m, 2 (0.02² + 0.2²) / 12; 0.1 x 0.1 m of 6 kg/m: 6 (0.1² + 0.1²) / 12.
+    for line in [
+        "  flap          rigid, 2 kg/m with its centre at [0.1, 0.1], inertia 0.006733 kg m\n",
+        "  box           rigid, 6 kg/m with its centre at [0.3, 0.15], inertia 0.01 kg m (mass as the scene says)\n",
+        "joints          2\n  pin           hinge of flap to tank, turns about [0.1, 0], counter-clockwise positive, stops \
+         at -0.7854 rad (-45 degrees) and 0 rad (0 degrees); begins with a moment of 2 N m/m\n",
+        "  line          spring of box to space from [0.3, 0.1] to [0.3, 0], 0.1 m long, rests at 0.15 m and pushes where it \
+         is shorter; begins pushing with 1 N/m\n",
+    ] {
+        assert!(said.contains(line), "{line}: {said}");
+    }
+    let json = serde_json::to_value(&found).expect("JSON");
+    assert_eq!(
+        (&json["joints"][0]["kind"], &json["rigid_bodies"][1]["mass"]),
+        (&"hinge".into(), &6.0.into())
+    );
+}

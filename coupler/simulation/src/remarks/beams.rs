@@ -212,7 +212,8 @@ pub(super) fn deflection<const D: usize>(scene: &Scene, layout: &Layout<D>, inde
     let gravity = [scene.gravity[0], scene.gravity[1]];
     // Fluid has a level where gravity is along -y.
     let has_level = scene.fluid.is_none() || (gravity[0] == 0.0 && gravity[1] <= 0.0);
-    if D != 2 || shape.phase != Phase::Solid || !has_level {
+    // A crack makes two plates of one, or weakens it.
+    if D != 2 || shape.phase != Phase::Solid || !has_level || shape.crack.is_some() {
         return None;
     }
     let material = shape.solid.and_then(|k| scene.solids.get(k)).filter(|solid| solid.rigid().is_none())?;

@@ -264,7 +264,7 @@ pub(super) fn touching<const D: usize>(
     }
 }
 
-/// Bodies lighter than the fluid that stand on a wall: no fluid fits below them that could lift them.
+/// Bodies in the fluid that stand on a wall: no fluid fits below them that could lift them.
 pub(super) fn standing<const D: usize>(
     scene: &Scene,
     layout: &Layout<D>,
@@ -274,11 +274,14 @@ pub(super) fn standing<const D: usize>(
     let size = scene.gravity_magnitude();
     let Some(fluid) = scene.fluid.as_ref().filter(|_| size > 0.0) else { return };
     let down = |x: &[f64; D]| (0..D).map(|d| x[d] * scene.gravity[d]).sum::<f64>() / size;
+    let beside = 1.5 * scene.resolution;
+    let mut water = geometry::Cells::new(beside);
+    layout.fluid.iter().for_each(|p| water.add(&p.position, p.position));
+    let is_wet = |x: &[f64; D]| water.around(x).any(|p| super::near(p, x, beside));
     for body in bodies.iter().filter(|body| !body.held) {
         let Some(solid) = scene.shapes[body.shapes[0]].solid else { continue };
-        if scene.solids[solid].density >= fluid.density {
-            continue;
-        }
+        let (light, rigid) =
+            (scene.solids[solid].density < fluid.density, scene.solids[solid].rigid().is_some());
         let own = |p: &&geometry::SolidPoint<D>| body.shapes.contains(&(p.body as usize));
         let lowest =
             layout.solid.iter().filter(own).map(|p| down(&p.position)).fold(f64::NEG_INFINITY, f64::max);
@@ -291,12 +294,17 @@ pub(super) fn standing<const D: usize>(
                 apart.iter().map(|x| x * x).sum::<f64>() < reach * reach && down(&apart) > 0.5 * reach
             })
         };
-        if let Some(wall) = layout.wall.iter().find(below) {
+        let Some(wall) = layout.wall.iter().find(below) else { continue };
+        let (name, wall) = (names(scene, body), &scene.shapes[wall.shape as usize].name);
+        if light {
             all.push(format!(
-                "{} is lighter than the fluid and stands on `{}`: no fluid fits below it, so the fluid presses it down \
-                 and does not lift it",
-                names(scene, body),
-                scene.shapes[wall.shape as usize].name
+                "{name} is lighter than the fluid and stands on `{wall}`: no fluid fits below it, so the fluid presses \
+                 it down and does not lift it"
+            ));
+        } else if rigid && layout.solid.iter().filter(own).any(|p| is_wet(&p.position)) {
+            all.push(format!(
+                "{name} stands on `{wall}` in the fluid: no fluid fits below it, so it has no uplift, and its whole weight \
+                 rests on the wall"
             ));
         }
     }

@@ -129,6 +129,20 @@ fn tied(scene: &Scene, a: &Shape, b: &Shape) -> bool {
 /// `contact` of a solid that strains, where there is nothing that it speaks of, or where it does not reach.
 pub(super) fn of_walls(scene: &Scene, bodies: &[Body], all: &mut Vec<String>) {
     for (k, solid) in scene.solids.iter().enumerate() {
+        let own =
+            |body: &&Body| body.shapes.first().is_some_and(|&shape| scene.shapes[shape].solid == Some(k));
+        let says = solid.contact().unwrap_or_default() != ContactKeys::default();
+        if solid.rigid().is_some() {
+            let alone = bodies.iter().filter(own).count() == 1;
+            if says && alone && scene.walls_to_touch().next().is_none() {
+                all.push(format!(
+                    "the `contact` of `{}` changes nothing: it has one body, and no wall that may touch it (contact = \
+                     true at a wall; by default walls stop only what neither a clamp nor a joint holds)",
+                    solid.name
+                ));
+            }
+            continue;
+        }
         if !scene.leaves_walls_to_coupler(k) {
             continue;
         }
@@ -139,10 +153,7 @@ pub(super) fn of_walls(scene: &Scene, bodies: &[Body], all: &mut Vec<String>) {
                  (contact = true at a wall)"
             ));
         }
-        let own =
-            |body: &&Body| body.shapes.first().is_some_and(|&shape| scene.shapes[shape].solid == Some(k));
-        let rubs = solid.contact().unwrap_or_default() != ContactKeys::default();
-        if rubs && bodies.iter().filter(own).count() > 1 {
+        if says && bodies.iter().filter(own).count() > 1 {
             all.push(format!(
                 "the bodies of `{name}` touch each other without friction: its `contact` is about walls (a [[solid]] \
                  for each and [[contact]] say how they touch)"

@@ -2,8 +2,10 @@
 
 use super::shapes::length;
 use super::units::{self, about};
-use halfstep_scene::geometry::{self, Layout};
-use halfstep_scene::{Column, Course, MetricKind, Motion, ProbeKind, Reference, Scene};
+use halfstep_scene::geometry::{self, Layout, SolidPoint};
+use halfstep_scene::{
+    BodyQuantity, Column, Course, MetricKind, Motion, Phase, Probe, ProbeKind, Reference, Scene, Shape,
+};
 
 /// Points that a curve of a run has, and points of each period of what moves, below which it is no curve.
 const POINTS: f64 = 10.0;
@@ -130,9 +132,16 @@ pub(super) fn levels<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mu
         };
         let Some((name, component)) = metric.probe.rsplit_once('.') else { continue };
         let Some(probe) = scene.probes.iter().find(|probe| probe.name == name) else { continue };
-        let Some((axis, starts)) = at_first(scene, layout, &probe.kind, component) else { continue };
+        let Some(First { axis, at: starts, size }) = at_first(scene, layout, probe, component) else {
+            continue;
+        };
         let (low, high) = (domain.min[axis], domain.max[axis]);
-        let why = if level > high || swings && level < low {
+        let why = if swings && size.is_some_and(|size| (level - starts).abs() > size) {
+            format!(
+                "begins at {} m: it does not swing about it (`level` is where it comes to rest)",
+                length(starts)
+            )
+        } else if level > high || swings && level < low {
             format!("stays in the domain, from {} to {} m: it never comes there", length(low), length(high))
         } else if swings && axis == 1 && level <= floor && starts > floor {
             format!(
@@ -142,6 +151,8 @@ pub(super) fn levels<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mu
             )
         } else if !swings && metric.from == 0.0 && starts > level + scene.resolution {
             format!("begins at {} m: it is above from the start", length(starts))
+        } else if !swings && metric.from == 0.0 && (starts - level).abs() <= 0.25 * scene.resolution {
+            "begins there: the first stir is above it".to_owned()
         } else {
             continue;
         };
@@ -149,20 +160,53 @@ pub(super) fn levels<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mu
     }
 }
 
-/// Along which axis the water's level or its front lies, and where at the start, m; minus infinity where it is dry.
+/// How a curve of places begins.
+struct First {
+    axis: usize,
+    /// m; minus infinity where it is dry.
+    at: f64,
+    /// Of what moves, along that axis, m; `None` where it may come far: a level, a front.
+    size: Option<f64>,
+}
+
+/// Of the water's level or front, of the fluid's or a solid's centre, of a body or a point of a solid.
 fn at_first<const D: usize>(
     scene: &Scene,
     layout: &Layout<D>,
-    kind: &ProbeKind,
+    probe: &Probe,
     component: &str,
-) -> Option<(usize, f64)> {
-    match kind {
-        ProbeKind::Front => Some((0, front_at(scene, layout))),
+) -> Option<First> {
+    let along = || ["x", "y", "z"].iter().position(|axis| *axis == component).filter(|axis| *axis < D);
+    let mean = |places: &[[f64; D]]| {
+        let axis = along()?;
+        let all = || places.iter().map(|x| x[axis]);
+        let (low, high) = (all().reduce(f64::min)?, all().reduce(f64::max)?);
+        let at = all().sum::<f64>() / places.len() as f64;
+        Some(First { axis, at, size: Some(high - low + scene.resolution) })
+    };
+    let of_solid = |own: &dyn Fn(&Shape) -> bool| -> Vec<[f64; D]> {
+        let own = |p: &&SolidPoint<D>| own(&scene.shapes[p.body as usize]);
+        layout.solid.iter().filter(own).map(|p| p.position).collect()
+    };
+    match &probe.kind {
+        ProbeKind::Front => Some(First { axis: 0, at: front_at(scene, layout), size: None }),
         ProbeKind::WaterLevel { x } => {
             let gauge: usize =
                 component.rsplit_once('-').map_or(1, |(_, number)| number.parse().unwrap_or(1));
             let level = level_at(scene, layout, *x.get(gauge.checked_sub(1)?)?);
-            Some((1, level.unwrap_or(f64::NEG_INFINITY)))
+            Some(First { axis: 1, at: level.unwrap_or(f64::NEG_INFINITY), size: None })
+        }
+        ProbeKind::Body { body, quantity: BodyQuantity::Position } => {
+            mean(&of_solid(&|shape| shape.solid == probe.solid && shape.body() == body))
+        }
+        ProbeKind::Centroid { .. } if probe.phase() == Phase::Fluid => {
+            mean(&layout.fluid.iter().map(|p| p.position).collect::<Vec<_>>())
+        }
+        ProbeKind::Centroid { .. } => mean(&of_solid(&|shape| shape.solid == probe.solid)),
+        ProbeKind::Position { at } => {
+            let axis = along()?;
+            let solid = mean(&of_solid(&|shape| shape.solid == probe.solid))?;
+            Some(First { axis, at: at[axis], ..solid })
         }
         _ => None,
     }

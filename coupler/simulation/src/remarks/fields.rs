@@ -1,7 +1,9 @@
 //! Remarks on initial velocity fields that do not fit the water, its walls or gravity.
 
+use super::near;
+use super::reached::Matter;
 use super::shapes::length;
-use super::water::DEPTH;
+use super::water::{DEPTH, falls};
 use halfstep_scene::geometry::{self, Cells, Layout};
 use halfstep_scene::{Lattice, Scene, Shape, VelocityField};
 
@@ -25,6 +27,48 @@ pub(super) fn fields<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mu
         }
         all.extend(other_depth(scene, shape, field));
         all.extend(into_walls(scene, layout, index, (field, gravity)));
+    }
+}
+
+/// Depth below its shape's surface, in spacings, from which on what lies at a free surface begins under pressure.
+const BELOW: f64 = 3.0;
+/// Part of the particles at a shape's free surface that begin so.
+const STEPPED: f64 = 0.1;
+
+/// Water that begins under the pressure of a surface above its own: one shape with steps or a slope, or a turned one.
+pub(super) fn steps<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
+    let (Some((axis, way)), Some(fluid)) = (falls::<D>(scene), &scene.fluid) else { return };
+    let aligned = (0..D).all(|a| a == axis || scene.gravity[a] == 0.0);
+    if !aligned || !scene.shapes.iter().any(|shape| shape.hydrostatic) {
+        return;
+    }
+    let (dx, matter) = (scene.resolution, Matter::with_solids(scene, layout));
+    let mut water = Cells::new(dx);
+    layout.fluid.iter().for_each(|p| water.add(&p.position, p.position));
+    for (index, shape) in scene.shapes.iter().enumerate().filter(|(_, shape)| shape.hydrostatic) {
+        let (mut surface, mut low, mut deepest) = (0, 0, 0.0_f64);
+        for p in layout.fluid.iter().filter(|p| p.shape as usize == index) {
+            let above = |k: i32| -> [f64; D] {
+                std::array::from_fn(|a| p.position[a] - if a == axis { way * f64::from(k) * dx } else { 0.0 })
+            };
+            let covered = |x: &[f64; D]| matter.fill(x) || water.around(x).any(|at| near(at, x, 0.7 * dx));
+            if (1..=3).any(|k| covered(&above(k))) {
+                continue;
+            }
+            let depth = p.pressure / (fluid.density * scene.gravity[axis].abs());
+            surface += 1;
+            low += usize::from(depth > BELOW * dx);
+            deepest = deepest.max(depth);
+        }
+        if low > 0 && low as f64 > STEPPED * surface as f64 {
+            all.push(format!(
+                "`{}` begins with pressure at its free surface, up to that of {} m of water: `hydrostatic` counts from the \
+                 highest point of a shape, and {:.0} % of its surface is lower (a shape for each level)",
+                shape.name,
+                length(deepest),
+                100.0 * low as f64 / surface as f64
+            ));
+        }
     }
 }
 

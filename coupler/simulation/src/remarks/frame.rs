@@ -41,6 +41,14 @@ pub(super) fn frame(scene: &Scene, all: &mut Vec<String>) {
         ));
         return;
     }
+    if g > 0.0 && most > super::jolts::HARD * g {
+        all.push(format!(
+            "the `[frame]` is accelerated by up to {} m/s², {:.0} times gravity (a `period` is in seconds and no \
+             frequency; a recording of accelerations is no `file` of places; noise in a recording is accelerations)",
+            super::shapes::length(most),
+            most / g
+        ));
+    }
     let Some(pivot) = frame.motion.pivot() else { return };
     let boxes = scene.shapes.iter().map(|shape| geometry::bounding_box(shape, scene));
     let Some(around) = geometry::around(boxes) else { return };

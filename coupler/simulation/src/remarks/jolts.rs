@@ -1,16 +1,16 @@
 //! Remarks on walls that push the fluid too suddenly or too hard, and on recordings that end too soon.
 
+use super::moving;
 use super::shapes::length;
 use super::water::{INSTANTS, depth};
-use super::{moving, near};
 use halfstep_scene::geometry::{Cells, Layout};
-use halfstep_scene::{Course, Motion, Part, Placement, Scene, Spline};
+use halfstep_scene::{Course, Motion, Part, Placement, Scene, Shape, Spline};
 
 /// Speed with which a wall may begin to push at once, over that of long waves: the shock, rho c v with c ten times the
 /// fluid's fastest, is then several times the pressure at rest.
 const AT_ONCE: f64 = 0.2;
 /// Accelerations of walls over that of gravity that no shaker and no impact test gives to water.
-const HARD: f64 = 10.0;
+pub(super) const HARD: f64 = 10.0;
 /// Most wall particles that are followed.
 const FOLLOWED: usize = 64;
 /// Part of its largest rate with which a recording that is cut off ends.
@@ -18,18 +18,31 @@ const CUT_OFF: f64 = 0.25;
 /// Spacings up to which a wall particle's next fluid particle is right at it.
 const AT_FLUID: f64 = 1.5;
 
-/// Wall particles of a shape that fluid is at: places and normals.
+/// Place and normal of a particle that fluid is at.
+type Face<const D: usize> = ([f64; D], [f64; D]);
+
+/// Particles of a wall or a prescribed body that fluid is at: places and normals, of a body toward its nearest fluid;
+/// and how many each of them stands for.
 fn pushing<const D: usize>(
     scene: &Scene,
     layout: &Layout<D>,
     fluid: &Cells<[f64; D], D>,
     shape: usize,
-) -> Vec<([f64; D], [f64; D])> {
+) -> (Vec<Face<D>>, usize) {
     let reach = AT_FLUID * scene.resolution;
-    let at_fluid = |x: &[f64; D]| fluid.around(x).any(|p| near(p, x, reach));
-    let own = layout.wall.iter().filter(|w| w.shape as usize == shape && at_fluid(&w.position));
-    let all: Vec<_> = own.map(|w| (w.position, w.normal)).collect();
-    all.iter().step_by(1 + all.len() / FOLLOWED).copied().collect()
+    let away = |x: &[f64; D], p: &[f64; D]| -> [f64; D] { std::array::from_fn(|d| p[d] - x[d]) };
+    let square = |v: &[f64; D]| v.iter().map(|c| c * c).sum::<f64>();
+    let toward = |x: &[f64; D]| {
+        let nearest = fluid.around(x).map(|p| away(x, p)).min_by(|a, b| square(a).total_cmp(&square(b)));
+        nearest.filter(|way| square(way) < reach * reach).map(|way| way.map(|c| c / square(&way).sqrt()))
+    };
+    let walls = layout.wall.iter().filter(|w| w.shape as usize == shape);
+    let of_walls = walls.filter_map(|w| toward(&w.position).map(|_| (w.position, w.normal)));
+    let bodies = layout.solid.iter().filter(|p| p.body as usize == shape);
+    let of_bodies = bodies.filter_map(|p| toward(&p.position).map(|normal| (p.position, normal)));
+    let all: Vec<_> = of_walls.chain(of_bodies).collect();
+    let every = 1 + all.len() / FOLLOWED;
+    (all.iter().step_by(every).copied().collect(), every)
 }
 
 /// The parts of a motion; not of wave makers, which begin by themselves.
@@ -37,7 +50,10 @@ fn parts(motion: &Motion) -> &[Part] {
     if motion.makes().is_some() { &[] } else { motion.parts() }
 }
 
-/// Whether a part goes to and fro. What goes one way may be a gate, whose edge alone pushes.
+/// Part of the water's depth over which what goes one way pushes at least: a gate's edge is less.
+const WIDE: f64 = 0.25;
+
+/// Whether a part goes to and fro.
 fn swings(part: &Part) -> bool {
     match &part.course {
         Course::Sine { .. } => true,
@@ -59,6 +75,18 @@ fn starts(motion: &Motion) -> Vec<f64> {
     }
 }
 
+/// When a motion begins to go one way at once, s.
+fn leaves(motion: &Motion) -> Vec<f64> {
+    let of_part = |part: &Part| match &part.course {
+        Course::Steady { start, ramp: 0.0, .. } => Some(start.next_up()),
+        _ => None,
+    };
+    match motion {
+        Motion::Steady { start, .. } => vec![*start],
+        _ => parts(motion).iter().filter_map(of_part).collect(),
+    }
+}
+
 fn is_swing(motion: &Motion) -> bool {
     matches!(motion, Motion::Oscillating { .. }) || parts(motion).iter().any(swings)
 }
@@ -71,28 +99,40 @@ pub(super) fn pushed<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mu
     let mut fluid = Cells::new(AT_FLUID * scene.resolution);
     layout.fluid.iter().for_each(|p| fluid.add(&p.position, p.position));
     let mut told: Vec<&Motion> = Vec::new();
-    for (index, shape) in scene.shapes.iter().enumerate().filter(|(_, shape)| shape.solid.is_none()) {
-        let Some(motion) = shape.motion.as_ref().filter(|m| is_swing(m) && !told.contains(m)) else {
+    // Water that goes along is not pushed.
+    let flows = layout.fluid.iter().any(|p| p.velocity != [0.0; D]);
+    let prescribed = |shape: &Shape| shape.solid.is_none_or(|k| scene.solids[k].rigid().is_some());
+    for (index, shape) in scene.shapes.iter().enumerate().filter(|(_, shape)| prescribed(shape)) {
+        let Some(motion) = shape.motion.as_ref().filter(|m| !told.contains(m)) else { continue };
+        let leaves = if flows { Vec::new() } else { leaves(motion) };
+        if !is_swing(motion) && leaves.is_empty() {
             continue;
-        };
-        let faces = pushing(scene, layout, &fluid, index);
-        let across = |v: &dyn Fn([f64; D]) -> [f64; D]| {
-            let of = |(x, normal): &([f64; D], [f64; D])| {
+        }
+        let (faces, every) = pushing(scene, layout, &fluid, index);
+        let each = |v: &dyn Fn([f64; D]) -> [f64; D]| -> Vec<f64> {
+            let of = |(x, normal): &Face<D>| {
                 let v = v(*x);
                 (0..D).map(|d| v[d] * normal[d]).sum::<f64>().abs()
             };
-            faces.iter().map(of).fold(0.0, f64::max)
+            faces.iter().map(of).collect()
         };
-        let jump = |start: f64| {
+        let across = |v: &dyn Fn([f64; D]) -> [f64; D]| each(v).into_iter().fold(0.0, f64::max);
+        let change = |start: f64| {
             let now = motion.at(start.max(0.0));
             let before = if start > 0.0 { motion.at(start.next_down()) } else { Placement::default() };
-            across(&|x| {
+            move |x: [f64; D]| -> [f64; D] {
                 let (v, u) = (now.velocity_of(x), before.velocity_of(x));
                 std::array::from_fn(|d| v[d] - u[d])
-            })
+            }
         };
-        let first = starts(motion).into_iter().filter(|start| *start < scene.end_time);
-        let speed = first.map(jump).fold(0.0, f64::max);
+        let in_run = |start: &f64| *start < scene.end_time;
+        let swings = starts(motion).into_iter().filter(in_run).map(|start| across(&change(start)));
+        let one_way = leaves.into_iter().filter(in_run).filter_map(|start| {
+            let pushed = each(&change(start)).into_iter().filter(|v| *v > AT_ONCE * waves);
+            let wide = (pushed.clone().count() * every) as f64 * scene.resolution;
+            pushed.reduce(f64::max).filter(|_| wide > WIDE * depth)
+        });
+        let speed = swings.chain(one_way).fold(0.0, f64::max);
         if speed > AT_ONCE * waves {
             told.push(motion);
             all.push(format!(

@@ -1,12 +1,16 @@
 //! Remarks on probes of solids and of forces that measure nothing, or something else.
 
+use super::near;
 use super::shapes::{length, place};
-use halfstep_scene::geometry::{self, Layout, SolidPoint};
+use super::walls::kernel_support;
+use halfstep_scene::geometry::{self, Cells, Layout, SolidPoint};
 use halfstep_scene::{Block, Probe, ProbeKind, Scene};
 
 /// Distance from a solid's nearest particle from which on a point is not in the solid, in spacings of the solid. On the
 /// corner of a cell it is 0.9, in the nodal lattice twice that.
 const BESIDE: f64 = 2.0;
+/// Distance up to which a place is that of a particle of the lattice, in spacings.
+const ALIKE: f64 = 0.2;
 /// What a clamp holds is not strained where it holds everything within so many spacings, or the kernel's support.
 const HELD: f64 = 2.5;
 
@@ -53,6 +57,79 @@ pub(super) fn empty<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut
             place(&max[..D]),
             place(nearest)
         ));
+    }
+}
+
+/// Forces on what a clamp holds in a wall: of the fluid, of which there is hardly any, and no reaction.
+pub(super) fn in_clamps<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
+    for probe in &scene.probes {
+        let (ProbeKind::Force { within: Some(within), shape }
+        | ProbeKind::Moment { within: Some(within), shape, .. }) = &probe.kind
+        else {
+            continue;
+        };
+        let of = |p: &&SolidPoint<D>| match shape {
+            Some(shape) => p.body as usize == *shape,
+            None => probe.solid.is_some() && scene.shapes[p.body as usize].solid == probe.solid,
+        };
+        let own = || layout.solid.iter().filter(of).filter(|p| geometry::holds(within, &p.position, 0.0));
+        if own().next().is_some() && own().all(|p| p.clamped) {
+            all.push(format!(
+                "the probe `{}` looks at particles that a clamp holds: it measures the force of the fluid on them, and \
+                 not that of the clamp (which is what the fluid does to the whole, and inertia and weight)",
+                probe.name
+            ));
+        }
+    }
+}
+
+/// Part of the surface in a box behind which rows are left out, from which on it is remarked.
+const MISSED: f64 = 0.5;
+
+/// Boxes that hold a face, and not all rows behind it that feel the fluid before it.
+pub(super) fn partial<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
+    for probe in &scene.probes {
+        let (ProbeKind::Force { within: Some(within), shape }
+        | ProbeKind::Moment { within: Some(within), shape, .. }) = &probe.kind
+        else {
+            continue;
+        };
+        let own: Vec<[f64; D]> = measured(scene, layout, probe, *shape).copied().collect();
+        let dx = match (shape, probe.solid) {
+            (Some(shape), _) => scene.spacing(&scene.shapes[*shape]),
+            (None, solid) => scene.solid_spacing(solid.unwrap_or(0)),
+        };
+        let mut places = Cells::new(dx);
+        own.iter().for_each(|x| places.add(x, *x));
+        let is_there = |x: &[f64; D]| places.around(x).any(|p| near(p, x, ALIKE * dx));
+        // Rows of which fluid beyond the face is within 2h.
+        let rows = ((kernel_support(scene) / dx - 1.0).ceil() as i32).max(1);
+        let (mut faces, mut missed, mut held) = (0, 0, 1);
+        for x in own.iter().filter(|x| geometry::holds(within, x, 0.0)) {
+            let beside = |axis: usize, by: i32| -> [f64; D] {
+                std::array::from_fn(|a| x[a] + if a == axis { f64::from(by) * dx } else { 0.0 })
+            };
+            for (axis, out) in (0..D).flat_map(|axis| [(axis, -1), (axis, 1)]) {
+                if is_there(&beside(axis, out)) || !is_there(&beside(axis, -out)) {
+                    continue;
+                }
+                faces += 1;
+                let behind = (1..rows).map(|k| beside(axis, -out * k)).take_while(&is_there);
+                let count = behind.clone().take_while(|x| geometry::holds(within, x, 0.0)).count();
+                if count < behind.count() {
+                    missed += 1;
+                    held = held.max(count + 1);
+                }
+            }
+        }
+        if faces > 0 && f64::from(missed) > MISSED * f64::from(faces) {
+            all.push(format!(
+                "`within` of the probe `{}` holds {held} of the {rows} rows behind the surface that feel the fluid, within 2h \
+                 of it: it measures a part of the force (a box that ends {} m behind the surface holds them all)",
+                probe.name,
+                length(f64::from(rows) * dx)
+            ));
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::shapes::{length, place};
 use super::{moving, units};
-use halfstep_scene::{Block, Geometry, ProbeKind, Scene, WholeAngle, geometry};
+use halfstep_scene::{Block, Geometry, Motion, ProbeKind, Scene, Shape, WholeAngle, geometry};
 
 /// Softer than any gel, stiffer than diamond, Pa.
 pub(super) const STIFFNESS: [f64; 2] = [1e3, 2e12];
@@ -36,8 +36,13 @@ pub(super) fn materials(scene: &Scene, all: &mut Vec<String>) {
     if let Some(fluid) = &scene.fluid {
         check("fluid.density".into(), fluid.density, DENSITY, "kg/m³");
     }
-    for solid in &scene.solids {
-        check(format!("{}.density", solid.name), solid.density, DENSITY, "kg/m³");
+    for (k, solid) in scene.solids.iter().enumerate() {
+        // Foam is meant where ballast goes with it.
+        let heavy = |shape: &Shape| shape.density.is_some_and(|density| density >= DENSITY[0]);
+        let ballasted = scene.shapes.iter().any(|shape| shape.solid == Some(k) && heavy(shape));
+        if !ballasted || solid.density > DENSITY[1] {
+            check(format!("{}.density", solid.name), solid.density, DENSITY, "kg/m³");
+        }
         if solid.rigid().is_some() {
             continue;
         }
@@ -114,6 +119,36 @@ pub(super) fn axes(scene: &Scene, all: &mut Vec<String>) {
     }
 }
 
+/// Copies and shifted shapes that turn about the one point that their motion says.
+pub(super) fn pivots(scene: &Scene, all: &mut Vec<String>) {
+    for shape in &scene.shapes {
+        let (Geometry::Moved(moved), Some(pivot)) =
+            (&shape.geometry, shape.motion.as_ref().and_then(Motion::pivot))
+        else {
+            continue;
+        };
+        if moved.count > 1 {
+            all.push(format!(
+                "all {} copies of `{}` turn about the one `pivot`, {}: `repeat` does not take it along (a shape for each \
+                 has its own)",
+                moved.count,
+                shape.name,
+                place(&pivot[..2])
+            ));
+            continue;
+        }
+        let beside = |geometry: &Geometry| geometry::distance(geometry, &pivot) > scene.resolution;
+        if moved.translate != [0.0; 3] && !beside(&moved.geometry) && beside(&shape.geometry) {
+            all.push(format!(
+                "`{}` turns about {}, where it would be without `translate`: the `pivot` is a place of the scene, which \
+                 `translate` does not take along",
+                shape.name,
+                place(&pivot[..2])
+            ));
+        }
+    }
+}
+
 /// Motions that swing further than a quarter of a turn, or lead far away: their units are hardly those meant.
 pub(super) fn motions(scene: &Scene, all: &mut Vec<String>) {
     let Some((_, extent)) = extent(scene) else { return };
@@ -171,7 +206,10 @@ pub(super) fn lengths(scene: &Scene, all: &mut Vec<String>) {
     });
     let extent = |b: Block| (0..scene.dimension).map(|a| b.max[a] - b.min[a]).fold(0.0, f64::max);
     let largest = boxes.map(extent).fold(0.0, f64::max);
-    if largest > 0.0 && !(SIZE[0]..=SIZE[1]).contains(&largest) {
+    // A long wave needs sqrt(L / g) to cross a basin as long as it is deep: a run of a real one is longer.
+    let gravity = scene.gravity_magnitude();
+    let short = gravity == 0.0 || scene.end_time < (largest / gravity).sqrt();
+    if largest > 0.0 && (largest < SIZE[0] || largest > SIZE[1] && short) {
         all.push(format!("the largest shape is {largest} m long: lengths are in metres"));
     }
 }

@@ -45,7 +45,7 @@ impl Mass {
         (!cells.is_empty()).then_some(Self { mass, volume, cells, dx })
     }
 
-    fn center(&self) -> [f64; 3] {
+    pub(super) fn center(&self) -> [f64; 3] {
         std::array::from_fn(|d| self.cells.iter().map(|(x, m)| x[d] * m).sum::<f64>() / self.mass)
     }
 
@@ -58,7 +58,7 @@ impl Mass {
     }
 
     /// Moment of inertia about the axis through a point, kg m² (2D: kg m).
-    fn inertia(&self, axis: usize, about: &[f64; 3]) -> f64 {
+    pub(super) fn inertia(&self, axis: usize, about: &[f64; 3]) -> f64 {
         let across =
             |x: &[f64; 3]| (0..3).filter(|&d| d != axis).map(|d| (x[d] - about[d]).powi(2)).sum::<f64>();
         self.cells.iter().map(|(x, m)| m * (across(x) + self.dx * self.dx / 6.0)).sum()

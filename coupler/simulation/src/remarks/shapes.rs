@@ -276,6 +276,8 @@ fn phase_name<S: Serializer>(phase: &Phase, serializer: S) -> Result<S::Ok, S::E
 
 /// A number with four digits that count.
 pub(super) fn length(x: f64) -> String {
+    // What rounding leaves of zero.
+    let x = if x.abs() < 1e-12 { 0.0 } else { x };
     let rounded: f64 = format!("{x:.3e}").parse().unwrap_or(x);
     format!("{rounded}")
 }

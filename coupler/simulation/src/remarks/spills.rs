@@ -1,5 +1,6 @@
 //! Remarks on water that flows out of the scene at once, over a rim or at a side that nothing closes.
 
+use super::near;
 use super::reached::Matter;
 use super::shapes::length;
 use super::water::falls;
@@ -26,7 +27,9 @@ pub(super) fn spills<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mu
     let dx = scene.resolution;
     let matter = Matter::with_solids(scene, layout);
     for (index, shape) in scene.shapes.iter().enumerate().filter(|(_, s)| s.phase == Phase::Fluid) {
-        if shape.velocity != [0.0; 3] || shape.velocity_field.is_some() {
+        // What is thrown flies, and what stands on a wall flows.
+        let thrown = shape.velocity != [0.0; 3] && !stands(scene, layout, index, down);
+        if thrown || shape.velocity_field.is_some() {
             continue;
         }
         for (axis, side) in (0..D).filter(|axis| *axis != down).flat_map(|axis| [(axis, 0), (axis, 1)]) {
@@ -73,4 +76,17 @@ fn under_a_lid(scene: &Scene, (down, way): (usize, f64), (axis, side): (usize, u
     let lidded =
         tanks.filter(|(_, open)| !open.contains(&upper) && open.contains(&geometry::sides(axis)[side]));
     lidded.map(|(cavity, _)| *cavity).collect()
+}
+
+/// Whether walls are beside at least half as many of a shape's particles as it is wide.
+fn stands<const D: usize>(scene: &Scene, layout: &Layout<D>, shape: usize, down: usize) -> bool {
+    let reach = 1.5 * scene.resolution;
+    let mut walls = geometry::Cells::new(reach);
+    layout.wall.iter().for_each(|w| walls.add(&w.position, w.position));
+    let own = layout.fluid.iter().filter(|p| p.shape as usize == shape);
+    let beside = own.filter(|p| walls.around(&p.position).any(|w| near(w, &p.position, reach))).count();
+    let block = geometry::bounding_box(&scene.shapes[shape], scene);
+    let width: f64 =
+        (0..D).filter(|a| *a != down).map(|a| (block.max[a] - block.min[a]) / scene.resolution).product();
+    2.0 * beside as f64 > width
 }
