@@ -288,14 +288,16 @@ fn a_brittle_cantilever_breaks_where_beam_theory_says() {
 }
 
 /// Without a swing. Plane elasticity has the outermost particle at the clamp reach f_t at 0.98 (10 across) and 0.97
-/// (20) of beam theory's load: the clamp holds the section from warping.
+/// (20) of beam theory's load: the clamp holds the section from warping. Measured: 0.965 and 0.962; the break at 0.971
+/// and 1.040. Asked for are 5 and 10 %; bands of 1 % about what is measured lie within.
 #[test]
 #[ignore = "many minutes"]
 fn finer_cantilevers_break_where_beam_theory_says() {
-    for across in [10.0, 20.0] {
-        let [first, broken] = Cantilever { across, brittleness: 8.0, glides: true, ..BEAM }.broken();
-        assert!((first - 1.0).abs() < 0.05, "{across}: {first}");
-        assert!((broken - 1.0).abs() < 0.1, "{across}: {broken}");
+    for (across, measured) in [(10.0, [0.965, 0.971]), (20.0, [0.962, 1.040])] {
+        let found = Cantilever { across, brittleness: 8.0, glides: true, ..BEAM }.broken();
+        for (found, measured) in found.into_iter().zip(measured) {
+            assert!((found / measured - 1.0).abs() < 0.01, "{across}: {found}");
+        }
     }
 }
 
