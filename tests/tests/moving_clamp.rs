@@ -107,18 +107,18 @@ fn a_baffle_goes_with_its_tank_and_keeps_the_water() {
     assert!(report.audit.min_gap.is_some_and(|gap| gap > 0.5), "{:?}", report.audit);
 }
 
-/// The same baffle whose clamp stays in space: the tank slides away from it and water falls out, which is said before
-/// the run and after it.
+/// The same baffle whose clamp stays in space: the tank slides away from it, by three spacings, and tears the water,
+/// which is said before the run and after it. With the whole amplitude the run diverges.
 #[test]
-fn a_baffle_whose_clamp_stays_lets_the_water_out_and_it_is_said() {
+fn a_baffle_whose_clamp_stays_tears_the_water_and_it_is_said() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("baffle.toml");
     std::fs::write(&path, BAFFLE.replace(", with = \"tank\"", "")).expect("a scene");
-    let run = halfstep_tests::run::scene_at(&path).in_process().run();
-    let report = &run.report;
+    let tank = halfstep_tests::run::scene_at(&path).set("shape.tank.motion.amplitude", "[0.03, 0.0]");
+    let run = tank.in_process().run();
     let said = "the clamp of `baffle` stands in `tank`, which moves: the clamp stays where it is";
-    assert!(report.warnings.iter().any(|warning| warning.contains(said)), "{:?}", report.warnings);
-    let lost = format!("{} of {} fluid particles left", report.particles.removed, report.particles.fluid);
-    assert!(report.particles.removed > 0, "{:?}", report.audit);
-    assert!(run.outcome.stderr.contains(&lost), "{}", run.outcome.stderr);
+    assert!(run.report.warnings.iter().any(|warning| warning.contains(said)), "{:?}", run.report.warnings);
+    // 0.18, and below 0.03 where it goes along.
+    assert!(run.report.audit.density_error.is_some_and(|error| error > 0.1), "{:?}", run.report.audit);
+    assert!(run.outcome.stderr.contains("density error up to"), "{}", run.outcome.stderr);
 }

@@ -15,6 +15,7 @@ mod enclosed;
 mod fields;
 mod frame;
 mod gaps;
+mod hollows;
 mod idle;
 mod joined;
 mod joints;
@@ -90,6 +91,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     moving::forgotten(scene, &mut all);
     moving::probes(scene, &mut all);
     let bodies = scene.bodies_of(layout);
+    moving::gauges_at_bodies(scene, layout, &bodies, &mut all);
     unheld::sunk(scene, layout, &bodies, &mut all);
     bodies::free(scene, &bodies, &mut all);
     unheld::beside_walls(scene, &bodies, &mut all);
@@ -98,11 +100,13 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     joints::springs(scene, layout, &mut all);
     joints::locks(scene, &mut all);
     joints::starts(scene, &mut all);
+    joints::still(scene, &mut all);
     joints::far_hinges(scene, &mut all);
     bodies::held_in_part(scene, &bodies, &mut all);
     bodies::parted(scene, &bodies, &mut all);
     bodies::voids::<D>(scene, &mut all);
     bodies::idle_voids::<D>(scene, &mut all);
+    hollows::hollows(scene, layout, &mut all);
     bodies::held_altogether(scene, &bodies, &mut all);
     bodies::not_repeated(scene, layout, &mut all);
     cracks::cracks(scene, layout, &mut all);
@@ -180,6 +184,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     units::degrees(scene, &mut all);
     curves::intervals(scene, &mut all);
     curves::references(scene, &mut all);
+    curves::windows(scene, &mut all);
     curves::levels(scene, layout, &mut all);
     beams::bent(scene, placed, &mut all);
     magnitudes::parameters(scene, &mut all);

@@ -1,7 +1,7 @@
 //! Remarks on cracks that part nothing.
 
 use halfstep_scene::geometry::{self, Cells, Layout};
-use halfstep_scene::{Scene, Shape};
+use halfstep_scene::{Geometry, Scene, Shape};
 
 /// Cracks beside their shape, between its particles, or in what its clamps hold.
 pub(super) fn cracks<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
@@ -13,6 +13,19 @@ pub(super) fn cracks<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mu
         if (0..2).any(apart) {
             all.push(format!("the crack of `{name}` lies beside it, and parts nothing"));
             continue;
+        }
+        if let Geometry::Moved(moved) = &shape.geometry {
+            let beside = |geometry: &Geometry, end: &[f64; 3]| {
+                geometry::distance(geometry, end) > scene.spacing(shape)
+            };
+            let ends = [&from, &to];
+            let was_there = ends.iter().all(|end| !beside(&moved.geometry, end));
+            if moved.angle != 0.0 && was_there && ends.iter().any(|end| beside(&shape.geometry, end)) {
+                all.push(format!(
+                    "the crack of `{name}` is where it would be without `rotate`, which does not turn it: its ends are \
+                     places of the scene"
+                ));
+            }
         }
         match parted(scene, layout, shape, [[from[0], from[1]], [to[0], to[1]]]) {
             [0, _] => all.push(format!(

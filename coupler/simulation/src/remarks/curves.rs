@@ -58,6 +58,20 @@ pub(super) fn intervals(scene: &Scene, all: &mut Vec<String>) {
     }
 }
 
+/// Metrics whose window holds no two rows of their probe.
+pub(super) fn windows(scene: &Scene, all: &mut Vec<String>) {
+    let interval = scene.output.probe_interval;
+    for metric in scene.metrics.iter().filter(|metric| !matches!(metric.kind, MetricKind::Value { .. })) {
+        let to = metric.to.unwrap_or(scene.end_time);
+        if to - metric.from < interval * (1.0 - 1e-9) {
+            all.push(format!(
+                "the metric `{}` looks from {} to {to} s, and rows are {interval} s apart: it holds one of them at most",
+                metric.name, metric.from
+            ));
+        }
+    }
+}
+
 /// What units of a title are worth in the unit of a probe.
 const UNITS: [(&str, &[(&str, f64)]); 7] = [
     ("m", &[("mm", 1e-3), ("cm", 1e-2)]),

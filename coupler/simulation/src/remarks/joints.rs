@@ -3,7 +3,9 @@
 use super::rigid::Mass;
 use super::shapes::length;
 use halfstep_scene::geometry::{self, Layout};
-use halfstep_scene::{Block, Geometry, Joint, JointKind, Phase, RigidKeys, Scene, Shape};
+use halfstep_scene::{
+    Block, BodyQuantity, Geometry, Joint, JointKind, Phase, ProbeKind, RigidKeys, Scene, Shape,
+};
 use std::f64::consts::TAU;
 
 /// A whole number of these, degrees, is hardly one of radians.
@@ -92,6 +94,31 @@ pub(super) fn springs<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &m
                     force / weight
                 ));
             }
+        }
+    }
+}
+
+/// Angles and rates of bodies that a joint does not let turn.
+pub(super) fn still(scene: &Scene, all: &mut Vec<String>) {
+    for probe in &scene.probes {
+        let ProbeKind::Body { body, quantity: BodyQuantity::Angle | BodyQuantity::AngularVelocity } =
+            &probe.kind
+        else {
+            continue;
+        };
+        let keys = probe.solid.and_then(|solid| scene.solids[solid].rigid());
+        let keeps = |joint: &&Joint| {
+            let kind = matches!(joint.kind, JointKind::Fixed | JointKind::Rail { turns: false, .. });
+            kind && joint.body == *body && is_grounded(scene, joint)
+        };
+        if let Some(joint) = keys.and_then(|keys| keys.joints.iter().find(keeps)) {
+            all.push(format!(
+                "the {} of the probe `{}` is 0 throughout: the joint `{}` does not let `{body}` turn (`turns = true` at a \
+                 rail does)",
+                probe.kind.name(),
+                probe.name,
+                joint.name
+            ));
         }
     }
 }

@@ -30,22 +30,26 @@ pub(super) fn measured<'l, const D: usize>(
     of_solids.chain(layout.wall.iter().filter(move |p| own(p.shape)).map(|p| &p.position))
 }
 
+/// Probes of a force or moment in a box, with that box and the shape that they name.
+fn boxes_of_forces(scene: &Scene) -> impl Iterator<Item = (&Probe, &Block, Option<usize>)> {
+    scene.probes.iter().filter_map(|probe| match &probe.kind {
+        ProbeKind::Force { within: Some(within), shape }
+        | ProbeKind::Moment { within: Some(within), shape, .. } => Some((probe, within, *shape)),
+        _ => None,
+    })
+}
+
 /// Boxes of forces and moments that hold no particle.
 pub(super) fn empty<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
-    for probe in &scene.probes {
-        let (ProbeKind::Force { within: Some(within), shape }
-        | ProbeKind::Moment { within: Some(within), shape, .. }) = &probe.kind
-        else {
-            continue;
-        };
+    for (probe, within, shape) in boxes_of_forces(scene) {
         let away = |x: &[f64; D]| {
             let beside = |a: usize| (within.min[a] - x[a]).max(x[a] - within.max[a]).max(0.0);
             (0..D).map(|a| beside(a).powi(2)).sum::<f64>()
         };
-        let nearest = measured(scene, layout, probe, *shape).min_by(|a, b| away(a).total_cmp(&away(b)));
+        let nearest = measured(scene, layout, probe, shape).min_by(|a, b| away(a).total_cmp(&away(b)));
         let Some(nearest) = nearest.filter(|x| !geometry::holds(within, x, 0.0)) else { continue };
         let of = match (shape, probe.solid) {
-            (Some(shape), _) => &scene.shapes[*shape].name,
+            (Some(shape), _) => &scene.shapes[shape].name,
             (None, solid) => &scene.solids[solid.unwrap_or(0)].name,
         };
         let Block { min, max } = within;
@@ -62,14 +66,9 @@ pub(super) fn empty<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut
 
 /// Forces on what a clamp holds in a wall: of the fluid, of which there is hardly any, and no reaction.
 pub(super) fn in_clamps<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
-    for probe in &scene.probes {
-        let (ProbeKind::Force { within: Some(within), shape }
-        | ProbeKind::Moment { within: Some(within), shape, .. }) = &probe.kind
-        else {
-            continue;
-        };
+    for (probe, within, shape) in boxes_of_forces(scene) {
         let of = |p: &&SolidPoint<D>| match shape {
-            Some(shape) => p.body as usize == *shape,
+            Some(shape) => p.body as usize == shape,
             None => probe.solid.is_some() && scene.shapes[p.body as usize].solid == probe.solid,
         };
         let own = || layout.solid.iter().filter(of).filter(|p| geometry::holds(within, &p.position, 0.0));
@@ -88,15 +87,10 @@ const MISSED: f64 = 0.5;
 
 /// Boxes that hold a face, and not all rows behind it that feel the fluid before it.
 pub(super) fn partial<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
-    for probe in &scene.probes {
-        let (ProbeKind::Force { within: Some(within), shape }
-        | ProbeKind::Moment { within: Some(within), shape, .. }) = &probe.kind
-        else {
-            continue;
-        };
-        let own: Vec<[f64; D]> = measured(scene, layout, probe, *shape).copied().collect();
+    for (probe, within, shape) in boxes_of_forces(scene) {
+        let own: Vec<[f64; D]> = measured(scene, layout, probe, shape).copied().collect();
         let dx = match (shape, probe.solid) {
-            (Some(shape), _) => scene.spacing(&scene.shapes[*shape]),
+            (Some(shape), _) => scene.spacing(&scene.shapes[shape]),
             (None, solid) => scene.solid_spacing(solid.unwrap_or(0)),
         };
         let mut places = Cells::new(dx);

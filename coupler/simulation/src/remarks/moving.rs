@@ -1,11 +1,11 @@
 //! Remarks on tanks that move: clamps, joints and walls in them that do not go along.
 
-use super::shapes::length;
+use super::shapes::{length, place};
 use super::water::INSTANTS;
-use super::{meet, overlap};
+use super::{meet, near, overlap};
 use halfstep_scene::geometry::{self, Cells, Layout, SolidPoint};
-use halfstep_scene::{Block, Geometry, Joint, JointKind, Motion, Phase, ProbeKind, Scene, Shape};
-use halfstep_wire::wide;
+use halfstep_scene::{Block, Body, Geometry, Joint, JointKind, Motion, Phase, ProbeKind, Scene, Shape};
+use halfstep_wire::{narrow, wide};
 
 /// Walls that move, with the boxes around them.
 fn moving(scene: &Scene) -> Vec<(&Shape, Block)> {
@@ -182,6 +182,32 @@ pub(super) fn walls(scene: &Scene, all: &mut Vec<String>) {
                 wall.name, tank.name
             ));
         }
+    }
+}
+
+/// Gauges of pressure that are fixed in space at a body which nothing holds.
+pub(super) fn gauges_at_bodies<const D: usize>(
+    scene: &Scene,
+    layout: &Layout<D>,
+    bodies: &[Body],
+    all: &mut Vec<String>,
+) {
+    let reach = 1.5 * scene.resolution;
+    let mut free = Cells::new(reach);
+    let is_free = |shape: usize| bodies.iter().any(|body| !body.held && body.shapes.contains(&shape));
+    let own = layout.solid.iter().filter(|p| is_free(p.body as usize));
+    own.for_each(|p| free.add(&p.position, (p.position, p.body as usize)));
+    for probe in &scene.probes {
+        let ProbeKind::Pressure { at, shape: None, .. } = &probe.kind else { continue };
+        let here: [f64; D] = narrow(*at);
+        let Some((_, body)) = free.around(&here).find(|(x, _)| near(x, &here, reach)) else { continue };
+        let name = &scene.shapes[*body].name;
+        all.push(format!(
+            "the probe `{}` at {} is fixed in space beside `{name}`, which moves freely (`shape = \"{name}\"` takes it \
+             along)",
+            probe.name,
+            place(&at[..D])
+        ));
     }
 }
 

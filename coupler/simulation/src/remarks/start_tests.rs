@@ -189,3 +189,67 @@ fn real_basins_and_foam_with_ballast() {
     assert!(has(&foam(""), "solid.density = 25 kg/m³ is very little"));
     assert!(!has(&foam("density = 2000.0"), "very little"), "{:?}", foam("density = 2000.0"));
 }
+
+#[test]
+fn a_gauge_beside_a_body_that_floats() {
+    let float = |keys: &str, lines: &str| {
+        let probe = format!("[[probe]]\nname = \"p\"\nkind = \"pressure\"\n{keys}\n");
+        rigid(
+            &format!("density = 500.0\n{lines}"),
+            &(shape("hull", "solid", [0.15, 0.16], [0.25, 0.22], "") + DEEP + TANK + &probe),
+        )
+    };
+    let said = "the probe `p` at [0.2, 0.157] is fixed in space beside `hull`, which moves freely";
+    assert!(has(&float("at = [0.2, 0.157]", ""), said), "{:?}", float("at = [0.2, 0.157]", ""));
+    assert!(!has(&float("at = [0.2, 0.157]\nshape = \"hull\"", ""), "fixed in space"));
+    assert!(!has(&float("at = [0.2, 0.1]", ""), "fixed in space"));
+    let fixed = "[[solid.joints]]\nname = \"post\"\nkind = \"fixed\"\nbody = \"hull\"";
+    assert!(!has(&float("at = [0.2, 0.157]", fixed), "fixed in space"));
+}
+
+#[test]
+fn an_angle_that_a_rail_keeps() {
+    let angle = |turns: &str| {
+        let joint = format!(
+            "[[solid.joints]]\nname = \"rail\"\nkind = \"rail\"\nbody = \"hull\"\nat = [0.2, 0.2]\naxis = [0.0, 1.0]\n{turns}"
+        );
+        let probe = "[[probe]]\nname = \"pitch\"\nkind = \"body-angle\"\nbody = \"hull\"\n";
+        rigid(
+            &format!("density = 500.0\n{joint}"),
+            &(shape("hull", "solid", [0.15, 0.16], [0.25, 0.22], "") + DEEP + TANK + probe),
+        )
+    };
+    let said =
+        "the body-angle of the probe `pitch` is 0 throughout: the joint `rail` does not let `hull` turn";
+    assert!(has(&angle(""), said), "{:?}", angle(""));
+    assert!(!has(&angle("turns = true"), "throughout"));
+}
+
+#[test]
+fn a_window_without_rows() {
+    let metric = |from: f64, to: f64| {
+        let lines = format!(
+            "[[probe]]\nname = \"f\"\nkind = \"front\"\n[[metric]]\nname = \"m\"\nprobe = \"f.x\"\nkind = \"mean\"\nfrom = \
+             {from}\nto = {to}\n"
+        );
+        water("[output]\nprobe_interval = 0.01", &format!("{WATER}{TANK}{lines}"))
+    };
+    let said =
+        "the metric `m` looks from 0.9 to 0.901 s, and rows are 0.01 s apart: it holds one of them at most";
+    assert_eq!(metric(0.9, 0.901), [said]);
+    assert_eq!(metric(0.9, 0.92), [""; 0]);
+}
+
+#[test]
+fn hollows_in_the_water() {
+    let hollow = |min: [f64; 2], max: [f64; 2], rest: &str| {
+        let void = shape("air", "void", min, max, "");
+        water("", &format!("{rest}{void}{DEEP}{TANK}"))
+    };
+    let said =
+        "the void `air` is empty, and no air: the fluid above 100 of its 100 empty places falls into it";
+    assert!(has(&hollow([0.1, 0.05], [0.15, 0.1], ""), said), "{:?}", hollow([0.1, 0.05], [0.15, 0.1], ""));
+    assert!(!has(&hollow([0.1, 0.15], [0.15, 0.2], ""), "no air"), "it is open above");
+    let lid = shape("lid", "wall", [0.08, 0.1], [0.17, 0.12], "");
+    assert!(!has(&hollow([0.1, 0.05], [0.15, 0.1], &lid), "no air"), "below a lid");
+}
