@@ -66,8 +66,8 @@ const DEPTH: f64 = 0.2;
 /// A flume of 4 m whose last 2 m absorb, and a piston at its left end.
 fn flume(motion: &str, until: f64) -> String {
     format!(
-        "resolution = 0.02\nend_time = {until}\n[fluid]\ndensity = 1000.0\nsound_speed = 10.0\nbeach = {{ from = 2.0, to = 4.0 }}\n\
-         [[shape]]\nname = \"water\"\nphase = \"fluid\"\npressure = \"hydrostatic\"\n\
+        "resolution = 0.02\nend_time = {until}\n[fluid]\ndensity = 1000.0\nsound_speed = 10.0\n\
+         beach = {{ from = 2.0, to = 4.0 }}\n[[shape]]\nname = \"water\"\nphase = \"fluid\"\npressure = \"hydrostatic\"\n\
          box = {{ min = [0.0, 0.0], max = [4.0, {DEPTH}] }}\n[[shape]]\nname = \"paddle\"\nphase = \"wall\"\n\
          box = {{ min = [-0.08, 0.0], max = [0.0, 0.4] }}\nmotion = {motion}\n[[shape]]\nname = \"flume\"\n\
          phase = \"wall\"\ntank = {{ min = [-0.2, 0.0], max = [4.0, 0.4], open = [\"left\", \"top\"] }}\n\

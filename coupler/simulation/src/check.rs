@@ -68,9 +68,6 @@ pub struct Check {
     bodies_listed: Option<String>,
 }
 
-/// Most rigid bodies that are listed.
-const MOST_LISTED: usize = 8;
-
 /// m/s.
 #[derive(Clone, Debug, Serialize)]
 struct Speeds {
@@ -282,7 +279,7 @@ impl Display for Check {
             line(&format!("  {}", shape.name), shape)?;
         }
         self.bodies_listed.iter().try_for_each(|bodies| line("bodies", bodies))?;
-        for body in self.rigid_bodies.iter().take(MOST_LISTED) {
+        for body in self.rigid_bodies.iter().take(remarks::MOST_LISTED) {
             line(&format!("  {}", body.body), body)?;
         }
         if !self.joints.is_empty() {

@@ -44,7 +44,7 @@ mod units;
 mod walls;
 mod water;
 
-pub(crate) use bodies::listed as bodies_listed;
+pub(crate) use bodies::{MOST_LISTED, listed as bodies_listed};
 pub(crate) use joined::{Joined, Massive, joined, massive};
 pub(crate) use loads::{Loaded, listed as loaded};
 pub use outcome::outcome;

@@ -86,11 +86,12 @@ mod tests {
     use super::*;
     use halfstep_output::{FramePoint, FrameWriter};
 
-    const SCENE: &str = "resolution = 0.1\nend_time = 1.0\n[solid]\ndensity = 1000.0\nyoungs_modulus = 1e6\npoissons_ratio = 0.3\n\
-                         [[shape]]\nname = \"plate\"\nphase = \"solid\"\nbox = { min = [0.4, -0.3], max = [0.6, 1.0] }\n\
-                         clamp = { min = [0.4, -0.3], max = [0.6, 0.0] }\n[[shape]]\nname = \"stop\"\nphase = \"wall\"\n\
-                         box = { min = [1.0, 0.5], max = [1.5, 1.0] }\n[[shape]]\nname = \"tank\"\nphase = \"wall\"\n\
-                         tank = { min = [0.0, 0.0], max = [2.0, 1.0], open = [\"top\"] }\n";
+    const SCENE: &str = "resolution = 0.1\nend_time = 1.0\n\
+        [solid]\ndensity = 1000.0\nyoungs_modulus = 1e6\npoissons_ratio = 0.3\n\
+        [[shape]]\nname = \"plate\"\nphase = \"solid\"\nbox = { min = [0.4, -0.3], max = [0.6, 1.0] }\n\
+        clamp = { min = [0.4, -0.3], max = [0.6, 0.0] }\n\
+        [[shape]]\nname = \"stop\"\nphase = \"wall\"\nbox = { min = [1.0, 0.5], max = [1.5, 1.0] }\n\
+        [[shape]]\nname = \"tank\"\nphase = \"wall\"\ntank = { min = [0.0, 0.0], max = [2.0, 1.0], open = [\"top\"] }\n";
 
     /// What is said of a plate one of whose particles is at places one after the other, 0.1 s apart, and another in its
     /// clamp.

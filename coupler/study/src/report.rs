@@ -91,11 +91,15 @@ impl Study {
         for left_out in &self.left_out {
             let _ = writeln!(text, "\n{left_out} needs a longer run and is left out");
         }
-        text + &self.warned()
+        let warned = self.warned();
+        for warning in &warned {
+            let _ = write!(text, "\n{warning}");
+        }
+        if warned.is_empty() { text } else { text + "\n" }
     }
 
     /// What runs warned of, each once with the settings that it is said of.
-    pub fn warned(&self) -> String {
+    pub fn warned(&self) -> Vec<String> {
         let mut told: Vec<(&String, Vec<&str>)> = Vec::new();
         for row in &self.rows {
             for warning in &row.warnings {
@@ -106,11 +110,10 @@ impl Study {
             }
         }
         let line = |(warning, labels): (&String, Vec<&str>)| match labels.len() == self.rows.len() {
-            true => format!("\nwarning: {warning}"),
-            false => format!("\nwarning: {}: {warning}", labels.join(", ")),
+            true => format!("warning: {warning}"),
+            false => format!("warning: {}: {warning}", labels.join(", ")),
         };
-        let text: String = told.into_iter().map(line).collect();
-        if text.is_empty() { text } else { text + "\n" }
+        told.into_iter().map(line).collect()
     }
 
     fn costs(&self) -> String {

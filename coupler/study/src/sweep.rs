@@ -111,10 +111,8 @@ impl Sweep {
         let repeated = study.repeated.iter().map(|[one, other]| {
             format!("{one} makes the scene of {other}, and is not run: no key that matters depends on it")
         });
-        let warned = study.warned();
-        let warned = warned.lines().filter(|line| !line.is_empty()).map(str::to_owned);
         Self {
-            notes: late.chain(repeated).chain(warned).collect(),
+            notes: late.chain(repeated).chain(study.warned()).collect(),
             scene: study.scene.clone(),
             rows: study.rows.iter().map(row).collect(),
             metrics: study.metrics.iter().map(measured).collect(),

@@ -156,10 +156,10 @@ fn bodies_and_joints_are_listed_as_they_begin() {
     for line in [
         "  flap          rigid, 2 kg/m with its centre at [0.1, 0.1], inertia 0.006733 kg m\n",
         "  box           rigid, 6 kg/m with its centre at [0.3, 0.15], inertia 0.01 kg m (mass as the scene says)\n",
-        "joints          2\n  pin           hinge of flap to tank, turns about [0.1, 0], counter-clockwise positive, stops \
-         at -0.7854 rad (-45 degrees) and 0 rad (0 degrees); begins with a moment of 2 N m/m\n",
-        "  line          spring of box to space from [0.3, 0.1] to [0.3, 0], 0.1 m long, rests at 0.15 m and pushes where it \
-         is shorter; begins pushing with 1 N/m\n",
+        "joints          2\n  pin           hinge of flap to tank, turns about [0.1, 0], counter-clockwise positive, \
+         stops at -0.7854 rad (-45 degrees) and 0 rad (0 degrees); begins with a moment of 2 N m/m\n",
+        "  line          spring of box to space from [0.3, 0.1] to [0.3, 0], 0.1 m long, rests at 0.15 m and pushes \
+         where it is shorter; begins pushing with 1 N/m\n",
     ] {
         assert!(said.contains(line), "{line}: {said}");
     }

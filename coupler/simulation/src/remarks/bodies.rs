@@ -1,6 +1,7 @@
 //! Remarks on bodies: what holds them, what they stand on, what they touch.
 
 use super::meet;
+use super::reached::by_place;
 use super::shapes::length;
 use halfstep_scene::geometry::Layout;
 use halfstep_scene::{
@@ -9,7 +10,7 @@ use halfstep_scene::{
 use std::collections::BTreeSet;
 
 /// Most bodies that are listed.
-const MOST_LISTED: usize = 8;
+pub(crate) const MOST_LISTED: usize = 8;
 
 /// Bodies that no clamp holds, where walls do not stop them.
 pub(super) fn free(scene: &Scene, bodies: &[Body], all: &mut Vec<String>) {
@@ -275,8 +276,7 @@ pub(super) fn standing<const D: usize>(
     let Some(fluid) = scene.fluid.as_ref().filter(|_| size > 0.0) else { return };
     let down = |x: &[f64; D]| (0..D).map(|d| x[d] * scene.gravity[d]).sum::<f64>() / size;
     let beside = 1.5 * scene.resolution;
-    let mut water = geometry::Cells::new(beside);
-    layout.fluid.iter().for_each(|p| water.add(&p.position, p.position));
+    let water = by_place(beside, layout.fluid.iter().map(|p| p.position));
     let is_wet = |x: &[f64; D]| water.around(x).any(|p| super::near(p, x, beside));
     for body in bodies.iter().filter(|body| !body.held) {
         let Some(solid) = scene.shapes[body.shapes[0]].solid else { continue };
@@ -303,8 +303,8 @@ pub(super) fn standing<const D: usize>(
             ));
         } else if rigid && layout.solid.iter().filter(own).any(|p| is_wet(&p.position)) {
             all.push(format!(
-                "{name} stands on `{wall}` in the fluid: no fluid fits below it, so it has no uplift, and its whole weight \
-                 rests on the wall"
+                "{name} stands on `{wall}` in the fluid: no fluid fits below it, so it has no uplift, and its whole \
+                 weight rests on the wall"
             ));
         }
     }

@@ -65,7 +65,8 @@ pub(super) fn windows(scene: &Scene, all: &mut Vec<String>) {
         let to = metric.to.unwrap_or(scene.end_time);
         if to - metric.from < interval * (1.0 - 1e-9) {
             all.push(format!(
-                "the metric `{}` looks from {} to {to} s, and rows are {interval} s apart: it holds one of them at most",
+                "the metric `{}` looks from {} to {to} s, and rows are {interval} s apart: it holds one of them at \
+                 most",
                 metric.name, metric.from
             ));
         }

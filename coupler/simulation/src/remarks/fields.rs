@@ -1,7 +1,7 @@
 //! Remarks on initial velocity fields that do not fit the water, its walls or gravity.
 
 use super::near;
-use super::reached::Matter;
+use super::reached::{Matter, by_place};
 use super::shapes::length;
 use super::water::{DEPTH, falls};
 use halfstep_scene::geometry::{self, Cells, Layout};
@@ -43,8 +43,7 @@ pub(super) fn steps<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut
         return;
     }
     let (dx, matter) = (scene.resolution, Matter::with_solids(scene, layout));
-    let mut water = Cells::new(dx);
-    layout.fluid.iter().for_each(|p| water.add(&p.position, p.position));
+    let water = by_place(dx, layout.fluid.iter().map(|p| p.position));
     for (index, shape) in scene.shapes.iter().enumerate().filter(|(_, shape)| shape.hydrostatic) {
         let (mut surface, mut low, mut deepest) = (0, 0, 0.0_f64);
         for p in layout.fluid.iter().filter(|p| p.shape as usize == index) {
@@ -62,8 +61,8 @@ pub(super) fn steps<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut
         }
         if low > 0 && low as f64 > STEPPED * surface as f64 {
             all.push(format!(
-                "`{}` begins with pressure at its free surface, up to that of {} m of water: `hydrostatic` counts from the \
-                 highest point of a shape, and {:.0} % of its surface is lower (a shape for each level)",
+                "`{}` begins with pressure at its free surface, up to that of {} m of water: `hydrostatic` counts from \
+                 the highest point of a shape, and {:.0} % of its surface is lower (a shape for each level)",
                 shape.name,
                 length(deepest),
                 100.0 * low as f64 / surface as f64

@@ -85,7 +85,8 @@ pub(super) fn beside<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mu
             let depths = depths_below(&column, others, (axis, way), dx, (1.0 + BESIDE[1]) * dx);
             let Some(gap) = gap(&depths, dx, BESIDE.map(|rows| rows * dx)) else { continue };
             all.push(format!(
-                "`{}` ends at {} = {} m, {} m, {:.1} spacings, before what stands there: it falls into that gap at once",
+                "`{}` ends at {} = {} m, {} m, {:.1} spacings, before what stands there: it falls into that gap at \
+                 once",
                 shape.name,
                 ["x", "y", "z"][axis],
                 length(column[0][axis] + 0.5 * way * dx),

@@ -113,8 +113,8 @@ pub(super) fn still(scene: &Scene, all: &mut Vec<String>) {
         };
         if let Some(joint) = keys.and_then(|keys| keys.joints.iter().find(keeps)) {
             all.push(format!(
-                "the {} of the probe `{}` is 0 throughout: the joint `{}` does not let `{body}` turn (`turns = true` at a \
-                 rail does)",
+                "the {} of the probe `{}` is 0 throughout: the joint `{}` does not let `{body}` turn (`turns = true` \
+                 at a rail does)",
                 probe.kind.name(),
                 probe.name,
                 joint.name
@@ -163,7 +163,8 @@ pub(super) fn locks(scene: &Scene, all: &mut Vec<String>) {
         for (k, a) in grounded().enumerate() {
             if let Some(b) = grounded().skip(k + 1).find(|b| b.body == a.body && lock(a, b)) {
                 all.push(format!(
-                    "`{}` cannot move: the joints `{}` and `{}` leave no way together (kind = \"fixed\" holds it alone)",
+                    "`{}` cannot move: the joints `{}` and `{}` leave no way together (kind = \"fixed\" holds it \
+                     alone)",
                     a.body, a.name, b.name
                 ));
             }

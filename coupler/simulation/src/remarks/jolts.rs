@@ -1,6 +1,7 @@
 //! Remarks on walls that push the fluid too suddenly or too hard, and on recordings that end too soon.
 
 use super::moving;
+use super::reached::by_place;
 use super::shapes::length;
 use super::water::{INSTANTS, depth};
 use halfstep_scene::geometry::{Cells, Layout};
@@ -96,8 +97,7 @@ pub(super) fn pushed<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mu
     let gravity = scene.gravity_magnitude();
     let Some(depth) = depth(scene).filter(|_| gravity > 0.0) else { return };
     let waves = (gravity * depth).sqrt();
-    let mut fluid = Cells::new(AT_FLUID * scene.resolution);
-    layout.fluid.iter().for_each(|p| fluid.add(&p.position, p.position));
+    let fluid = by_place(AT_FLUID * scene.resolution, layout.fluid.iter().map(|p| p.position));
     let mut told: Vec<&Motion> = Vec::new();
     // Water that goes along is not pushed.
     let flows = layout.fluid.iter().any(|p| p.velocity != [0.0; D]);

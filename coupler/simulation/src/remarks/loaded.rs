@@ -1,9 +1,10 @@
 //! Remarks on probes of solids and of forces that measure nothing, or something else.
 
 use super::near;
+use super::reached::by_place;
 use super::shapes::{length, place};
 use super::walls::kernel_support;
-use halfstep_scene::geometry::{self, Cells, Layout, SolidPoint};
+use halfstep_scene::geometry::{self, Layout, SolidPoint};
 use halfstep_scene::{Block, Probe, ProbeKind, Scene};
 
 /// Distance from a solid's nearest particle from which on a point is not in the solid, in spacings of the solid. On the
@@ -93,8 +94,7 @@ pub(super) fn partial<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &m
             (Some(shape), _) => scene.spacing(&scene.shapes[shape]),
             (None, solid) => scene.solid_spacing(solid.unwrap_or(0)),
         };
-        let mut places = Cells::new(dx);
-        own.iter().for_each(|x| places.add(x, *x));
+        let places = by_place(dx, own.iter().copied());
         let is_there = |x: &[f64; D]| places.around(x).any(|p| near(p, x, ALIKE * dx));
         // Rows of which fluid beyond the face is within 2h.
         let rows = ((kernel_support(scene) / dx - 1.0).ceil() as i32).max(1);
@@ -118,8 +118,9 @@ pub(super) fn partial<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &m
         }
         if faces > 0 && f64::from(missed) > MISSED * f64::from(faces) {
             all.push(format!(
-                "`within` of the probe `{}` holds {held} of the {rows} rows behind the surface that feel the fluid, within 2h \
-                 of it: it measures a part of the force (a box that ends {} m behind the surface holds them all)",
+                "`within` of the probe `{}` holds {held} of the {rows} rows behind the surface that feel the fluid, \
+                 within 2h of it: it measures a part of the force (a box that ends {} m behind the surface holds them \
+                 all)",
                 probe.name,
                 length(f64::from(rows) * dx)
             ));

@@ -129,8 +129,8 @@ pub(super) fn pivots(scene: &Scene, all: &mut Vec<String>) {
         };
         if moved.count > 1 {
             all.push(format!(
-                "all {} copies of `{}` turn about the one `pivot`, {}: `repeat` does not take it along (a shape for each \
-                 has its own)",
+                "all {} copies of `{}` turn about the one `pivot`, {}: `repeat` does not take it along (a shape for \
+                 each has its own)",
                 moved.count,
                 shape.name,
                 place(&pivot[..2])
@@ -140,8 +140,8 @@ pub(super) fn pivots(scene: &Scene, all: &mut Vec<String>) {
         let beside = |geometry: &Geometry| geometry::distance(geometry, &pivot) > scene.resolution;
         if moved.translate != [0.0; 3] && !beside(&moved.geometry) && beside(&shape.geometry) {
             all.push(format!(
-                "`{}` turns about {}, where it would be without `translate`: the `pivot` is a place of the scene, which \
-                 `translate` does not take along",
+                "`{}` turns about {}, where it would be without `translate`: the `pivot` is a place of the scene, \
+                 which `translate` does not take along",
                 shape.name,
                 place(&pivot[..2])
             ));

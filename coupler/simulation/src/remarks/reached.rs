@@ -43,13 +43,18 @@ impl<const D: usize> Matter<D> {
     }
 }
 
-fn by_place<const D: usize>(dx: f64, places: impl Iterator<Item = [f64; D]>) -> Cells<[f64; D], D> {
-    let mut cells = Cells::new(dx);
+/// Places by cells of a side, m.
+pub(super) fn by_place<const D: usize>(
+    side: f64,
+    places: impl Iterator<Item = [f64; D]>,
+) -> Cells<[f64; D], D> {
+    let mut cells = Cells::new(side);
     places.for_each(|x| cells.add(&x, x));
     cells
 }
 
-fn filled<const D: usize>(cells: &Cells<[f64; D], D>, at: &[f64; D], dx: f64) -> bool {
+/// Whether one of the particles of a lattice of spacing dx fills a place.
+pub(super) fn filled<const D: usize>(cells: &Cells<[f64; D], D>, at: &[f64; D], dx: f64) -> bool {
     cells.around(at).any(|x| near(x, at, FILLED * dx))
 }
 

@@ -1,7 +1,7 @@
 //! Remarks on water that flows out of the scene at once, over a rim or at a side that nothing closes.
 
 use super::near;
-use super::reached::Matter;
+use super::reached::{Matter, by_place};
 use super::shapes::length;
 use super::water::falls;
 use halfstep_scene::geometry::{self, FluidPoint, Layout};
@@ -81,8 +81,7 @@ fn under_a_lid(scene: &Scene, (down, way): (usize, f64), (axis, side): (usize, u
 /// Whether walls are beside at least half as many of a shape's particles as it is wide.
 fn stands<const D: usize>(scene: &Scene, layout: &Layout<D>, shape: usize, down: usize) -> bool {
     let reach = 1.5 * scene.resolution;
-    let mut walls = geometry::Cells::new(reach);
-    layout.wall.iter().for_each(|w| walls.add(&w.position, w.position));
+    let walls = by_place(reach, layout.wall.iter().map(|w| w.position));
     let own = layout.fluid.iter().filter(|p| p.shape as usize == shape);
     let beside = own.filter(|p| walls.around(&p.position).any(|w| near(w, &p.position, reach))).count();
     let block = geometry::bounding_box(&scene.shapes[shape], scene);

@@ -211,7 +211,8 @@ fn a_gauge_beside_a_body_that_floats() {
 fn an_angle_that_a_rail_keeps() {
     let angle = |turns: &str| {
         let joint = format!(
-            "[[solid.joints]]\nname = \"rail\"\nkind = \"rail\"\nbody = \"hull\"\nat = [0.2, 0.2]\naxis = [0.0, 1.0]\n{turns}"
+            "[[solid.joints]]\nname = \"rail\"\nkind = \"rail\"\nbody = \"hull\"\nat = [0.2, 0.2]\naxis = [0.0, \
+             1.0]\n{turns}"
         );
         let probe = "[[probe]]\nname = \"pitch\"\nkind = \"body-angle\"\nbody = \"hull\"\n";
         rigid(
@@ -229,8 +230,8 @@ fn an_angle_that_a_rail_keeps() {
 fn a_window_without_rows() {
     let metric = |from: f64, to: f64| {
         let lines = format!(
-            "[[probe]]\nname = \"f\"\nkind = \"front\"\n[[metric]]\nname = \"m\"\nprobe = \"f.x\"\nkind = \"mean\"\nfrom = \
-             {from}\nto = {to}\n"
+            "[[probe]]\nname = \"f\"\nkind = \"front\"\n[[metric]]\nname = \"m\"\nprobe = \"f.x\"\nkind = \
+             \"mean\"\nfrom = {from}\nto = {to}\n"
         );
         water("[output]\nprobe_interval = 0.01", &format!("{WATER}{TANK}{lines}"))
     };

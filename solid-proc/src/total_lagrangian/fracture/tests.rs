@@ -5,6 +5,8 @@ use halfstep_sph::lane::Isa;
 use halfstep_wire::half_step::{HalfStep, Stage};
 use halfstep_wire::state::State;
 
+mod cantilevers;
+
 /// Runs a solid alone and keeps its ledger.
 struct Run<const D: usize> {
     model: TotalLagrangian<D>,
@@ -167,147 +169,6 @@ fn a_bar_of_a_turned_lattice() {
             assert!((0.9..1.4).contains(&taken), "{dx} {angle}: {taken}");
         }
     }
-}
-
-/// A cantilever that a slowly growing traction at its tip bends: E = 1 GPa, f_t = 1 MPa, 40 mm thick.
-#[derive(Clone, Copy)]
-struct Cantilever {
-    /// m.
-    length: f64,
-    /// Particles across.
-    across: f64,
-    /// t f_t² / (E G_f). The band holds E' G_f / f_t² apart: below `across`.
-    brittleness: f64,
-    /// In which the load grows to 1.3 times that of beam theory, s.
-    ramp: f64,
-    /// Of the lattice, degrees.
-    angle: f64,
-    /// It begins with the velocity of a beam whose load grows, so it does not swing.
-    glides: bool,
-}
-
-const BEAM: Cantilever =
-    Cantilever { length: 0.32, across: 5.0, brittleness: 4.5, ramp: 0.16, angle: 0.0, glides: false };
-
-impl Cantilever {
-    const THICKNESS: f64 = 0.04;
-    /// Load at the end of the ramp over that of beam theory.
-    const MOST: f64 = 1.3;
-
-    fn dx(&self) -> f64 {
-        Self::THICKNESS / self.across
-    }
-
-    /// Out of a lattice that covers more, where it is turned.
-    fn text(&self) -> String {
-        let (dx, length, t) = (self.dx(), self.length, Self::THICKNESS);
-        let energy = t * 1e12 / (1e9 * self.brittleness);
-        // The traction with which beam theory has f_t at the root: V (L - dx/2) = f_t t² / 6, V = traction t.
-        let traction = Self::MOST * 1e6 * t / (6.0 * (length - 0.5 * dx));
-        let (behind, tip) = (4.0 * dx, length - dx);
-        let keys = format!(
-            "clamp = {{ min = [-{behind}, 0.0], max = [0.0, {t}] }}\n\
-             load = {{ within = {{ min = [{tip}, 0.0], max = [{length}, {t}] }}, traction = [0.0, {traction}], \
-             ramp = {} }}\n",
-            self.ramp
-        );
-        let beam = "[[shape]]\nname = \"beam\"\nphase = \"solid\"\n";
-        let text = solid(dx, 0.0, &strength_and_energy(1e6, energy));
-        if self.angle == 0.0 {
-            return text
-                + beam
-                + &format!("box = {{ min = [-{behind}, 0.0], max = [{length}, {t}] }}\n{keys}");
-        }
-        let far = 10.0 * length;
-        [
-            ([-far, -far], [far, 0.0]),
-            ([-far, t], [far, far]),
-            ([-far, -far], [-behind, far]),
-            ([length, -far], [far, far]),
-        ]
-        .iter()
-        .enumerate()
-        .fold(text, |text, (k, (min, max))| {
-            text + &format!(
-                "[[shape]]\nname = \"void-{k}\"\nphase = \"void\"\nbox = {{ min = {min:?}, max = {max:?} }}\n"
-            )
-        }) + beam
-            + &format!(
-                "box = {{ min = [{}, {}], max = [{}, {}] }}\nrotate = {{ angle = {}, about = [0.0, 0.0] }}\n{keys}",
-                -0.3 * length,
-                -0.8 * length,
-                1.1 * length,
-                0.4 * length,
-                self.angle
-            )
-    }
-
-    /// The load at the first damage and at the cut through half of the thickness, over that of beam theory.
-    fn broken(&self) -> [f64; 2] {
-        let mut run = Run::<2>::of(&self.text());
-        let (t, dx) = (Self::THICKNESS, self.dx());
-        // Whole cells carry the load: in a turned lattice more or less of them than the box is long.
-        let places = run.model.particles().position.to_vec();
-        let loaded: Vec<f64> = places.iter().map(|x| x[0]).filter(|x| *x > self.length - dx).collect();
-        let arm = loaded.iter().sum::<f64>() / loaded.len() as f64;
-        let share = loaded.len() as f64 * dx * arm / (t * (self.length - 0.5 * dx));
-        let rate = Self::MOST * share / self.ramp;
-        if self.glides {
-            // w = V x² (3 a - x) / (6 E I) with V a = f_t t² / 6.
-            let force = rate * 1e6 * t * t / (6.0 * arm) / (6.0 * 1e9 * t.powi(3) / 12.0);
-            for (p, [x, y]) in places.into_iter().enumerate() {
-                let (slot, x) = (run.model.slot_of[p] as usize, x.clamp(0.0, self.length));
-                run.model.now.velocity[0][slot] = -(y - 0.5 * t) * force * 3.0 * x * (2.0 * arm - x);
-                run.model.now.velocity[1][slot] = force * x * x * (3.0 * arm - x);
-            }
-        }
-        while run.model.summary().energy == 0.0 {
-            run.step();
-        }
-        let first = rate * run.time;
-        while run.model.summary().area < 0.5 * t {
-            assert!(run.time < self.ramp, "it holds");
-            run.step();
-        }
-        let both = [first, rate * run.time];
-        let Self { length, across, brittleness, ramp, angle, glides } = self;
-        println!(
-            "{length} m, {across} across, window {brittleness}, {ramp} s, {angle} degrees, glides {glides}: \
-             first damage {:.4}, cut through half {:.4}",
-            both[0], both[1]
-        );
-        both
-    }
-}
-
-#[test]
-fn a_brittle_cantilever_breaks_where_beam_theory_says() {
-    let [first, broken] = BEAM.broken();
-    assert!((first - 1.0).abs() < 0.05, "{first}");
-    assert!((broken - 1.0).abs() < 0.1, "{broken}");
-}
-
-/// Without a swing. Plane elasticity has the outermost particle at the clamp reach f_t at 0.98 (10 across) and 0.97
-/// (20) of beam theory's load: the clamp holds the section from warping. Measured: 0.965 and 0.962; the break at 0.971
-/// and 1.040. Asked for are 5 and 10 %; bands of 1 % about what is measured lie within.
-#[test]
-#[ignore = "many minutes"]
-fn finer_cantilevers_break_where_beam_theory_says() {
-    for (across, measured) in [(10.0, [0.965, 0.971]), (20.0, [0.962, 1.040])] {
-        let found = Cantilever { across, brittleness: 8.0, glides: true, ..BEAM }.broken();
-        for (found, measured) in found.into_iter().zip(measured) {
-            assert!((found / measured - 1.0).abs() < 0.01, "{across}: {found}");
-        }
-    }
-}
-
-/// A turned lattice has ragged faces and clamps: the first damage misses the 5 % of a straight one. 10 across it misses
-/// the break's 10 %, too (0.83).
-#[test]
-fn a_cantilever_of_a_turned_lattice_breaks_earlier() {
-    let [first, broken] = Cantilever { angle: 30.0, ..BEAM }.broken();
-    assert!((0.9..1.0).contains(&first), "{first}");
-    assert!((broken - 1.0).abs() < 0.1, "{broken}");
 }
 
 /// A free strip whose halves fly apart, turned by an angle about the origin.
