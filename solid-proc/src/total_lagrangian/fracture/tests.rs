@@ -5,7 +5,7 @@ use halfstep_sph::lane::Isa;
 use halfstep_wire::half_step::{HalfStep, Stage};
 use halfstep_wire::state::State;
 
-mod cantilevers;
+mod cantilever_tests;
 
 /// Runs a solid alone and keeps its ledger.
 struct Run<const D: usize> {
