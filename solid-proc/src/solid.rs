@@ -41,6 +41,8 @@ pub struct Solid<const D: usize> {
     density: f64,
     limit: f64,
     cross_pairs: u64,
+    /// Those before the sums of the present state.
+    cross_pairs_before: u64,
     sleep: Option<Sleep>,
     /// Where the scene's probes ask for energies.
     ledger: Option<SolidLedger<D>>,
@@ -92,6 +94,7 @@ impl<const D: usize> Solid<D> {
             taken: 1,
             density: material.map_or(1.0, |s| s.density),
             cross_pairs: 0,
+            cross_pairs_before: 0,
             ledger,
         }
     }
@@ -112,7 +115,11 @@ impl<const D: usize> State for Solid<D> {
         fields.small_count("sub_steps", &mut self.taken)?;
         // That of the last step's end: contacts that were listed anew may have another.
         fields.real("sub_step_limit", &mut self.limit)?;
-        fields.count("cross_pairs", &mut self.cross_pairs)?;
+        // The sums of the state are evaluated again.
+        fields.count("cross_pairs", &mut self.cross_pairs_before)?;
+        if fields.loading() {
+            self.cross_pairs = self.cross_pairs_before;
+        }
         if let Some(sleep) = &mut self.sleep {
             fields.part("sleep", sleep)?;
         }
@@ -163,6 +170,7 @@ impl<const D: usize> Role for Solid<D> {
 
     fn publish(&mut self, _peers: &[Peer], out: &mut Vec<StateRecord>) -> u64 {
         out.clear();
+        self.cross_pairs_before = self.cross_pairs;
         self.model.records(self.model.interface_set(), out);
         0
     }

@@ -25,6 +25,8 @@ pub(crate) struct Walls<const D: usize> {
     id: Vec<u32>,
     position: Vectors<D>,
     velocity: Vectors<D>,
+    /// Of the surface beside that, by number of the wall particle, m/s.
+    belt: Vec<[f64; D]>,
     rows: Rows<D>,
     /// Of the rows, m.
     height: f64,
@@ -98,6 +100,7 @@ impl<const D: usize> Walls<D> {
             id: (0..n as u32).collect(),
             position: vectors(n),
             velocity: vectors(n),
+            belt: points.iter().map(|p| p.velocity).collect(),
             rows: Rows::default(),
             height,
             moving: Moving::new(&points, scene),
@@ -207,13 +210,19 @@ impl<const D: usize> Walls<D> {
             let apart = |d: usize| solid.position[d][slot] - self.position[d][j as usize];
             (0..D).map(|d| apart(d).powi(2)).sum::<f64>() < solid.spacing * solid.spacing
         };
-        let count = self.neighbours.of(slot / LANES).iter().filter(touches).count() as f64;
+        let count = self.neighbours.of(slot).iter().filter(touches).count() as f64;
         (count * solid.repulsion, count * solid.dashpot())
     }
 
-    /// Power of walls that move on all solid particles, in the state that was evaluated last, over a particle's mass,
-    /// W/kg. `id` are the numbers of the solid's slots.
-    pub(crate) fn power(&self, isa: Isa, solid: Touching<'_, D>, id: &[u32]) -> f64 {
+    /// Power of walls that move on the solid's particles, in the state that was evaluated last, over a particle's mass,
+    /// W/kg. `id` are the numbers of the solid's slots, `free` is the part of a particle that no clamp holds.
+    pub(crate) fn power(
+        &self,
+        isa: Isa,
+        solid: Touching<'_, D>,
+        id: &[u32],
+        free: impl Fn(u32) -> f64,
+    ) -> f64 {
         if self.moving.is_none() {
             return 0.0;
         }
@@ -221,7 +230,23 @@ impl<const D: usize> Walls<D> {
         let mut sums = vec![Power::default(); self.neighbours.fours()];
         pair::pass(isa, &law, &self.neighbours, &mut sums);
         let real = (0..id.len()).filter(|&slot| id[slot] != PADDING);
-        real.map(|slot| sums[slot / LANES].0.0[slot % LANES]).sum()
+        real.map(|slot| free(id[slot]) * sums[slot / LANES].0.0[slot % LANES]).sum()
+    }
+
+    /// Velocity of the surface that pushes the solid particle at a slot, m/s: that of its particles by their overlap.
+    pub(crate) fn velocity_at(&self, solid: Touching<'_, D>, slot: usize) -> [f64; D] {
+        let (mut sum, mut weights) = ([0.0; D], 0.0);
+        for &j in self.neighbours.of(slot) {
+            let j = j as usize;
+            let apart = |d: usize| solid.position[d][slot] - self.position[d][j];
+            let overlap = solid.spacing - (0..D).map(|d| apart(d).powi(2)).sum::<f64>().sqrt();
+            if overlap > 0.0 && self.id[j] != PADDING {
+                let belt = self.belt[self.id[j] as usize];
+                sum = std::array::from_fn(|d| sum[d] + overlap * (self.velocity[d][j] + belt[d]));
+                weights += overlap;
+            }
+        }
+        if weights > 0.0 { sum.map(|v| v / weights) } else { sum }
     }
 
     /// Acceleration of the solid particle at a slot, m/s².

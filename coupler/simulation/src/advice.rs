@@ -140,7 +140,7 @@ mod tests {
         assert!(advised(&scene, 1e-5, 1e-5, &dense).contains("solid.youngs_modulus"));
         let mut brittle = scene;
         let ModelKeys::TotalLagrangian(keys) = &mut brittle.solids[0].model else { panic!("a plate") };
-        keys.fracture = Some(Fracture { strength: 1e5, energy: 10.0 });
+        keys.fracture = Some(Fracture { strength: 1e5, energy: 10.0, friction: 0.0 });
         assert!(advised(&brittle, 1e-5, 1e-5, &dense).contains("raise solid.fracture.energy"));
     }
 }

@@ -60,6 +60,8 @@ macro_rules! effect_names {
             SideFriction "side-friction",
             /// Cracks in the total-Lagrangian solid.
             Fracture "fracture",
+            /// Friction between fragments, crack faces and walls.
+            FragmentFriction "fragment-friction",
         }
     };
 }

@@ -63,6 +63,8 @@ parts! {
     SideFriction "side-friction",
     /// Given by fracture: what damage and cuts of pairs take.
     Fracture "fracture",
+    /// Given by friction between fragments, crack faces and walls.
+    FragmentFriction "fragment-friction",
     /// Given by tractions that the scene prescribes.
     Loads "loads",
     /// Given by contact with walls, beside the work of their motion.
@@ -115,7 +117,7 @@ const FLUID: [EnergyPart; 18] = {
     ]
 };
 
-const SOLID: [EnergyPart; 16] = {
+const SOLID: [EnergyPart; 17] = {
     use EnergyPart::*;
     [
         Kinetic,
@@ -126,6 +128,7 @@ const SOLID: [EnergyPart; 16] = {
         Relaxation,
         SideFriction,
         Fracture,
+        FragmentFriction,
         Loads,
         WallContact,
         MovingWalls,

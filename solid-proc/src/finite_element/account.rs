@@ -27,6 +27,12 @@ impl<const D: usize> FiniteElement<D> {
         0.5 * self.mass / nodes.len() as f64 * nodes.iter().map(|&node| square(node)).sum::<f64>()
     }
 
+    /// Part of a cell's nodes that no clamp holds.
+    pub(super) fn free_part(&self, p: u32) -> f64 {
+        let nodes = self.mesh.of(p as usize);
+        nodes.iter().filter(|&&node| !self.clamped[node as usize]).count() as f64 / nodes.len() as f64
+    }
+
     /// The same where account is kept.
     pub(super) fn accounted_kinetic_energy(&self) -> Option<f64> {
         self.keeps_account().then(|| self.nodal_kinetic_energy())
@@ -54,7 +60,8 @@ impl<const D: usize> FiniteElement<D> {
         }
         if let Some(contact) = &self.contact {
             contact.wall_accelerations(|id, a| add_to_nodes(&self.mesh, &mut sinks.walls, id, a));
-            sinks.moving_walls = self.mass * contact.power_of_walls(self.isa, &self.material);
+            sinks.moving_walls =
+                self.mass * contact.power_of_walls(self.isa, &self.material, |id| self.free_part(id));
         }
         let inner = |(node, _): &(usize, _)| {
             let (all, walls) = (vector(&self.inner, *node as u32), vector(&sinks.walls, *node as u32));

@@ -170,7 +170,8 @@ fn a_wall_that_holds_values_pushes_and_pulls() {
 #[test]
 fn springs_of_walls_shorten_the_sub_step() {
     let floor = "shape=[{name=\"block\",phase=\"solid\",box={min=[0.0,0.0],max=[0.2,0.15]}},\
-                 {name=\"floor\",phase=\"wall\",box={min=[-0.1,-0.05],max=[0.3,0.0]}}]";
+                 {name=\"floor\",phase=\"wall\",box={min=[0.15,-0.05],max=[0.3,0.0]}}]";
+    // The wall is below the right end of the block: the first particles touch nothing.
     let mut solid = moving(&[floor], |_| [0.0, 0.0]);
     let load = Load::none(solid.particles().len());
     let step = |solid: &mut Hypoelastic<2>| {

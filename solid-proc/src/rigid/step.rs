@@ -50,6 +50,8 @@ pub(super) struct Kick {
     pub(super) pushes: Vec<(usize, Vec3, Vec3)>,
     /// Rows of the springs, each with the whole force along it and the damper's part.
     pub(super) springs: Vec<(Row, f64, f64)>,
+    /// Work of what is driven through the joints that hold against dampers, J.
+    driven: f64,
 }
 
 /// Bodies, what holds them, and where they are.
@@ -126,8 +128,9 @@ impl System {
         // What joints hold gives way to a damper as they let it, with the velocity that they leave it.
         let held = if late.is_empty() { Vec::new() } else { self.joint_rows() };
         let factors = Factors::of(&held, &self.bodies, &self.poses);
+        let mut driven = 0.0;
         for (row, force, damper, damping) in &mut late {
-            self.hold(&held, &factors);
+            driven += self.hold(&held, &factors);
             let mut joints: Vec<f64> =
                 held.iter().map(|joint| joint.response(row, &self.bodies, &self.poses)).collect();
             let pushed = joints.clone();
@@ -139,21 +142,23 @@ impl System {
             *force += *damper;
         }
         if !late.is_empty() {
-            self.hold(&held, &factors);
+            driven += self.hold(&held, &factors);
         }
         let springs = springs.into_iter().map(|(row, force, damper, _)| (row, force, damper)).collect();
-        Kick { dt, pushes, springs }
+        Kick { dt, pushes, springs, driven }
     }
 
-    /// Impulses of joints that leave no velocity along their rows.
-    fn hold(&mut self, rows: &[Row], factors: &Factors) {
+    /// Impulses of joints that leave no velocity along their rows. Returns the work of what is driven through them, J.
+    fn hold(&mut self, rows: &[Row], factors: &Factors) -> f64 {
         let mut impulses: Vec<f64> = rows.iter().map(|row| -row.rate(&self.bodies, &self.poses)).collect();
         factors.solve(&mut impulses);
         let from = self.poses.clone();
+        let mut driven = 0.0;
         for (row, &impulse) in rows.iter().zip(&impulses) {
             row.push(&self.bodies, &mut self.poses, impulse);
-            self.book_joint(row, impulse, &from);
+            driven += self.book_joint(row, impulse, &from);
         }
+        driven
     }
 
     /// Impacts of the present state. Those that approach bounce together, and what they push against others bounces in
@@ -317,7 +322,7 @@ impl System {
         self.book_kick(&kick);
         let work = self.work(&kick, &self.poses);
         self.poses = end;
-        self.book_contacts(&met, self.kinetic_energy() - drifting - work);
+        self.book_contacts(&met, self.kinetic_energy() - drifting - kick.driven - work);
         self.part::<D>(&touches);
         self.book_driven(&before);
     }

@@ -536,9 +536,20 @@ fn the_books_close() {
     let spring = "contact = { friction = 0.2, restitution = 0.3 }\n\
                   joints = [{ name = \"k\", kind = \"spring\", body = \"box\", with = \"plate\", at = [0.0, 0.1], \
                   to = [0.0, 0.3], stiffness = 500.0, damping = 5.0 }]";
-    for (keys, shapes) in
-        [(spring, BOX.to_owned() + moved), ("contact = { friction = 0.2 }", BOX.to_owned() + moved)]
-    {
+    // Guided by the plate, with a damper, and bouncing on a floor. The plate begins at rest: a joint that is torn along
+    // at once is an impact.
+    let rail = "contact = { friction = 0.2, restitution = 0.3 }\n\
+                joints = [{ name = \"r\", kind = \"rail\", body = \"box\", with = \"plate\", at = [0.1, 0.05], \
+                axis = [0.2, 1.0], turns = true, damping = 5.0 }]";
+    let guided = "[[shape]]\nname = \"plate\"\nphase = \"wall\"\nbox = { min = [-5.0, -9.0], max = [9.0, -8.0] }\n\
+                  motion = { amplitude = [0.02, 0.03], period = 0.5, ramp = 0.5 }\n\
+                  [[shape]]\nname = \"floor\"\nphase = \"wall\"\nbox = { min = [-5.0, -1.0], max = [9.0, -0.05] }\n\
+                  contact = true\n";
+    for (keys, shapes) in [
+        (spring, BOX.to_owned() + moved),
+        ("contact = { friction = 0.2 }", BOX.to_owned() + moved),
+        (rail, BOX.to_owned() + guided),
+    ] {
         let mut model = build::<2>(&scene(keys, &shapes));
         let load = free(&model);
         model.keep_account();

@@ -7,6 +7,7 @@ use crate::account::{self, Driven, Sinks, SubStep};
 use halfstep_sph::lane::LANES;
 use halfstep_sph::neighbours::PADDING;
 use halfstep_sph::pair;
+use std::collections::BTreeMap;
 
 impl<const D: usize> TotalLagrangian<D> {
     /// What the present sub-step gives is noted.
@@ -51,11 +52,36 @@ impl<const D: usize> TotalLagrangian<D> {
                     }
                 }
             });
-            sinks.moving_walls = self.mass * contact.power_of_walls(self.isa, &self.material);
+            sinks.moving_walls = self.mass
+                * contact.power_of_walls(self.isa, &self.material, |id| {
+                    if self.fixed.clamped[self.slot_of[id as usize] as usize] == 0.0 { 1.0 } else { 0.0 }
+                });
         }
-        let inner = |slot: usize| std::array::from_fn(|d| self.sums[slot / LANES].0[d].0[slot % LANES]);
-        sinks.driven = self.driven.iter().map(|(slot, _)| inner(*slot)).collect();
+        sinks.driven = self.inner_of_driven();
         sinks
+    }
+
+    /// What acts from inside on the slots that clamps move, m/s²: stresses, other bodies, and the faces of cracks.
+    fn inner_of_driven(&self) -> Vec<[f64; D]> {
+        let inner = |slot: usize| std::array::from_fn(|d| self.sums[slot / LANES].0[d].0[slot % LANES]);
+        let mut driven: Vec<[f64; D]> = self.driven.iter().map(|(slot, _)| inner(*slot)).collect();
+        let place: BTreeMap<usize, usize> = self.driven.iter().map(|(slot, _)| *slot).zip(0..).collect();
+        let mut add = |slot: usize, a: [f64; D]| {
+            if let Some(&k) = place.get(&slot) {
+                driven[k] = std::array::from_fn(|d| driven[k][d] + a[d]);
+            }
+        };
+        if place.is_empty() {
+            return driven;
+        }
+        if let Some(contact) = &self.contact {
+            contact.body_accelerations(|id, a| add(self.slot_of[id as usize] as usize, a));
+        }
+        for ([i, j], push) in self.face_pushes() {
+            add(i, push);
+            add(j, push.map(|a| -a));
+        }
+        driven
     }
 
     /// Notes what was given over the sub-step of this length, s, that led to the present state; `before` is what

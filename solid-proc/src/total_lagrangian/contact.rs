@@ -30,6 +30,8 @@ pub(crate) struct Contact<const D: usize> {
     position: Vectors<D>,
     velocity: Vectors<D>,
     body: Vec<f64>,
+    /// Whether a clamp holds it, by particle number.
+    clamped: Vec<bool>,
     /// Positions at the last sort.
     pub(super) listed: Vectors<D>,
     rows: Rows<D>,
@@ -89,6 +91,7 @@ impl<const D: usize> Contact<D> {
             position: std::array::from_fn(|d| column(&|p| p.position[d])),
             velocity: vectors(n),
             body: id.iter().map(|&p| f64::from(body[p as usize])).collect(),
+            clamped: layout.solid.iter().map(|p| p.clamped).collect(),
             listed: vectors(0),
             rows: Rows::default(),
             list: ClusterList::new(isa),
@@ -238,13 +241,13 @@ impl<const D: usize> Contact<D> {
             pair::pass(isa, &law, &self.list, &mut self.sums);
         }
         if let Some(mut walls) = self.walls.take() {
-            walls.act(isa, self.touching(solid));
+            walls.act(isa, self.touching_solid(solid));
             self.walls = Some(walls);
         }
     }
 
     /// The particles as walls see them.
-    fn touching(&self, solid: &Solid) -> Touching<'_, D> {
+    fn touching_solid(&self, solid: &Solid) -> Touching<'_, D> {
         Touching {
             position: &self.position,
             velocity: &self.velocity,
@@ -256,15 +259,27 @@ impl<const D: usize> Contact<D> {
     /// Calls `add` with each particle's number and its acceleration by contacts, m/s².
     pub(crate) fn accelerations(&self, mut add: impl FnMut(u32, [f64; D])) {
         for slot in (0..self.id.len()).filter(|&s| self.id[s] != PADDING) {
-            let mut a = [0.0; D];
-            if self.several {
-                a = self.sums[slot / LANES].force.map(|f| f.0[slot % LANES] * self.stiffness / self.mass);
-            }
+            let mut a = self.by_bodies(slot);
             if let Some(walls) = &self.walls {
                 let push = walls.acceleration(slot);
                 a = std::array::from_fn(|d| a[d] + push[d]);
             }
             add(self.id[slot], a);
+        }
+    }
+
+    /// Acceleration of the particle at a slot by other bodies, m/s².
+    fn by_bodies(&self, slot: usize) -> [f64; D] {
+        if !self.several {
+            return [0.0; D];
+        }
+        self.sums[slot / LANES].force.map(|f| f.0[slot % LANES] * self.stiffness / self.mass)
+    }
+
+    /// Calls `add` with each particle's number and its acceleration by other bodies, m/s².
+    pub(crate) fn body_accelerations(&self, mut add: impl FnMut(u32, [f64; D])) {
+        for slot in (0..self.id.len()).filter(|&s| self.id[s] != PADDING) {
+            add(self.id[slot], self.by_bodies(slot));
         }
     }
 
@@ -276,38 +291,79 @@ impl<const D: usize> Contact<D> {
         }
     }
 
-    /// Power of walls that move on the solid, over a particle's mass, W/kg.
-    pub(crate) fn power_of_walls(&self, isa: Isa, solid: &Solid) -> f64 {
-        self.walls.as_ref().map_or(0.0, |walls| walls.power(isa, self.touching(solid), &self.id))
+    /// Power of walls that move on the solid, over a particle's mass, W/kg; `free` is the part of a particle that no
+    /// clamp holds.
+    pub(crate) fn power_of_walls(&self, isa: Isa, solid: &Solid, free: impl Fn(u32) -> f64) -> f64 {
+        let power = |walls: &Walls<D>| walls.power(isa, self.touching_solid(solid), &self.id, free);
+        self.walls.as_ref().map_or(0.0, power)
     }
 
     /// What contacts add to the square of a particle's highest frequency, 1/s², and its damping by walls, 1/s: the
     /// largest of any particle in the state that was evaluated last.
     pub(crate) fn stiffness(&self, solid: &Solid) -> (f64, f64) {
         let (mut springs, mut damping) = (0.0_f64, 0.0_f64);
-        for slot in (0..self.id.len()).filter(|&s| self.id[s] != PADDING) {
-            // The other particle gives way, too.
-            let bodies = 2.0 * self.stiffness / self.mass * self.touched(slot) as f64;
+        let free = |slot: &usize| self.id[*slot] != PADDING && !self.held(*slot);
+        for slot in (0..self.id.len()).filter(free) {
+            let bodies = self.stiffness / self.mass * self.touched(slot) as f64;
             let walls = self.walls.as_ref();
             let (spring, viscous) =
-                walls.map_or((0.0, 0.0), |walls| walls.stiffness(self.touching(solid), slot));
+                walls.map_or((0.0, 0.0), |walls| walls.stiffness(self.touching_solid(solid), slot));
             springs = springs.max(bodies + spring);
             damping = damping.max(viscous);
         }
         (springs, damping)
     }
 
-    /// Number of particles of other bodies that push a particle.
+    /// A clamp holds the particle at a slot.
+    fn held(&self, slot: usize) -> bool {
+        self.clamped.get(self.id[slot] as usize).copied().unwrap_or(false)
+    }
+
+    /// Number of particles of other bodies that push a particle; those that give way count twice.
     fn touched(&self, slot: usize) -> usize {
-        if !self.several || self.sums[slot / LANES].square.0[slot % LANES] == 0.0 {
+        if !self.pushed(slot) {
             return 0;
         }
-        let pushes = |&&j: &&u32| {
+        let count = |&j: &u32| {
             let j = j as usize;
             let r2: f64 = (0..D).map(|d| (self.position[d][slot] - self.position[d][j]).powi(2)).sum();
-            self.body[j] != self.body[slot] && r2 < self.spacing * self.spacing
+            let pushes = self.body[j] != self.body[slot] && r2 < self.spacing * self.spacing;
+            if pushes { 2 - usize::from(self.held(j)) } else { 0 }
         };
-        self.list.of(slot).iter().filter(pushes).count()
+        self.list.of(slot).iter().map(count).sum()
+    }
+
+    /// Calls `visit` with particles of two bodies that push each other, the lower number first, their x_ij / r, and the
+    /// acceleration that either gets, m/s².
+    pub(super) fn touching(&self, mut visit: impl FnMut([u32; 2], [f64; D], f64)) {
+        for slot in (0..self.id.len()).filter(|&slot| self.id[slot] != PADDING && self.pushed(slot)) {
+            for &j in self.list.of(slot) {
+                let j = j as usize;
+                let apart: [f64; D] = std::array::from_fn(|d| self.position[d][slot] - self.position[d][j]);
+                let r = apart.iter().map(|x| x * x).sum::<f64>().sqrt();
+                let other = self.id[j] != PADDING && self.id[slot] < self.id[j];
+                if other && self.body[j] != self.body[slot] && r > 0.0 && r < self.spacing {
+                    let push = (self.spacing - r) * self.stiffness / self.mass;
+                    visit([self.id[slot], self.id[j]], apart.map(|x| x / r), push);
+                }
+            }
+        }
+    }
+
+    /// Calls `visit` with particles that walls push, the acceleration, m/s², and the velocity of the surface, m/s.
+    pub(super) fn touching_walls(&self, solid: &Solid, mut visit: impl FnMut(u32, [f64; D], [f64; D])) {
+        let Some(walls) = &self.walls else { return };
+        for slot in (0..self.id.len()).filter(|&s| self.id[s] != PADDING) {
+            let push = walls.acceleration(slot);
+            if push != [0.0; D] {
+                visit(self.id[slot], push, walls.velocity_at(self.touching_solid(solid), slot));
+            }
+        }
+    }
+
+    /// Particles of other bodies push the particle at a slot.
+    fn pushed(&self, slot: usize) -> bool {
+        self.several && self.sums[slot / LANES].square.0[slot % LANES] != 0.0
     }
 
     /// Energy in the contacts between bodies, J.

@@ -12,6 +12,7 @@ pub(crate) const EFFECTS: OwnEffects = OwnEffects {
             "only the total-Lagrangian solid has a strain that Maxwell arms could follow",
         ),
         (EffectName::Fracture, "only the total-Lagrangian solid breaks"),
+        (EffectName::FragmentFriction, "only the total-Lagrangian solid breaks"),
     ],
     derive,
 };
@@ -20,6 +21,12 @@ fn derive(scene: &Scene, solid: usize, effect: EffectName) -> Derived {
     match effect {
         EffectName::Relaxation => relaxation(scene, solid),
         EffectName::Fracture => fracture(scene, solid),
+        EffectName::FragmentFriction => match scene.solids.get(solid).and_then(|solid| solid.fracture()) {
+            Some(keys) if keys.friction > 0.0 => {
+                Derived::On(format!("solid.fracture.friction: {}", keys.friction))
+            }
+            _ => Derived::Impossible("solid.fracture has no friction".into()),
+        },
         _ if turns(scene, solid) => {
             Derived::Impossible("a clamp turns, and clamps at faces know no rotation".into())
         }

@@ -159,6 +159,7 @@ impl<const D: usize> TotalLagrangian<D> {
         if let Some(contact) = self.contact.take() {
             self.contact = Some(self.touch(contact));
         }
+        self.note_rubbing();
     }
 
     /// The artificial viscosity of the present velocities.
@@ -200,7 +201,10 @@ impl<const D: usize> TotalLagrangian<D> {
         let evaluation = |model: &mut Self| fastest(|| model.evaluate(0.0));
         let mut costs = Costs::default();
         // Damage does not grow where it has grown: it is looked for only.
-        self.fracture.iter_mut().for_each(|fracture| fracture.accept(true));
+        self.fracture.iter_mut().for_each(|fracture| {
+            fracture.leave_n();
+            fracture.accept(true);
+        });
         let whole = evaluation(self);
         let mut note = |effect: EffectName, without: f64| {
             costs.effects[effect as usize] = (1.0 - without / whole).max(0.0);
@@ -228,8 +232,13 @@ impl<const D: usize> TotalLagrangian<D> {
             note(EffectName::Relaxation, evaluation(self));
             self.arms = arms;
         }
+        if let Some(friction) = self.fracture.as_mut().and_then(Fracture::take_friction) {
+            note(EffectName::FragmentFriction, evaluation(self));
+            self.fracture.iter_mut().for_each(|fracture| fracture.put_friction(friction));
+        }
         if let Some(mut fracture) = self.fracture.take() {
             note(EffectName::Fracture, evaluation(self));
+            fracture.return_to_n();
             fracture.accept(false);
             self.fracture = Some(fracture);
         }

@@ -84,7 +84,8 @@ impl Law {
         let in_plane = tensor::determinant(f);
         match self.plane {
             Plane::Strain => in_plane,
-            Plane::Stress => in_plane * self.across(f, in_plane).sqrt(),
+            // Stretched farther than to nothing across its plane, it has no volume.
+            Plane::Stress => in_plane * self.across(f, in_plane).max(0.0).sqrt(),
         }
     }
 
@@ -262,6 +263,17 @@ mod tests {
             let pressure = space.cauchy(&full, full.determinant()).pressure;
             assert!((law.cauchy(&f, j).pressure - pressure).abs() < 1e-14);
         }
+    }
+
+    /// F_zz² = 1 - 2 lambda / (lambda + 2 mu) tr E, with lambda = 2, mu = 1 negative beyond tr E = 1: no volume is
+    /// left, which is out of bounds, and no NaN.
+    #[test]
+    fn a_sheet_that_is_stretched_to_nothing_has_no_volume() {
+        let law = Law { plane: Plane::Stress, ..law(Material::StVenantKirchhoff) };
+        let stretched = |trace: f64| law.volume_ratio(&(Matrix2::identity() * (1.0 + trace).sqrt()));
+        assert!((stretched(0.75) - 1.75 * 0.5).abs() < 1e-14);
+        assert_eq!(stretched(1.25), 0.0);
+        assert!(law.volume_ratio(&Matrix2::from_element(f64::NAN)).is_nan());
     }
 
     #[test]

@@ -287,6 +287,7 @@ impl<const D: usize> TotalLagrangian<D> {
                 contact.set_time(time + f64::from(k) * each);
             }
             self.kick(0.5 * each);
+            self.rub(0.5 * each);
             let driven = self.driven_from();
             self.now.drift(each);
             self.drive(time + f64::from(k) * each);
@@ -297,6 +298,7 @@ impl<const D: usize> TotalLagrangian<D> {
                 self.open_faces();
             }
             self.note_sub_step(each, &driven);
+            self.rub(0.5 * each);
             self.kick(0.5 * each);
         }
     }
@@ -374,6 +376,7 @@ impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {
             Stage::First => {
                 self.at_n.copy_from(&self.now);
                 self.memory_at_n.copy_from(&self.memory);
+                self.fracture.iter_mut().for_each(Fracture::leave_n);
                 let (slot_of, from) = (&self.slot_of, &self.at_n.displacement);
                 self.shown_velocity.leave(|p| vector(from, slot_of[p]));
                 self.sub_step((sub_steps / 2).max(1), span, half_step.time);
@@ -382,7 +385,10 @@ impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {
                 self.now.copy_from(&self.at_n);
                 self.memory.copy_from(&self.memory_at_n);
                 self.account.iter_mut().for_each(|account| account.given.open = true);
-                self.fracture.iter_mut().for_each(|fracture| fracture.accept(true));
+                self.fracture.iter_mut().for_each(|fracture| {
+                    fracture.return_to_n();
+                    fracture.accept(true);
+                });
                 self.sub_step(sub_steps, span, half_step.time);
                 self.fracture.iter_mut().for_each(|fracture| fracture.accept(false));
                 self.account_for_loads(half_step.time + 0.5 * span);

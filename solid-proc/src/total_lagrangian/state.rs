@@ -3,6 +3,7 @@
 //! reference configuration and its pairs come from the scene, stresses and energies from the displacements.
 
 use super::contact::Contact;
+use super::fracture::Fracture;
 use super::model::TotalLagrangian;
 use crate::wall::Walls;
 use halfstep_wire::state::{Fields, State, StateError};
@@ -40,6 +41,7 @@ impl<const D: usize> State for TotalLagrangian<D> {
         self.evaluate(0.0);
         // Damping took the velocities in the middle of the last sub-step.
         self.now.acceleration = acceleration;
+        self.fracture.iter_mut().for_each(Fracture::return_to_n);
         self.pair_evaluations = evaluations;
         self.keep_gradients();
         self.show_particles();

@@ -345,6 +345,29 @@ fn a_sudden_strain_is_stiffer_and_takes_shorter_steps() {
 }
 
 #[test]
+fn a_wall_that_pushes_shortens_the_step() {
+    // The wall is below the right end of the block: the first particles touch nothing.
+    let limit = |height: f64| {
+        let shape = format!(
+            "box = {{ min = [0.0, {height}], max = [0.2, {}] }}\n[[shape]]\nname = \"floor\"\nphase = \"wall\"\n\
+             box = {{ min = [0.15, -0.04], max = [0.25, 0.0] }}\ncontact = true",
+            height + 0.05
+        );
+        let keys = ["solid.artificial_viscosity={linear=0.0,quadratic=0.0}", "numerics.solid_cfl=0.9"];
+        let body = solid(&shape, &keys);
+        (body.sub_step_limit(), body.material.pressure_wave_speed() / 0.01)
+    };
+    let ((free, _), (held, rate)) = (limit(0.005), limit(-0.001));
+    // At rest 0.9 / 0.94 of 2 / omega. One particle of the wall, 0.9 dx away, adds k / m = (c / dx)² / 2 to omega², and
+    // half of its damping 2 zeta sqrt(k / m), zeta = 0.2.
+    let part = 0.9 / 0.94;
+    let omega = ((2.0 * part / free).powi(2) + 0.5 * rate * rate).sqrt();
+    let zeta = 0.2 * rate * 0.5_f64.sqrt() / omega;
+    let expected = part * 2.0 / omega * ((1.0 + zeta * zeta).sqrt() - zeta);
+    assert!((held / expected - 1.0).abs() < 1e-12, "{held} {expected} {free}");
+}
+
+#[test]
 fn what_arms_remember_is_taken_back_with_a_stage() {
     // A step whose first stage is done twice ends with the bits of one that is not.
     let swung = |again: bool| {

@@ -5,13 +5,16 @@ use crate::keys::{Key, Table};
 use crate::section::{Range, Section};
 use serde::{Deserialize, Serialize};
 
-/// Tensile strength and fracture energy.
+/// Tensile strength, fracture energy, and friction of what is left.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Fracture {
     /// Tensile strength f_t, Pa.
     pub strength: f64,
     /// Fracture energy G_f, J/m².
     pub energy: f64,
+    /// Coulomb's coefficient of friction between fragments, crack faces and walls.
+    #[serde(default)]
+    pub friction: f64,
 }
 
 pub(super) static TABLE: Table = Table::new(
@@ -32,6 +35,12 @@ pub(super) static TABLE: Table = Table::new(
         )
         .unit("J/m2")
         .required(),
+        Key::number(
+            "friction",
+            super::FRICTION,
+            "Coulomb's coefficient between fragments, crack faces and walls.",
+        )
+        .default("0.0"),
     ],
 );
 
@@ -50,8 +59,11 @@ impl Fracture {
         if !table.is_present() {
             return None;
         }
-        let fracture =
-            Self { strength: table.number("strength", None), energy: table.number("energy", None) };
+        let fracture = Self {
+            strength: table.number("strength", None),
+            energy: table.number("energy", None),
+            friction: table.number("friction", Some(0.0)),
+        };
         table.finish();
         Some(fracture)
     }

@@ -150,7 +150,9 @@ fn fracture(section: &Section<'_>, plane: Plane, material: Material) -> Option<F
     }
     if section.node("contact").is_some() {
         let why = "the coupler holds a solid with `contact` against walls, and knows its surface at the start alone";
-        section.wrong("fracture", node, format!("cannot stand with `contact`: {why}, not what cracks open"));
+        let instead = "`friction` of `fracture` knows both";
+        let message = format!("cannot stand with `contact`: {why}, not what cracks open; {instead}");
+        section.wrong("fracture", node, message);
     }
     if (plane, material) == (Plane::Stress, Material::NeoHookean) {
         let why = "the strain across the plane would depend on the damage";

@@ -53,7 +53,7 @@ impl<const D: usize> TotalLagrangian<D> {
 
     /// Calls `visit` with the faces that touch: slots, x_ij / r, and the overlaps beside that of bodies in contact,
     /// and of these, m.
-    fn touching_faces(&self, mut visit: impl FnMut([usize; 2], [f64; D], [f64; 2])) {
+    pub(super) fn touching_faces(&self, mut visit: impl FnMut([usize; 2], [f64; D], [f64; 2])) {
         let Some(fracture) = &self.fracture else { return };
         for Face { pair, distance } in &fracture.faces {
             let r = self.distance(*pair);
@@ -69,19 +69,24 @@ impl<const D: usize> TotalLagrangian<D> {
     }
 
     /// Stiffness of a contact, N/m (2D: N/m²), as between bodies.
-    fn face_stiffness(&self) -> f64 {
+    pub(super) fn face_stiffness(&self) -> f64 {
         let modulus = self.material.density * self.material.pressure_wave_speed().powi(2);
         0.5 * modulus * self.spacing.powi(D as i32 - 2)
     }
 
-    /// Adds the accelerations of faces that touch.
-    pub(in crate::total_lagrangian) fn push_faces(&mut self) {
+    /// Accelerations of the first of two slots by faces that touch, m/s².
+    pub(in crate::total_lagrangian) fn face_pushes(&self) -> Vec<([usize; 2], [f64; D])> {
         let mut pushes = Vec::new();
         let stiffness = self.face_stiffness() / self.mass;
         self.touching_faces(|pair, along, [own, seen]| {
             pushes.push((pair, along.map(|n| n * (own - seen) * stiffness)));
         });
-        for ([i, j], push) in pushes {
+        pushes
+    }
+
+    /// Adds the accelerations of faces that touch.
+    pub(in crate::total_lagrangian) fn push_faces(&mut self) {
+        for ([i, j], push) in self.face_pushes() {
             for (slot, sign) in [(i, 1.0), (j, -1.0)] {
                 if self.is_free(slot) {
                     for d in 0..D {

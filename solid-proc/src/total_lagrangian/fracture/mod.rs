@@ -20,6 +20,7 @@
 
 mod cuts;
 mod faces;
+mod friction;
 mod growth;
 mod principal;
 mod softening;
@@ -35,6 +36,7 @@ use super::model::TotalLagrangian;
 use crate::effects::takes_part;
 use crate::model::FractureSummary;
 use faces::Face;
+use friction::Rubbing;
 use halfstep_scene::{EffectName, Fracture as Keys, Scene};
 use halfstep_sph::neighbours::PADDING;
 use halfstep_sph::tensor;
@@ -71,6 +73,12 @@ pub(super) struct Fracture<const D: usize> {
     crushed: Vec<usize>,
     /// Pairs that are cut, in the order of the cuts.
     faces: Vec<Face>,
+    /// Coulomb's coefficient of what is left; 0: it does not rub.
+    friction: f64,
+    /// What rubs in the present state, in the order in which it is slowed.
+    rubbing: Vec<Rubbing<D>>,
+    /// The same at n.
+    rubbing_at_n: Vec<Rubbing<D>>,
     /// Energy taken, J (2D: J/m).
     taken: f64,
     /// Body of each particle.
@@ -105,6 +113,12 @@ impl<const D: usize> Fracture<D> {
             damaged: Vec::new(),
             crushed: Vec::new(),
             faces: Vec::new(),
+            friction: match takes_part(scene, solid, EffectName::FragmentFriction) {
+                true => keys.friction,
+                false => 0.0,
+            },
+            rubbing: Vec::new(),
+            rubbing_at_n: Vec::new(),
             taken: 0.0,
             bodies: body.iter().max().map_or(0, |last| last + 1),
             body: body.to_vec(),

@@ -23,7 +23,8 @@ impl<const D: usize> State for Saved<'_, D> {
         fields.real("taken", &mut self.fracture.taken)?;
         fields.numbers("cuts", self.cuts)?;
         fields.reals("distances", self.distances)?;
-        fields.length("cuts", 2 * self.distances.len(), self.cuts.len())
+        fields.length("cuts", 2 * self.distances.len(), self.cuts.len())?;
+        if self.fracture.friction > 0.0 { self.fracture.rubbing_fields(fields) } else { Ok(()) }
     }
 }
 

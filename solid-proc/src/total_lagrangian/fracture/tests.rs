@@ -6,6 +6,7 @@ use halfstep_wire::half_step::{HalfStep, Stage};
 use halfstep_wire::state::State;
 
 mod cantilever_tests;
+mod friction_tests;
 
 /// Runs a solid alone and keeps its ledger.
 struct Run<const D: usize> {
