@@ -75,6 +75,8 @@ pub struct Fluid<const D: usize, X: FluidEffect<D> = ()> {
     /// What the next state publishes was decided before an interruption.
     pub(crate) published: bool,
     pub(crate) pair_evaluations: u64,
+    /// Those before the sums of the present state.
+    pub(crate) evaluations_before: u64,
     /// Where the scene's probes ask for energies.
     pub(crate) ledger: Option<FluidLedger<D>>,
 }
@@ -147,6 +149,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
                 sorted: false,
                 published: false,
                 pair_evaluations: 0,
+                evaluations_before: 0,
                 ledger: scene.keeps_energy_ledgers().then(FluidLedger::new),
             }
             .prepared(),
@@ -260,6 +263,7 @@ impl<const D: usize, X: FluidEffect<D>> Role for Fluid<D, X> {
 
     fn publish(&mut self, peers: &[Peer], out: &mut Vec<StateRecord>) -> u64 {
         out.clear();
+        self.evaluations_before = self.pair_evaluations;
         let walls = self.walls.as_ref().map_or(0.0, Walls::displacement);
         let stale = self.displacement + self.displacement.max(walls) > self.skin
             || self.coupling.as_ref().is_some_and(|c| c.is_stale(peers));

@@ -21,7 +21,8 @@ impl<const D: usize, X: FluidEffect<D>> State for Fluid<D, X> {
         fields.real("displacement", &mut self.displacement)?;
         fields.real("largest_speed", &mut self.largest_speed)?;
         fields.real("largest_acceleration", &mut self.largest_acceleration)?;
-        fields.count("pair_evaluations", &mut self.pair_evaluations)?;
+        // The sums of the state are evaluated again.
+        fields.count("pair_evaluations", &mut self.evaluations_before)?;
         if let Some(walls) = &mut self.walls {
             fields.part("walls", walls)?;
         }
@@ -54,6 +55,7 @@ impl<const D: usize, X: FluidEffect<D>> State for Fluid<D, X> {
         fit(&mut self.sums, self.fluid_list.fours(), RateSum::default());
         self.effects.resize(self.columns.slots(), self.walls.as_ref());
         self.stage = Stage::First;
+        self.pair_evaluations = self.evaluations_before;
         self.sorted = false;
         self.published = true;
         Ok(())

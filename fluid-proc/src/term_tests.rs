@@ -199,9 +199,23 @@ fn shear_flow_has_the_stress_of_its_rate<const D: usize>() {
     assert_eq!(tau[0][1], tau[1][0]);
     let others = (0..D).flat_map(|a| (0..D).map(move |b| (a, b))).filter(|&(a, b)| a + b != 1 || a * b != 0);
     assert!(others.into_iter().all(|(a, b)| tau[a][b].abs() < 1e-12), "{tau:?}");
-    // A uniform stress makes no force inside.
-    let rates = c.rates((ViscousStress(&stress), ()));
-    assert!(rates[middle].0.iter().all(|a| a.abs() < 1e-10));
+}
+
+fn viscous_force_of_two_particles_by_hand<const D: usize>() {
+    // a_0 = m (s_0 + s_1) . F x_01, s = tau / rho², m = 7, x_01 = -1 along x.
+    let c = cloud(&two::<D>(0.0), 7.0);
+    let mut stress = StressTerm(vec![[[0.0; D]; D]; LANES * c.list.fours()]);
+    for (k, (normal, shear)) in [(0.5, 0.25), (0.125, 1.0)].into_iter().enumerate() {
+        let s = &mut stress.0[c.slot[k]];
+        (s[0][0], s[0][1], s[1][0]) = (normal, shear, shear);
+    }
+    let (with, without) = (c.rates((ViscousStress(&stress), ())), c.rates(()));
+    let by_stress = |k: usize, d: usize| with[k].0[d] - without[k].0[d];
+    for (d, sum) in [(0, 0.625), (1, 1.25)] {
+        assert!((by_stress(0, d) + 7.0 * sum * slope::<D>(1.0)).abs() < 1e-13, "{}", by_stress(0, d));
+        assert!((by_stress(1, d) + by_stress(0, d)).abs() < 1e-13);
+    }
+    assert!(by_stress(0, 0) > 0.0, "tension draws them together");
 }
 
 fn particle<const D: usize>() -> impl Strategy<Value = P<D>> {
@@ -326,7 +340,7 @@ macro_rules! suite {
             suite!(by hand in $D: pressure_of_two_particles_by_hand continuity_of_two_particles_by_hand
                 artificial_viscosity_of_two_particles_by_hand simple_diffusion_of_two_particles_by_hand
                 a_linear_density_is_not_diffused lone_particles_have_no_gradient
-                shear_flow_has_the_stress_of_its_rate);
+                shear_flow_has_the_stress_of_its_rate viscous_force_of_two_particles_by_hand);
             suite!(symmetries in $D: pairs_exchange_momentum a_quarter_turn_turns_the_rates
                 place_and_speed_of_the_frame_do_not_matter the_order_of_particles_does_not_matter
                 mixed_precision_rounds);

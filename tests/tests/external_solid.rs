@@ -169,7 +169,11 @@ fn a_block_that_is_not_the_scenes_is_told_of() {
             "publishes 896 particles, and its shapes have 224",
         ),
         ("\nmass =", "\nrest[:, 0] -= 0.005\nmass =", "20 particles of the fluid begin in the solid"),
-        ("mass = density", "mass = 10 * density", "a mass of 448.0000 kg/m, and its shapes 44.8000 kg/m"),
+        (
+            "mass = density",
+            "mass = 10 * density",
+            "a mass of 448.0000 kg/m, and the table of its particles 44.8000 kg/m",
+        ),
     ] {
         let lying = altered(honest, lie);
         let outcome = scene("spring-block").until(0.001).argument("--solid").argument(lying.line()).outcome();

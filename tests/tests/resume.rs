@@ -71,6 +71,7 @@ fn a_killed_run_leaves_the_files_of_one_that_was_not() {
         assert_eq!(resumed.report.steps, whole.report.steps);
         assert_eq!(resumed.report.dt, whole.report.dt);
         assert_eq!(resumed.report.audit, whole.report.audit);
+        assert_eq!(resumed.report.work.pair_evaluations, whole.report.work.pair_evaluations);
         assert_eq!(files(&dir), files(whole.dir()), "{:?}", resumed.report.resumed);
     }
 }

@@ -10,9 +10,9 @@
 //! Dissipation makes growth negative. Above [`LIMIT`] or [`SOLID_LIMIT`] for [`PATIENCE`] states the run ends: a fast
 //! blow-up leaves the bounds of a particle before that, and a particle says more.
 //!
-//! The walls of a scene must be at rest for the fluid to be judged, a solid's clamps and the walls that may push it for
-//! the solid. An external solid's energy is not known. With the phase-blind interface the fluid strains the solid as
-//! well, so both are judged as one.
+//! The walls of a scene must be at rest for the fluid to be judged, a solid's clamps, what its joints tie it to, and
+//! the walls that may push it for the solid. An external solid's energy is not known. With the phase-blind interface
+//! the fluid strains the solid as well, so both are judged as one.
 
 use halfstep_output::run_json::EnergyGrowth;
 use halfstep_scene::bounds::flow_speed;
@@ -96,14 +96,14 @@ pub struct EnergyBalance {
     /// Both phases as one.
     joint: bool,
     walls_rest: bool,
-    /// Solids whose clamps move: what that takes or gives is not counted.
+    /// Solids whose clamps or joints move: what that takes or gives is not counted.
     driven: Vec<String>,
     time: f64,
     /// Those that were judged, with phase and ledger.
     ledgers: Vec<(Name, Phase, Ledger)>,
 }
 
-/// Names of the solids with clamps that move, and of all where a wall that moves may push them.
+/// Names of the solids with clamps or joints that move, and of all where a wall that moves may push them.
 fn driven(scene: &Scene) -> Vec<String> {
     let pushed = scene.shapes.iter().any(|s| s.phase == Phase::Wall && s.contact && s.motion.is_some());
     let moves = |k: usize| {
@@ -114,7 +114,11 @@ fn driven(scene: &Scene) -> Vec<String> {
             .filter(of)
             .any(|s| s.motion.is_some() || !s.clamp_with.is_empty() || s.load.is_some())
     };
-    let solids = scene.solids.iter().enumerate().filter(|(k, _)| pushed || moves(*k));
+    let moving = |name: &str| scene.shapes.iter().any(|s| s.name == name && s.motion.is_some());
+    let tied = |k: usize| {
+        scene.solids[k].rigid().is_some_and(|keys| keys.joints.iter().any(|joint| moving(&joint.with)))
+    };
+    let solids = scene.solids.iter().enumerate().filter(|(k, _)| pushed || moves(*k) || tied(*k));
     solids.map(|(_, solid)| solid.name.clone()).collect()
 }
 
@@ -330,6 +334,28 @@ mod tests {
         };
         assert!(!of(true));
         assert!(of(false));
+    }
+
+    #[test]
+    fn a_joint_to_a_wall_that_moves_may_do_work() {
+        let of = |with: &str| {
+            let hub = format!(
+                "[solid]\nmodel = \"rigid\"\ndensity = 1000.0\n\
+                 joints = [{{ name = \"weld\", kind = \"fixed\", body = \"post\", with = \"{with}\" }}]\n\
+                 [[shape]]\nname = \"post\"\nphase = \"solid\"\nbox = {{ min = [2.0, 0.0], max = [2.4, 1.0] }}\n\
+                 [[shape]]\nname = \"hub\"\nphase = \"wall\"\ncontact = false\n\
+                 box = {{ min = [3.0, 0.0], max = [3.5, 1.0] }}\nmotion = {{ velocity = [-1.0, 0.0] }}\n\
+                 [[shape]]\nname = \"pillar\"\nphase = \"wall\"\ncontact = false\n\
+                 box = {{ min = [3.6, 0.0], max = [4.0, 1.0] }}\n"
+            );
+            let mut balance = EnergyBalance::new(&scene(&hub));
+            let (cold, hot) = (sums(0.0, 0.0), sums(0.0, 1e9));
+            balance.note(0.0, &[of_fluid(&cold), of_solid(&cold, 0.0)]);
+            let note = |_| balance.note(0.1, &[of_fluid(&cold), of_solid(&hot, 0.0)]);
+            (0..=PATIENCE).map(note).any(|told| told.is_some())
+        };
+        assert!(!of("hub"));
+        assert!(of("pillar"));
     }
 
     #[test]

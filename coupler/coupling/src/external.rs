@@ -6,7 +6,7 @@ use crate::roles::probes_of;
 pub use halfstep_interface::contact::WallContact;
 use halfstep_output::{Frame, FramePoint, FrameWriter, OutputError};
 use halfstep_scene::geometry::{self, holds, nearest};
-use halfstep_scene::{BodyQuantity, Phase, ProbeKind, Scene, Shape, Spot};
+use halfstep_scene::{BodyQuantity, ProbeKind, Scene, Shape, Spot};
 use halfstep_wire::Name;
 use halfstep_wire::frame::{body_of, mean_stress, von_mises};
 use halfstep_wire::protocol::{ForceRecord, StateRecord};
@@ -18,9 +18,13 @@ pub struct ExternalSolid {
     writer: FrameWriter,
     kinds: Vec<ProbeKind>,
     dimension: usize,
-    /// Where the scene's shapes are, and how far outside of its shape a particle may lie, m.
+    /// The scene's shapes.
     shapes: Vec<Shape>,
+    /// Place of the solid in the scene's list, and how far outside of its shape a particle may lie, m.
+    solid: usize,
     margin: f64,
+    /// Of each particle, the place of the shape that it began nearest to.
+    shape_of: Vec<Option<usize>>,
     /// The scene has it as a model that strains.
     strains: bool,
     /// By probe, the angle at the last row, rad.
@@ -39,13 +43,16 @@ impl ExternalSolid {
     /// # Errors
     /// The writer cannot start.
     pub fn new(scene: &Scene, place: usize, name: Name, folder: &Path) -> Result<Self, OutputError> {
+        let solid = place - usize::from(scene.fluid.is_some());
         Ok(Self {
             writer: FrameWriter::start(folder, name.as_str())?,
             kinds: probes_of(scene, place).map(|probe| probe.kind.clone()).collect(),
             dimension: scene.dimension,
             shapes: scene.shapes.clone(),
-            margin: 0.5 * scene.resolution,
-            strains: scene.solids[place - usize::from(scene.fluid.is_some())].rigid().is_none(),
+            solid,
+            margin: 0.5 * scene.solid_spacing(solid),
+            shape_of: Vec::new(),
+            strains: scene.solids[solid].rigid().is_none(),
             turned: vec![0.0; probes_of(scene, place).count()],
             first: Vec::new(),
             chosen: Vec::new(),
@@ -57,6 +64,7 @@ impl ExternalSolid {
     /// Takes the first records that the solid published: its reference configuration.
     pub fn begin(&mut self, records: &[StateRecord]) {
         self.first = records.iter().map(|r| r.position).collect();
+        self.shape_of = self.first.iter().map(|x| self.nearest_shape(x)).collect();
         self.choose_records();
     }
 
@@ -150,28 +158,25 @@ impl ExternalSolid {
         &self.values
     }
 
-    /// Whether a particle that began there is one of a shape.
-    fn is_of(&self, shape: &Shape, x: &[f64; 3]) -> bool {
-        geometry::distance(&shape.geometry, x) < self.margin
+    /// Place of the solid's shape that a point is in or nearest to; of several that it is in, the last.
+    fn nearest_shape(&self, x: &[f64; 3]) -> Option<usize> {
+        let own = |(_, shape): &(usize, &Shape)| shape.solid == Some(self.solid);
+        let away = |(k, shape): (usize, &Shape)| (k, geometry::distance(&shape.geometry, x));
+        let near = self.shapes.iter().enumerate().filter(own).map(away).filter(|(_, d)| *d < self.margin);
+        near.rev().min_by(|a, b| a.1.total_cmp(&b.1)).map(|(k, _)| k)
     }
 
     fn choose(&self, kind: &ProbeKind) -> Vec<usize> {
         match *kind {
             ProbeKind::Force { within, shape } | ProbeKind::Moment { within, shape, .. } => {
-                let of_shape = |x: &[f64; 3]| {
-                    let shape = shape.and_then(|shape| self.shapes.get(shape));
-                    shape.is_none_or(|shape| self.is_of(shape, x))
-                };
                 let inside = |i: &usize| {
-                    let x = &self.first[*i];
-                    within.is_none_or(|b| holds(&b, x, 0.0)) && of_shape(x)
+                    let of_shape = shape.is_none() || self.shape_of[*i] == shape;
+                    within.is_none_or(|b| holds(&b, &self.first[*i], 0.0)) && of_shape
                 };
                 (0..self.first.len()).filter(inside).collect()
             }
             ProbeKind::Body { ref body, .. } => {
-                let of_body = |shape: &&Shape| shape.phase == Phase::Solid && shape.body() == body;
-                let shapes: Vec<&Shape> = self.shapes.iter().filter(of_body).collect();
-                let inside = |i: &usize| shapes.iter().any(|shape| self.is_of(shape, &self.first[*i]));
+                let inside = |i: &usize| self.shape_of[*i].is_some_and(|k| self.shapes[k].body() == body);
                 (0..self.first.len()).filter(inside).collect()
             }
             _ => {

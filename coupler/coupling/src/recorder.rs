@@ -7,7 +7,7 @@ use crate::roles::measured_by;
 use crate::say;
 use halfstep_output::probes::Logged;
 use halfstep_output::{FirstMessage, OutputError, ProbeLog, RunReport, run_json};
-use halfstep_scene::{Phase, Scene};
+use halfstep_scene::{Phase, Scene, Solid};
 use halfstep_wire::failure::Diverged;
 use halfstep_wire::protocol::{Audit, StateHeader};
 use halfstep_wire::state::{Fields, Group, State, StateError};
@@ -97,10 +97,14 @@ impl Recorder {
             bar.set_draw_target(ProgressDrawTarget::hidden());
         }
         let now = Instant::now();
-        // Momentum is kept only where nothing outside acts: no gravity, no walls, no clamps.
+        // Momentum is kept only where nothing outside acts.
         let isolated = scene.gravity == [0.0; 3]
             && scene.frame.is_none()
-            && scene.shapes.iter().all(|s| s.phase != Phase::Wall && s.clamp.is_empty());
+            && scene.shapes.iter().all(|s| s.phase != Phase::Wall && s.clamp.is_empty())
+            && scene.shapes.iter().all(|s| s.motion.is_none() && s.load.is_none())
+            && scene.fluid.as_ref().is_none_or(|fluid| fluid.beach.is_none())
+            && scene.solids.iter().all(|s| s.side_friction == 0.0)
+            && scene.solids.iter().filter_map(Solid::rigid).all(|keys| keys.joints.is_empty());
         Self {
             log,
             order: measured_by(scene)

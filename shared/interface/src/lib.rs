@@ -226,7 +226,9 @@ impl<const D: usize> Interface<D> {
             self.fluid.load(fluid);
             self.solid.load(solid);
         }
-        if !same || self.fluid.displacement() + self.solid.displacement() > self.skin() {
+        // The solid's own list, which its spin needs, holds pairs both of which move.
+        let pairs_of_solid = self.viscous_stress.is_some() && 2.0 * self.solid.displacement() > self.skin();
+        if !same || self.fluid.displacement() + self.solid.displacement() > self.skin() || pairs_of_solid {
             let height = self.height();
             self.fluid.sort(fluid, height);
             self.solid.sort(solid, height);

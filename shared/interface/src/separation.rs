@@ -20,6 +20,9 @@ pub fn wall_separation(scene: &Scene) -> Decision {
     let solids = !scene.solids.is_empty() && scene.interface.treatment == Treatment::MovingWall;
     let derived = match scene.fluid.is_some() && (walls || solids) {
         false => Derived::Impossible("no fluid at walls or solids".into()),
+        true if scene.fluid.as_ref().is_some_and(|fluid| fluid.background_pressure > 0.0) => {
+            Derived::Off("under fluid.background_pressure walls push wherever water leaves".into())
+        }
         true if scene.has_wide_support() => Derived::On("a wide kernel thins out water that leaves".into()),
         true if scene.has_free_bodies() => {
             Derived::On("f_i that ends at dx lets water by that a free body thinned out".into())

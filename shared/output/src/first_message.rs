@@ -47,7 +47,7 @@ pub struct FirstMessage {
 impl FirstMessage {
     /// What in it is not as the scene has it, most telling first; nothing where the differences are those of meshes.
     pub fn remarks(&self, dimension: usize) -> Vec<String> {
-        let Self { name, particles, mass, scene_particles, scene_mass, .. } = self;
+        let Self { name, particles, mass, scene_particles, .. } = self;
         let unit = if dimension == 2 { "kg/m" } else { "kg" };
         let at = |x: &Option<[f64; 3]>| {
             let x = x.unwrap_or_default();
@@ -66,8 +66,8 @@ impl FirstMessage {
         let [low, high] = self.right_mass;
         if !(low * (1.0 - MASS)..=high * (1.0 + MASS)).contains(mass) {
             all.push(format!(
-                "the particles of the {name} have a mass of {mass:.4} {unit}, and its shapes {scene_mass:.4} {unit}: \
-                 each displaces as much fluid as its mass over the scene's density"
+                "the particles of the {name} have a mass of {mass:.4} {unit}, and the table of its particles {high:.4} \
+                 {unit}: each displaces as much fluid as its mass over the scene's density"
             ));
         }
         if self.empty as f64 > EMPTY * self.outer_particles as f64 {
@@ -135,7 +135,10 @@ mod tests {
         one(FirstMessage { particles: 247, ..block() }, "publishes 247 particles, and its shapes have 224");
         one(FirstMessage { particles: 161, ..block() }, "publishes 161 particles");
         // 1.02 times 44.8 are 45.7; 0.98 times 36 are 35.28.
-        one(FirstMessage { mass: 45.8, ..block() }, "a mass of 45.8000 kg/m, and its shapes 44.8000 kg/m");
+        one(
+            FirstMessage { mass: 45.8, ..block() },
+            "a mass of 45.8000 kg/m, and the table of its particles 44.8000 kg/m",
+        );
         one(FirstMessage { mass: 35.2, ..block() }, "a mass of 35.2000 kg/m");
         // 2 % of 180 are 3.6.
         let empty = FirstMessage { empty: 4, first_empty: Some([0.5, 0.25, 0.0]), ..block() };

@@ -144,9 +144,9 @@ impl Particles {
         let inverse = if moment.determinant() > FLAT * trace * trace {
             moment.try_inverse()?
         } else {
-            // One row: along it alone.
-            let along =
-                Vector2::new(moment[(0, 0)], moment[(0, 1)]) + Vector2::new(moment[(1, 0)], moment[(1, 1)]);
+            // One row: along it alone. Both columns are, and their sum may be nothing.
+            let [x, y] = [0, 1].map(|d| moment.column(d).into_owned());
+            let along = if x.norm_squared() < y.norm_squared() { y } else { x };
             let size = along.norm_squared();
             if size > 0.0 && trace > 0.0 {
                 along * along.transpose() / (size * trace)
