@@ -115,6 +115,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     loaded::in_clamps(scene, layout, &mut all);
     loaded::partial(scene, layout, &mut all);
     loaded::points(scene, layout, &mut all);
+    loads::left_behind(scene, layout, &mut all);
     loads::ramps(scene, &mut all);
     modes::cantilevers(scene, &mut all);
     solid_keys::arms(scene, &mut all);

@@ -71,7 +71,8 @@ pub fn remark(metric: &Metric, probes: &Table) -> Option<String> {
         part.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p[1]), h.max(p[1])));
     (-least > MUCH * largest.abs().max(f64::MIN_POSITIVE) || largest < 0.0).then(|| {
         format!(
-            "`{}` is the largest value of {}, {}, which goes down to {}: `peak` is not the largest in size",
+            "`{}` is the largest value of {}, {}, which goes down to {}: `peak` is not the largest in size \
+             (`trough` is the least value)",
             metric.name,
             metric.probe,
             short(largest),
@@ -110,9 +111,13 @@ fn number(metric: &Metric, curve: &Curve) -> Result<f64, Unmeasured> {
     let part = window(metric, curve)?;
     let peak =
         || part.iter().copied().reduce(|a, b| if b[1] > a[1] { b } else { a }).ok_or(Unmeasured::Empty);
+    let trough =
+        || part.iter().copied().reduce(|a, b| if b[1] < a[1] { b } else { a }).ok_or(Unmeasured::Empty);
     match metric.kind {
         MetricKind::Peak => peak().map(|p| p[1]),
         MetricKind::PeakTime => peak().map(|p| p[0]),
+        MetricKind::Trough => trough().map(|p| p[1]),
+        MetricKind::TroughTime => trough().map(|p| p[0]),
         MetricKind::FirstAbove { level } => first_above(&part, level),
         MetricKind::Mean => Ok(mean(&part)),
         MetricKind::Period { level } => period(&part, level),
@@ -251,7 +256,7 @@ mod tests {
         };
         let sags = table(&[0.0, -0.008, 1e-5, -0.005]);
         let said = "`m` is the largest value of p.x, 1.000e-5, which goes down to -0.008000: `peak` is not the largest \
-                    in size";
+                    in size (`trough` is the least value)";
         assert_eq!(remark(&metric(0.0), &sags).as_deref(), Some(said));
         assert_eq!(remark(&metric(0.0), &table(&[0.0, -0.2, 0.1])), None);
         assert!(remark(&metric(1.0), &table(&[5.0, -3.0, -2.0])).is_some_and(|said| said.contains("-2.000")));
@@ -265,6 +270,8 @@ mod tests {
         assert!((of(MetricKind::Decay { level: 0.5 }) - 0.7).abs() < 1e-3);
         assert!((of(MetricKind::PeakTime) - 0.075).abs() < 3e-3);
         assert!((of(MetricKind::Peak) - 0.5 - (-0.7_f64 * 0.075).exp()).abs() < 1e-3);
+        assert!((of(MetricKind::TroughTime) - 0.225).abs() < 3e-3);
+        assert!((of(MetricKind::Trough) - 0.5 + (-0.7_f64 * 0.225).exp()).abs() < 1e-3);
     }
 
     #[test]

@@ -80,7 +80,7 @@ pub use metric::{Metric, MetricKind, MetricReference};
 pub use motion::{
     Column, Composed, Course, Motion, Part, Placement, Solitary, Spline, Turn, WaveMaker, angle_near,
 };
-pub use parameters::WholeAngle;
+pub use parameters::{Doubtful, WholeAngle};
 pub use participant::Participant;
 pub use probe::{BodyQuantity, Probe, ProbeKind, Reference, Spot};
 pub use resources::{expected_speed, expected_speed_of_fluid, memory_available, memory_needed};
@@ -155,12 +155,9 @@ pub struct Scene {
     pub own_effects: BTreeMap<String, Switch>,
     /// Numerical parameters that are no physics.
     pub numerics: Numerics,
-    /// Names in `[parameters]` that no key needs; none in a resolved scene.
+    /// What is hardly meant in `[parameters]` and formulas; nothing in a resolved scene.
     #[serde(skip)]
-    pub unused_parameters: Vec<String>,
-    /// Sines, cosines and tangents in formulas whose angles are hardly in radians; none in a resolved scene.
-    #[serde(skip)]
-    pub whole_angles: Vec<WholeAngle>,
+    pub doubtful: Doubtful,
 }
 
 /// A named set of parameter values.

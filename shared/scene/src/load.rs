@@ -61,10 +61,9 @@ pub fn parse_with(
     for (index, text) in overrides.iter().enumerate() {
         overrides::apply(&mut root, text, index + 1, &report);
     }
-    let (unused, whole_angles) = parameters::resolve(&mut root, &report);
+    let doubtful = parameters::resolve(&mut root, &report);
     let mut draft = read::scene(&root, path, &report, own_effects);
-    draft.scene.unused_parameters = unused;
-    draft.scene.whole_angles = whole_angles;
+    draft.scene.doubtful = doubtful;
     Check { scene: &draft.scene, root: &root, report: &report }.all();
     if report.is_empty() && draft.sound_speed_auto {
         let found = resources::sound_speed(&draft.scene, &root, &report);

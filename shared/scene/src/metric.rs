@@ -29,6 +29,10 @@ pub enum MetricKind {
     Peak,
     /// Time of the largest value, s.
     PeakTime,
+    /// Least value.
+    Trough,
+    /// Time of the least value, s.
+    TroughTime,
     /// Root mean square of the difference to a curve of the literature, over that of the curve.
     Rms,
     /// Value at a time.
@@ -77,8 +81,8 @@ impl MetricKind {
     /// Unit of the number for a curve of this unit; empty for a pure number.
     pub fn unit<'u>(&self, of_curve: &'u str) -> &'u str {
         match self {
-            Self::Peak | Self::Value { .. } | Self::Mean => of_curve,
-            Self::PeakTime | Self::FirstAbove { .. } | Self::Period { .. } => "s",
+            Self::Peak | Self::Trough | Self::Value { .. } | Self::Mean => of_curve,
+            Self::PeakTime | Self::TroughTime | Self::FirstAbove { .. } | Self::Period { .. } => "s",
             Self::Decay { .. } => "1/s",
             Self::Rms => "",
         }

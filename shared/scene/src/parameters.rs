@@ -18,6 +18,8 @@ const MAX_DEPTH: usize = 30;
 const SIGNS: &str = "+-*/^()., _";
 /// Keys whose values are texts that people read.
 const TEXTS: [&str; 2] = ["label", "source"];
+/// Keys of angles in degrees.
+const DEGREES: [&str; 2] = ["rotate.angle", "lattice_angle"];
 /// Names that formulas know.
 const FUNCTIONS: [&str; 12] =
     ["sqrt", "abs", "sin", "cos", "tan", "asin", "acos", "atan", "exp", "log", "floor", "pi"];
@@ -46,7 +48,7 @@ ops_factory!(
 
 literal_matcher_from_pattern!(Numbers, r"^(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?");
 
-/// A sine, cosine or tangent in a formula whose angle is a whole number beyond half a turn.
+/// A sine, cosine or tangent in a formula whose angle is a whole or half number beyond half a turn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WholeAngle {
     /// The key of the formula.
@@ -59,10 +61,20 @@ pub struct WholeAngle {
     pub radians: f64,
 }
 
-/// Takes `[parameters]` out of a document and puts numbers in the place of all formulas. Returns the names of those
-/// that no formula of a key needs, and angles that are hardly in radians.
-pub(super) fn resolve(root: &mut Node, report: &Report) -> (Vec<String>, Vec<WholeAngle>) {
-    let nothing = || (Vec::new(), Vec::new());
+/// What is hardly meant in `[parameters]` and formulas.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Doubtful {
+    /// Parameters that no formula of a key needs.
+    pub unused: Vec<String>,
+    /// Angles that are hardly in radians.
+    pub whole_angles: Vec<WholeAngle>,
+    /// Keys of angles in degrees, with formulas that compute radians.
+    pub radians: Vec<[String; 2]>,
+}
+
+/// Takes `[parameters]` out of a document and puts numbers in the place of all formulas.
+pub(super) fn resolve(root: &mut Node, report: &Report) -> Doubtful {
+    let nothing = Doubtful::default;
     let Value::Table(top) = &mut root.value else { return nothing() };
     let table = match top.remove("parameters") {
         None => BTreeMap::new(),
@@ -73,14 +85,15 @@ pub(super) fn resolve(root: &mut Node, report: &Report) -> (Vec<String>, Vec<Who
             return nothing();
         }
     };
-    let mut parameters = Parameters { table: &table, known: BTreeMap::new(), angles: Vec::new(), report };
+    let known = BTreeMap::new();
+    let mut parameters = Parameters { table: &table, known, angles: Vec::new(), radians: Vec::new(), report };
     parameters.replace(root, "");
     let unused: Vec<String> =
         table.keys().filter(|name| !parameters.known.contains_key(*name)).cloned().collect();
     for name in &unused {
         parameters.named(name, &mut Vec::new());
     }
-    (unused, parameters.angles)
+    Doubtful { unused, whole_angles: parameters.angles, radians: parameters.radians }
 }
 
 struct Parameters<'a> {
@@ -88,6 +101,7 @@ struct Parameters<'a> {
     /// Those that are computed; `None`: an error that was noted.
     known: BTreeMap<String, Option<f64>>,
     angles: Vec<WholeAngle>,
+    radians: Vec<[String; 2]>,
     report: &'a Report,
 }
 
@@ -171,17 +185,20 @@ impl Parameters<'_> {
         for (call, angle) in angles(formula) {
             self.note_whole(key, call, angle);
         }
+        if DEGREES.iter().any(|name| key.ends_with(name)) && computes_radians(formula) {
+            self.radians.push([key.to_owned(), formula.to_owned()]);
+        }
         Some(value)
     }
 
-    /// Notes an angle that is a whole number beyond half a turn. Of two parameters it may be a phase, as k x is.
+    /// Notes an angle that is a whole or half number beyond half a turn. Of two parameters it may be a phase, as k x is.
     fn note_whole(&mut self, key: &str, call: &str, angle: &str) {
         let Ok(expression) = FlatEx::<f64, Operators, Numbers>::parse(angle) else { return };
         let names = expression.var_names();
         let values: Option<Vec<f64>> =
             names.iter().map(|name| self.known.get(name.as_str()).copied().flatten()).collect();
         let value = values.filter(|values| values.len() < 2).and_then(|values| expression.eval(&values).ok());
-        if let Some(radians) = value.filter(|x| x.abs() > std::f64::consts::PI && x.fract() == 0.0) {
+        if let Some(radians) = value.filter(|x| x.abs() > std::f64::consts::PI && (2.0 * x).fract() == 0.0) {
             let [key, call, angle] = [key, call, angle.trim()].map(str::to_owned);
             self.angles.push(WholeAngle { key, call, angle, radians });
         }
@@ -215,6 +232,12 @@ impl Parameters<'_> {
             _ => {}
         }
     }
+}
+
+/// The formula ends in an arc, and nothing in it turns that into degrees.
+fn computes_radians(formula: &str) -> bool {
+    let has = |part: &str| formula.contains(part);
+    ["asin(", "acos(", "atan("].into_iter().any(has) && !["pi", "180", "57."].into_iter().any(has)
 }
 
 /// Sines, cosines and tangents in a formula whose parentheses fit, with what is in these.

@@ -130,8 +130,7 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&s
         effects,
         own_effects,
         numerics,
-        unused_parameters: Vec::new(),
-        whole_angles: Vec::new(),
+        doubtful: Doubtful::default(),
     };
     scene.share_spacings();
     // Its values stand where formulas were.

@@ -9,6 +9,8 @@ use super::*;
 pub(crate) enum Kind {
     Peak,
     PeakTime,
+    Trough,
+    TroughTime,
     FirstAbove,
     Rms,
     Value,
@@ -17,9 +19,11 @@ pub(crate) enum Kind {
     Decay,
 }
 
-pub(crate) const KINDS: [(&str, Kind); 8] = [
+pub(crate) const KINDS: [(&str, Kind); 10] = [
     ("peak", Kind::Peak),
     ("peak-time", Kind::PeakTime),
+    ("trough", Kind::Trough),
+    ("trough-time", Kind::TroughTime),
     ("first-above", Kind::FirstAbove),
     ("rms", Kind::Rms),
     ("value", Kind::Value),
@@ -41,6 +45,8 @@ pub(super) fn metric(section: Section<'_>) -> Option<Metric> {
     let read = match kind {
         Kind::Peak => MetricKind::Peak,
         Kind::PeakTime => MetricKind::PeakTime,
+        Kind::Trough => MetricKind::Trough,
+        Kind::TroughTime => MetricKind::TroughTime,
         Kind::FirstAbove => MetricKind::FirstAbove { level: level() },
         Kind::Rms => MetricKind::Rms,
         Kind::Value => MetricKind::Value { at: section.number("at", None) },

@@ -68,13 +68,10 @@ fn an_override_of_a_parameter_changes_all_that_follows_from_it() {
 
 #[test]
 fn a_parameter_that_nothing_needs_is_known() {
-    assert_eq!(scene(&[]).unused_parameters, ["slope"]);
+    assert_eq!(scene(&[]).doubtful.unused, ["slope"]);
     // What only such a parameter needs is as useless.
-    assert_eq!(
-        scene(&["parameters.angle=1", "parameters.slope==angle"]).unused_parameters,
-        ["angle", "slope"]
-    );
-    assert_eq!(scene(&["resolution==H / rows / slope"]).unused_parameters, [""; 0]);
+    assert_eq!(scene(&["parameters.angle=1", "parameters.slope==angle"]).doubtful.unused, ["angle", "slope"]);
+    assert_eq!(scene(&["resolution==H / rows / slope"]).doubtful.unused, [""; 0]);
 }
 
 #[test]
@@ -137,10 +134,11 @@ fn nonsense_is_an_error_and_no_panic() {
 fn angles_of_whole_numbers_are_known() {
     let of = |formula: &str| {
         let found = scene(&["parameters.slope=15", "parameters.k=3", &format!("resolution=={formula}")]);
-        found.whole_angles.into_iter().map(|angle| (angle.call, angle.radians)).collect::<Vec<_>>()
+        found.doubtful.whole_angles.into_iter().map(|angle| (angle.call, angle.radians)).collect::<Vec<_>>()
     };
     assert_eq!(of("0.01 * abs(tan(slope))"), [("tan(slope)".to_owned(), 15.0)]);
     assert_eq!(of("0.01 * abs(sin((slope * 2)) + cos(30))").len(), 2);
+    assert_eq!(of("0.01 * abs(tan(22.5))"), [("tan(22.5)".to_owned(), 22.5)]);
     for radians in [
         "0.01 * sin(slope * pi / 180)",
         "0.01 * abs(cos(3))",
@@ -150,4 +148,15 @@ fn angles_of_whole_numbers_are_known() {
     ] {
         assert_eq!(of(radians), [], "{radians}");
     }
+}
+
+#[test]
+fn degrees_that_are_computed_in_radians_are_known() {
+    let turned = |formula: &str| {
+        let angle = format!("shape.water.rotate={{angle=\"={formula}\",about=[0,0]}}");
+        scene(&[&angle]).doubtful.radians
+    };
+    assert_eq!(turned("atan(0.5)"), [["shape.water.rotate.angle".to_owned(), "atan(0.5)".to_owned()]]);
+    assert_eq!(turned("atan(0.5) * 180 / pi"), [] as [[String; 2]; 0]);
+    assert_eq!(turned("30"), [] as [[String; 2]; 0]);
 }

@@ -31,6 +31,18 @@ fn a_load_that_grows_for_longer_than_the_run() {
 }
 
 #[test]
+fn a_load_that_its_shape_leaves_behind() {
+    // Turned by 5 degrees about its root, the beam's right end, (0.4, 0.02), is at (0.397, 0.055).
+    let turned =
+        |min: [f64; 2], max: [f64; 2]| loaded(min, max, " }\nrotate = { angle = 5.0, about = [0.0, 0.0]");
+    let said = "the `load` of `beam` is where it would be without `rotate` and `translate`";
+    let left = turned([0.395, 0.0], [0.4, 0.04]);
+    assert!(left.iter().any(|remark| remark.starts_with(said)), "{left:?}");
+    let along = turned([0.39, 0.03], [0.41, 0.08]);
+    assert!(!along.iter().any(|remark| remark.starts_with(said)), "{along:?}");
+}
+
+#[test]
 fn a_load_inside_of_its_body() {
     let row = |y: f64| loaded([0.0, y], [0.4, y + 0.005], "");
     let said = "the traction on `beam` acts inside of it: of 76 particles 75 have others on all sides";

@@ -2,8 +2,8 @@
 
 use super::near;
 use super::shapes::{length, place};
-use halfstep_scene::geometry::{Cells, Layout, SolidPoint};
-use halfstep_scene::{Block, Scene, Shape, Traction};
+use halfstep_scene::geometry::{self, Cells, Layout, SolidPoint};
+use halfstep_scene::{Block, Geometry, Scene, Shape, Traction};
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::fmt;
@@ -91,6 +91,31 @@ pub(super) fn tractions<const D: usize>(scene: &Scene, layout: &Layout<D>, all: 
              in all, {rows:.0} times that on a surface (a box around one row loads a surface)",
             places.len()
         ));
+    }
+}
+
+/// Boxes of tractions that a shape leaves behind as it is turned or shifted: they are places of the scene.
+pub(super) fn left_behind<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
+    for (index, name, Traction { within, .. }) in tractions_of(scene) {
+        let Geometry::Moved(moved) = &scene.shapes[index].geometry else { continue };
+        if moved.angle == 0.0 && moved.translate == [0.0; 3] {
+            continue;
+        }
+        let tolerance = 1e-9 * scene.spacing(&scene.shapes[index]);
+        let (mut taken, mut missed) = (0, 0);
+        for point in layout.solid.iter().filter(|p| p.body as usize == index && !p.clamped) {
+            let own = geometry::holds(&within, &moved.back(0, point.position), tolerance);
+            let here = point.is_in_load(scene);
+            taken += usize::from(here);
+            missed += usize::from(own && !here && point.copy == 0);
+        }
+        if missed > taken {
+            all.push(format!(
+                "the `load` of `{name}` is where it would be without `rotate` and `translate`, which do not take its \
+                 `within` along: it acts on {taken} particles, and not on {missed} that it would hold if it went with \
+                 the shape; nor is the traction turned"
+            ));
+        }
     }
 }
 

@@ -185,15 +185,20 @@ pub(super) fn motions(scene: &Scene, all: &mut Vec<String>) {
 
 /// Parameters whose change would change nothing.
 pub(super) fn parameters(scene: &Scene, all: &mut Vec<String>) {
-    for name in &scene.unused_parameters {
+    for name in &scene.doubtful.unused {
         all.push(format!("no key needs the parameter `{name}`: whatever its value, the scene is the same"));
     }
-    for WholeAngle { key, call, angle, radians } in &scene.whole_angles {
+    for WholeAngle { key, call, angle, radians } in &scene.doubtful.whole_angles {
         all.push(format!(
             "`{call}` in {key} takes {radians} radians, {:.0} degrees: that of {radians} degrees is `{}(({angle}) * \
              pi / 180)`",
             radians.to_degrees(),
             &call[..3]
+        ));
+    }
+    for [key, formula] in &scene.doubtful.radians {
+        all.push(format!(
+            "{key} is in degrees, and `{formula}` is in radians: in degrees it is `({formula}) * 180 / pi`"
         ));
     }
 }

@@ -83,8 +83,7 @@ pub(crate) fn scene() -> Scene {
             lattice: Lattice::Centred,
             domain: None,
         },
-        unused_parameters: Vec::new(),
-        whole_angles: Vec::new(),
+        doubtful: Default::default(),
     }
 }
 

@@ -70,8 +70,7 @@ fn scene(shapes: Vec<Shape>) -> Scene {
             domain: None,
         },
         frame: None,
-        unused_parameters: Vec::new(),
-        whole_angles: Vec::new(),
+        doubtful: Default::default(),
     }
 }
 

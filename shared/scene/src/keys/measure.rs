@@ -99,7 +99,8 @@ pub(super) static REFERENCE: Table = Table {
 };
 
 const TIME: Range = Range::at_least(0.0);
-const CURVES: &[&str] = &["peak", "peak-time", "first-above", "rms", "period", "mean", "decay"];
+const CURVES: &[&str] =
+    &["peak", "peak-time", "trough", "trough-time", "first-above", "rms", "period", "mean", "decay"];
 
 pub(super) static METRIC: Table = Table::new(
     "metric",
