@@ -156,6 +156,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     makers::makers(scene, &mut all);
     fields::fields(scene, layout, &mut all);
     fields::steps(scene, layout, &mut all);
+    fields::unpressed(scene, layout, &mut all);
     units::columns(scene, &mut all);
     magnitudes::axes(scene, &mut all);
     passages::passages(scene, &mut all);

@@ -191,7 +191,8 @@ impl Parameters<'_> {
         Some(value)
     }
 
-    /// Notes an angle that is a whole or half number beyond half a turn. Of two parameters it may be a phase, as k x is.
+    /// Notes an angle that is a whole or half number beyond half a turn. Of two parameters it may be a phase, as k x
+    /// is.
     fn note_whole(&mut self, key: &str, call: &str, angle: &str) {
         let Ok(expression) = FlatEx::<f64, Operators, Numbers>::parse(angle) else { return };
         let names = expression.var_names();

@@ -3,9 +3,9 @@
 use super::near;
 use super::reached::{Matter, by_place};
 use super::shapes::length;
-use super::water::{DEPTH, falls};
+use super::water::{DEPTH, depths_below, falls, outermost};
 use halfstep_scene::geometry::{self, Cells, Layout};
-use halfstep_scene::{Lattice, Scene, Shape, VelocityField};
+use halfstep_scene::{Geometry, Lattice, Phase, Scene, Shape, VelocityField};
 
 /// Part of its largest speed with which a field may run into a wall: that of a wall 6 % of a cell beside its place.
 const INTO_WALLS: f64 = 0.2;
@@ -66,6 +66,55 @@ pub(super) fn steps<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut
                 shape.name,
                 length(deepest),
                 100.0 * low as f64 / surface as f64
+            ));
+        }
+    }
+}
+
+/// Rows of water from which on the pressure of its depth matters.
+const ROWS: f64 = 5.0;
+/// Part of a side of water that nothing holds, up to which it is held.
+const OPEN: f64 = 0.1;
+
+/// Water that is held on all sides, and begins without the pressure of its depth.
+pub(super) fn unpressed<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
+    let (Some((axis, way)), Some(fluid)) = (falls::<D>(scene), &scene.fluid) else { return };
+    let (dx, gravity) = (scene.resolution, scene.gravity[axis].abs());
+    let begins = |shape: &Shape| {
+        shape.phase == Phase::Fluid
+            && !shape.hydrostatic
+            && shape.velocity_field.is_none()
+            && shape.velocity == [0.0; 3]
+    };
+    let boxes = scene.shapes.iter().enumerate().filter(|(_, shape)| begins(shape));
+    for (index, shape) in boxes {
+        let Geometry::Box(block) = &shape.geometry else { continue };
+        let depth = block.max[axis] - block.min[axis];
+        if depth < ROWS * dx {
+            continue;
+        }
+        let others: Vec<&[f64; D]> = {
+            let fluid = layout.fluid.iter().filter(|p| p.shape as usize != index).map(|p| &p.position);
+            let solid = layout.solid.iter().map(|p| &p.position);
+            fluid.chain(solid).chain(layout.wall.iter().map(|p| &p.position)).collect()
+        };
+        let held = |toward: (usize, f64)| {
+            let own = layout.fluid.iter().filter(|p| p.shape as usize == index).map(|p| p.position);
+            let row = outermost(own, toward, dx);
+            let beside = depths_below(&row, others.iter().copied(), toward, dx, 2.0 * dx);
+            beside.iter().filter(|depth| depth.is_none()).count() as f64 <= OPEN * row.len() as f64
+        };
+        let sides = (0..D).filter(|&a| a != axis).flat_map(|a| [(a, 1.0), (a, -1.0)]);
+        if held((axis, way)) && sides.into_iter().all(held) {
+            let speed = fluid.sound_speed;
+            all.push(format!(
+                "`{}` is held on all sides and begins without the pressure of its depth, {:.3e} Pa at the bottom: it \
+                 falls by {} m and rings with a period of {:.2e} s, which pressures and forces show \
+                 (`pressure = \"hydrostatic\"` begins at rest)",
+                shape.name,
+                fluid.density * gravity * depth,
+                length(0.5 * gravity * depth * depth / (speed * speed)),
+                4.0 * depth / speed
             ));
         }
     }

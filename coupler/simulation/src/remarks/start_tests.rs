@@ -86,6 +86,24 @@ fn water_that_begins_under_pressure_at_its_surface() {
     assert!(!has(&water("", &format!("{lid}{DEEP}{TANK}")), "begins with pressure"));
 }
 
+/// 0.2 m of water: 1962 Pa, of which a half compresses it by g H² / 2 c².
+#[test]
+fn still_water_that_begins_without_its_pressure() {
+    let without = DEEP.replace("pressure = \"hydrostatic\"\n", "");
+    let said =
+        "`water` is held on all sides and begins without the pressure of its depth, 1.962e3 Pa at the bottom";
+    let found = water("", &format!("{without}{TANK}"));
+    assert!(has(&found, said), "{found:?}");
+    assert!(!has(&water("", &format!("{DEEP}{TANK}")), "without the pressure"));
+    // A column that collapses, one that a gate holds, and a layer.
+    let column = without.replace("0.4, 0.2", "0.2, 0.2");
+    assert!(!has(&water("", &format!("{column}{TANK}")), "without the pressure"));
+    let gate = shape("gate", "wall", [0.2, 0.0], [0.22, 0.2], "");
+    assert!(has(&water("", &format!("{column}{gate}{TANK}")), "without the pressure"));
+    let layer = without.replace("0.4, 0.2", "0.4, 0.02");
+    assert!(!has(&water("", &format!("{layer}{TANK}")), "without the pressure"));
+}
+
 #[test]
 fn pivots_that_stay_where_they_are() {
     let flap = |lines: &str| {

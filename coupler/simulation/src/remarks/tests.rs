@@ -425,7 +425,7 @@ fn a_wall_that_slides_along_the_fluid_does_not_push_it() {
              motion = {{ velocity = {velocity} }}\n"
         );
         let water = "resolution = 0.005\nend_time = 1.0\n[fluid]\ndensity = 1000.0\nsound_speed = 14.0\n";
-        let text = format!("{water}{gate}{TANK}{WATER}");
+        let text = format!("{water}{gate}{TANK}{WATER}pressure = \"hydrostatic\"\n");
         remarks(&parse(&text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}")))
     };
     assert_eq!(text("[0.0, 4.0]"), [""; 0]);

@@ -30,13 +30,15 @@ fn dam(thickness: f64) -> String {
 /// The normal of a single row may be that of its dry side.
 #[test]
 fn a_polygon_of_one_row_in_front_of_water() {
+    let held =
+        |thickness: f64| remarks(&water(&format!("{HELD}pressure = \"hydrostatic\"\n{}", dam(thickness))));
     for thickness in [0.011, 0.014, 0.015] {
-        let found = remarks(&water(&format!("{HELD}{}", dam(thickness))));
+        let found = held(thickness);
         let said = "`thin` is about 1.0 dx thick at [";
         assert!(has(&found, said) && has(&found, "is held weakly"), "{thickness}: {found:?}");
         assert!(!has(&found, DRIVEN), "{found:?}");
     }
-    assert_eq!(remarks(&water(&format!("{HELD}{}", dam(0.04)))), [""; 0], "as thick as the kernel reaches");
+    assert_eq!(held(0.04), [""; 0], "as thick as the kernel reaches");
 }
 
 /// A lid 0.1 m above still water, one row thick.
@@ -46,7 +48,8 @@ fn a_thin_wall_above_water_that_moves() {
     let lid = wall("lid", "box = { min = [0.0, 0.3], max = [0.6, 0.31] }");
     let pool = |lines: &str| {
         format!(
-            "[[shape]]\nname = \"water\"\nphase = \"fluid\"\n{lines}box = {{ min = [0.0, 0.0], max = [0.6, 0.2] }}\n"
+            "[[shape]]\nname = \"water\"\nphase = \"fluid\"\npressure = \"hydrostatic\"\n{lines}\
+             box = {{ min = [0.0, 0.0], max = [0.6, 0.2] }}\n"
         )
     };
     let shakes = "motion = { amplitude = [0.05, 0.0], period = 1.2 }\n";
