@@ -3,7 +3,6 @@
 use crate::columns::Source;
 use crate::effects::FluidEffect;
 use crate::fluid::Fluid;
-use crate::midpoint::TASK;
 use halfstep_scene::Phase;
 use halfstep_sph::neighbours::PADDING;
 use halfstep_sph::state_equation::StateEquation;
@@ -85,6 +84,9 @@ struct Totals<const D: usize> {
     /// Largest |rho / rho0 - 1|.
     density_error: f64,
 }
+
+/// Particles that are added up in a row: another number rounds otherwise.
+const TASK: usize = 1024;
 
 impl<const D: usize> Totals<D> {
     /// Halves are added up where they end, whatever thread has walked them: the same bits for any number of threads.

@@ -9,8 +9,8 @@ use halfstep_sph::neighbours::PADDING;
 use halfstep_sph::state_equation::StateEquation;
 use halfstep_wire::half_step::{HalfStep, Stage};
 
-/// Slots that one task walks over; a whole number of clusters.
-pub(crate) const TASK: usize = 1024;
+/// Slots that one task walks over; a whole number of clusters. Halves of a few thousand are to be of one length.
+const TASK: usize = 256;
 
 /// The extremes over all particles after a stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -17,6 +17,10 @@ use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::{Arch, Lanes, components};
 use halfstep_sph::pair::dot;
 use halfstep_wire::half_step::Stage;
+use rayon::prelude::*;
+
+/// Wall particles that one task looks at.
+const TASK: usize = 256;
 
 /// The effect.
 #[derive(Clone, Debug, Default)]
@@ -43,9 +47,9 @@ impl<const D: usize> FluidEffect<D> for WallSeparation<D> {
     }
     fn prepare<K: Kernel<D>>(&mut self, _: Stage, around: &Neighbourhood<'_, K, D>) -> u64 {
         if let Some((walls, _)) = around.walls {
-            for (slot, excess) in self.excess.iter_mut().enumerate() {
+            self.excess.par_iter_mut().with_min_len(TASK).enumerate().for_each(|(slot, excess)| {
                 *excess = walls.shown_to_leaving(slot).unwrap_or([0.0; D]);
-            }
+            });
         }
         0
     }

@@ -1,5 +1,6 @@
 //! The one half-step loop: drives the participants of a process through whatever carries their messages.
 
+use crate::awake::Awake;
 use crate::member::Member;
 use crate::report::Report;
 use crate::role::{Peer, Role};
@@ -40,6 +41,7 @@ pub struct Lockstep {
     /// Time of the participants' own states, s.
     at: f64,
     begun: bool,
+    awake: Awake,
 }
 
 impl Lockstep {
@@ -57,7 +59,13 @@ impl Lockstep {
         if tracks.iter().any(|track| begins(track) != (step, time)) {
             return Err(RoleError::Start("the participants' checkpoints are of different steps".into()));
         }
-        Ok(Self { tracks, half_step: HalfStep::begin(step, time), at: time, begun: false })
+        Ok(Self {
+            tracks,
+            half_step: HalfStep::begin(step, time),
+            at: time,
+            begun: false,
+            awake: Awake::default(),
+        })
     }
 
     /// The owners of particles, in the order of the members.
@@ -147,6 +155,7 @@ impl Lockstep {
         let half_step = self.half_step;
         let began = timeline::begin(&half_step, self.tracks.len());
         let expect = Expect::of(&half_step);
+        self.awake.wake();
         match std::mem::replace(&mut self.begun, true) {
             true => self.each(|k, track| track.publish_to(port, k, &half_step))?,
             false => self.begin(port)?,
@@ -163,6 +172,7 @@ impl Lockstep {
             track.cross_sums(port, k, &half_step)
         })?;
         let (mut told, mut stopped, mut at) = (half_step, false, self.at);
+        let awake = self.awake.clone();
         let answered = self.each(|k, track| {
             // At the first stage the answer brings the time step.
             let answer = timeline::receive(
@@ -190,6 +200,7 @@ impl Lockstep {
             // All participants are stopped at the same state.
             stopped = answer.order & order::STOP != 0;
             if !stopped {
+                awake.wake();
                 track.advance(&told)?;
             }
             timeline::end(track.member.role.name(), began);

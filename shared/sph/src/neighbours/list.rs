@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use std::ops::Range;
 
 /// Fours of targets that one task works on.
-pub const CHUNK_FOURS: usize = 128;
+pub const CHUNK_FOURS: usize = 32;
 
 /// Targets that one task works on.
 const CHUNK: usize = CHUNK_FOURS * LANES;
