@@ -6,7 +6,7 @@
 use super::bounds::VolumeBounds;
 use super::clamp;
 use super::contact::Contact;
-use super::fracture::Fracture;
+use super::fracture::{Drift, Fracture};
 use super::hourglass;
 use super::loads::{self, Loads};
 use super::material::{Law, Matrix};
@@ -287,7 +287,7 @@ impl<const D: usize> TotalLagrangian<D> {
                 contact.set_time(time + f64::from(k) * each);
             }
             self.kick(0.5 * each);
-            self.rub(0.5 * each);
+            self.rub(0.5 * each, Drift::Follows);
             let driven = self.driven_from();
             self.now.drift(each);
             self.drive(time + f64::from(k) * each);
@@ -298,7 +298,7 @@ impl<const D: usize> TotalLagrangian<D> {
                 self.open_faces();
             }
             self.note_sub_step(each, &driven);
-            self.rub(0.5 * each);
+            self.rub(0.5 * each, Drift::IsDone);
             self.kick(0.5 * each);
         }
     }

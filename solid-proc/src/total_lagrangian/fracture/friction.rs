@@ -9,6 +9,7 @@
 //! at walls that move, only takes energy, so all do, and there is nothing to remember.
 
 use super::Fracture;
+use crate::columns::Vectors;
 use crate::total_lagrangian::model::TotalLagrangian;
 use halfstep_scene::EnergyPart;
 use halfstep_wire::state::{Fields, StateError};
@@ -83,10 +84,10 @@ impl<const D: usize> TotalLagrangian<D> {
         rubbing
     }
 
-    /// Friction over a kick of dt, s.
-    pub(in crate::total_lagrangian) fn rub(&mut self, dt: f64) {
+    /// Friction over a kick of dt, s, before or after the drift.
+    pub(in crate::total_lagrangian) fn rub(&mut self, dt: f64, drift: Drift) {
         let Some(fracture) = self.fracture.take_if(|fracture| !fracture.rubbing.is_empty()) else { return };
-        let before = self.accounted_kinetic_energy();
+        let before = self.keeps_account().then(|| self.now.velocity.clone());
         for Rubbing { pair: [i, j], normal, push, wall } in &fracture.rubbing {
             let velocity = |slot: usize| std::array::from_fn(|d| self.now.velocity[d][slot]);
             let at_wall = i == j;
@@ -105,12 +106,28 @@ impl<const D: usize> TotalLagrangian<D> {
             }
         }
         self.fracture = Some(fracture);
-        if let (Some(before), Some(after)) = (before, self.accounted_kinetic_energy())
-            && let Some(account) = &mut self.account
-        {
-            account.given.give(EnergyPart::FragmentFriction, after - before);
+        if let Some(before) = before {
+            let work = self.work_of_friction(&before, drift);
+            self.account
+                .iter_mut()
+                .for_each(|account| account.given.give(EnergyPart::FragmentFriction, work));
         }
     }
+
+    /// Work of friction that changed these velocities, m/s: by the velocity of the drift, as that of all forces. What
+    /// sticks is pulled in each kick and stopped again, and goes nowhere: no work is done on it.
+    fn work_of_friction(&self, before: &Vectors<D>, drift: Drift) -> f64 {
+        let of = |(from, to): (&f64, &f64)| (to - from) * if drift == Drift::Follows { *to } else { *from };
+        let columns = before.iter().zip(&self.now.velocity);
+        self.mass * columns.map(|(from, to)| from.iter().zip(to).map(of).sum::<f64>()).sum::<f64>()
+    }
+}
+
+/// Whether the kick is that before the drift or that after it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::total_lagrangian) enum Drift {
+    Follows,
+    IsDone,
 }
 
 impl<const D: usize> Fracture<D> {

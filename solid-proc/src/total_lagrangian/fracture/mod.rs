@@ -36,6 +36,7 @@ use super::model::TotalLagrangian;
 use crate::effects::takes_part;
 use crate::model::FractureSummary;
 use faces::Face;
+pub(super) use friction::Drift;
 use friction::Rubbing;
 use halfstep_scene::{EffectName, Fracture as Keys, Scene};
 use halfstep_sph::neighbours::PADDING;
