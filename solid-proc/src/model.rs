@@ -126,6 +126,8 @@ pub struct FractureSummary {
     pub bodies: u32,
     /// Particles that are loose: left with too few neighbours for a deformation gradient.
     pub loose: u32,
+    /// Particles of fragments of at most four rows where there were more, without those that are loose.
+    pub thin: u32,
 }
 
 /// A particle of the model left its bounds.

@@ -179,6 +179,7 @@ impl<const D: usize> Measurement<D> {
                 let fracture = model.fracture();
                 put(f64::from(fracture.bodies));
                 put(f64::from(fracture.loose));
+                put(f64::from(fracture.thin));
             }
             Self::Centroid => {
                 let mass: f64 = state.mass.iter().sum();

@@ -54,7 +54,7 @@ pub enum ProbeKind {
     CrackEnergy,
     /// Area of the cracks in a solid, m² (2D: length, m): of the faces of cells between which it is cut.
     CrackArea,
-    /// Number of bodies of a solid, and of its particles that are loose.
+    /// Number of bodies of a solid, of its particles that are loose, and of those in fragments that have become thin.
     Bodies,
     /// Fluid pressure at a point, or its mean along a line (kernel average of the fluid around), Pa.
     Pressure {
@@ -288,7 +288,7 @@ impl ProbeKind {
             Self::Front => (one("x"), "m"),
             Self::KineticEnergy { .. } | Self::StrainEnergy | Self::CrackEnergy => (one("energy"), "J"),
             Self::CrackArea => (one("area"), if dimension == 2 { "m" } else { "m2" }),
-            Self::Bodies => (["bodies", "loose"].map(str::to_owned).to_vec(), "1"),
+            Self::Bodies => (["bodies", "loose", "thin"].map(str::to_owned).to_vec(), "1"),
             Self::Energy { phase, part } => (EnergyPart::names(*phase, *part), "J"),
             Self::Force { .. } => (axes(), "N"),
             Self::Moment { .. } => (one("moment"), "N m"),

@@ -252,22 +252,26 @@ fn run_chunks<const D: usize, W: Work<D>, S: Sink<W::Sum<Lane>>>(
     assert!(W::SINGLE || precision == Precision::Double, "a law that can be computed in single precision");
     let width = if W::WIDE { isa.targets(precision) } else { LANES };
     assert_eq!(list.width(), width, "the list's clusters are as wide as the passes");
-    if out.len() <= CHUNK_FOURS {
+    if out.len() <= TASK_FOURS {
         if !out.is_empty() {
-            run_chunk(isa, precision, work, 0, sink, out);
+            run_task(isa, precision, work, 0, sink, out);
         }
         return;
     }
-    out.par_chunks_mut(CHUNK_FOURS)
+    out.par_chunks_mut(TASK_FOURS)
         .enumerate()
-        .for_each(|(c, out)| run_chunk(isa, precision, work, c, sink, out));
+        .for_each(|(task, out)| run_task(isa, precision, work, task, sink, out));
 }
 
-fn run_chunk<const D: usize, W: Work<D>, S: Sink<W::Sum<Lane>>>(
+/// Fours of targets that one task works on: of a few thousand particles the last tasks end together.
+const TASK_FOURS: usize = 32;
+const _: () = assert!(CHUNK_FOURS.is_multiple_of(TASK_FOURS), "a task is of one chunk");
+
+fn run_task<const D: usize, W: Work<D>, S: Sink<W::Sum<Lane>>>(
     isa: Isa,
     precision: Precision,
     work: W,
-    chunk: usize,
+    task: usize,
     sink: S,
     out: &mut [S::Out],
 ) {
@@ -275,24 +279,24 @@ fn run_chunk<const D: usize, W: Work<D>, S: Sink<W::Sum<Lane>>>(
         return match isa {
             // SAFETY: `run_chunks` asked the processor.
             #[cfg(target_arch = "x86_64")]
-            Isa::Avx512vl => unsafe { run_avx512::<D, W, S, Single<WIDEST_SINGLE>>(work, chunk, sink, out) },
+            Isa::Avx512vl => unsafe { run_avx512::<D, W, S, Single<WIDEST_SINGLE>>(work, task, sink, out) },
             // SAFETY: as above.
             #[cfg(target_arch = "x86_64")]
-            Isa::Avx2 => unsafe { run_avx2::<D, W, S, Single<WIDEST>>(work, chunk, sink, out) },
-            _ => run::<D, W, S, Unfused, Single<LANES>>(work, chunk, sink, out),
+            Isa::Avx2 => unsafe { run_avx2::<D, W, S, Single<WIDEST>>(work, task, sink, out) },
+            _ => run::<D, W, S, Unfused, Single<LANES>>(work, task, sink, out),
         };
     }
     match isa {
         // SAFETY: `run_chunks` asked the processor.
         #[cfg(target_arch = "x86_64")]
-        Isa::Avx512vl if W::WIDE => unsafe { run_avx512::<D, W, S, Eight>(work, chunk, sink, out) },
+        Isa::Avx512vl if W::WIDE => unsafe { run_avx512::<D, W, S, Eight>(work, task, sink, out) },
         // SAFETY: as above.
         #[cfg(target_arch = "x86_64")]
-        Isa::Avx512vl => unsafe { run_avx512::<D, W, S, Lane>(work, chunk, sink, out) },
+        Isa::Avx512vl => unsafe { run_avx512::<D, W, S, Lane>(work, task, sink, out) },
         // SAFETY: as above.
         #[cfg(target_arch = "x86_64")]
-        Isa::Avx2 => unsafe { run_avx2::<D, W, S, Lane>(work, chunk, sink, out) },
-        _ => run::<D, W, S, Unfused, Lane>(work, chunk, sink, out),
+        Isa::Avx2 => unsafe { run_avx2::<D, W, S, Lane>(work, task, sink, out) },
+        _ => run::<D, W, S, Unfused, Lane>(work, task, sink, out),
     }
 }
 
@@ -300,35 +304,37 @@ fn run_chunk<const D: usize, W: Work<D>, S: Sink<W::Sum<Lane>>>(
 #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2,fma")]
 unsafe fn run_avx512<const D: usize, W: Work<D>, S: Sink<W::Sum<Lane>>, L: Lanes>(
     work: W,
-    chunk: usize,
+    task: usize,
     sink: S,
     out: &mut [S::Out],
 ) {
-    run::<D, W, S, Fused, L>(work, chunk, sink, out);
+    run::<D, W, S, Fused, L>(work, task, sink, out);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
 unsafe fn run_avx2<const D: usize, W: Work<D>, S: Sink<W::Sum<Lane>>, L: Lanes>(
     work: W,
-    chunk: usize,
+    task: usize,
     sink: S,
     out: &mut [S::Out],
 ) {
-    run::<D, W, S, Fused, L>(work, chunk, sink, out);
+    run::<D, W, S, Fused, L>(work, task, sink, out);
 }
 
 #[inline(always)]
 fn run<const D: usize, W: Work<D>, S: Sink<W::Sum<Lane>>, A: Arch, L: Lanes>(
     work: W,
-    chunk: usize,
+    task: usize,
     sink: S,
     out: &mut [S::Out],
 ) {
+    let (chunk, part) = (task / (CHUNK_FOURS / TASK_FOURS), task % (CHUNK_FOURS / TASK_FOURS));
+    let first = part * (TASK_FOURS * LANES / L::TARGETS);
     for (k, out) in out.chunks_exact_mut(L::TARGETS / LANES).enumerate() {
-        let slot = chunk * CHUNK_FOURS * LANES + k * L::TARGETS;
+        let slot = task * TASK_FOURS * LANES + k * L::TARGETS;
         let mut sum = W::Sum::<L>::of_fours(|four| sink.begin(&out[four]));
-        work.gather::<A, L>(chunk, k, slot, &mut sum);
+        work.gather::<A, L>(chunk, first + k, slot, &mut sum);
         for (four, out) in out.iter_mut().enumerate() {
             sink.end(slot + four * LANES, sum.four(four), out);
         }

@@ -5,10 +5,10 @@ use crate::lane::{Isa, LANES, Precision, WIDEST, WIDEST_SINGLE};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Fours of targets that one task works on.
-pub const CHUNK_FOURS: usize = 32;
+/// Fours of targets whose neighbours lie together.
+pub const CHUNK_FOURS: usize = 128;
 
-/// Targets that one task works on.
+/// Targets whose neighbours lie together.
 const CHUNK: usize = CHUNK_FOURS * LANES;
 
 /// For each cluster of targets the sources within reach of any of them, in slot order.

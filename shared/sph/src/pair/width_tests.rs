@@ -28,15 +28,10 @@ fn pressures<const D: usize, A: Arch, L: Lanes>() -> Vec<Option<f64>> {
     let (kernel, density, pressure) = (WendlandC2::<D>::new(h), &density[..], &pressure[..]);
     let law = Extrapolation { kernel, gravity, targets: &x, sources: &x, density, pressure };
     let mut sums = vec![ExtrapolationSum::<Lane>::default(); list.fours()];
-    for chunk in 0..list.chunks().len() {
-        let out = &mut sums[chunk * CHUNK_FOURS..];
-        let len = out.len().min(CHUNK_FOURS);
-        run::<D, _, _, A, L>(
-            (&law, &list),
-            chunk,
-            Replace(|_, sum: &ExtrapolationSum| *sum),
-            &mut out[..len],
-        );
+    for task in 0..list.fours().div_ceil(TASK_FOURS) {
+        let out = &mut sums[task * TASK_FOURS..];
+        let len = out.len().min(TASK_FOURS);
+        run::<D, _, _, A, L>((&law, &list), task, Replace(|_, sum: &ExtrapolationSum| *sum), &mut out[..len]);
     }
     let real = (0..slots).filter(|&slot| id[slot] != PADDING);
     real.map(|slot| sums[slot / LANES].pressure(slot % LANES)).collect()

@@ -200,6 +200,7 @@ impl<const D: usize> TotalLagrangian<D> {
         fracture.bodies = count;
         let loose = |&slot: &usize| self.is_free(slot) && !self.has_strain(slot);
         fracture.loose = (0..self.id.len()).filter(loose).count() as u32;
+        fracture.thin = self.thin(&fracture);
         if count > 1 {
             if self.contact.is_none() {
                 self.contact = fracture.dormant.take();

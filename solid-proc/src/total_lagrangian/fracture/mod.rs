@@ -29,6 +29,7 @@ mod state;
 mod surface;
 #[cfg(test)]
 mod tests;
+mod thin;
 
 use super::contact::Contact;
 use super::material::Matrix;
@@ -86,6 +87,12 @@ pub(super) struct Fracture<const D: usize> {
     body: Vec<u32>,
     bodies: u32,
     loose: u32,
+    /// Particles of bodies that have become thin.
+    thin: u32,
+    /// Most neighbours of a particle of the intact lattice.
+    whole: usize,
+    /// Whether each particle began in a body of five rows or more.
+    was_thick: Vec<bool>,
     /// What sees contacts once there are several bodies.
     dormant: Option<Contact<D>>,
 }
@@ -124,6 +131,9 @@ impl<const D: usize> Fracture<D> {
             bodies: body.iter().max().map_or(0, |last| last + 1),
             body: body.to_vec(),
             loose: 0,
+            thin: 0,
+            whole: 0,
+            was_thick: Vec::new(),
             dormant,
         })
     }
@@ -168,14 +178,15 @@ impl<const D: usize> TotalLagrangian<D> {
         // Toward a rigid clamp a particle sees the opening gain times, and alone.
         let band = |slot: usize| Keys::BAND * self.spacing / (1.0 + self.fixed.excess_gain[slot]);
         fracture.band = (0..slots).map(band).collect();
+        self.note_thickness(&mut fracture);
         self.fracture = Some(fracture);
     }
 
     /// What fracture has done.
     pub(super) fn summary(&self) -> FractureSummary {
         let Some(fracture) = &self.fracture else { return FractureSummary::default() };
-        let Fracture { taken, bodies, loose, .. } = *fracture;
-        FractureSummary { energy: taken, area: self.cut_area(), bodies, loose }
+        let Fracture { taken, bodies, loose, thin, .. } = *fracture;
+        FractureSummary { energy: taken, area: self.cut_area(), bodies, loose, thin }
     }
 
     /// d of a slot.

@@ -362,6 +362,31 @@ fn a_block_that_is_crushed_on_a_wall_stays_stable() {
     assert!(summary.energy > 0.35 * run.start, "the wall stops the block, not its cracks: {summary:?}");
 }
 
+/// A block of 12 x 10 particles, cut level: 36 of a slab of three rows have become thin, none of one of five, nor where
+/// the whole had four.
+#[test]
+fn fragments_that_have_become_thin_are_counted() {
+    let thin = |height: f64, cut: f64| {
+        let block = format!("box = {{ min = [0.0, 0.0], max = [0.06, {height}] }}\n");
+        let text = solid(0.005, 0.3, &strength_and_energy(1e6, 20.0))
+            + "[[shape]]\nname = \"block\"\nphase = \"solid\"\n"
+            + &block;
+        let mut model = Run::<2>::of(&text).model;
+        let below = |slot: usize| model.position_at(slot)[1] < cut;
+        let slots: Vec<usize> = model.slot_of.iter().map(|&slot| slot as usize).collect();
+        let across = |&i: &usize| {
+            let others = model.pairs.neighbours(i).map(move |(j, _)| [i, j]);
+            others.filter(|&[i, j]| i < j && below(i) != below(j)).collect::<Vec<_>>()
+        };
+        let pairs = slots.iter().flat_map(across).collect();
+        assert_eq!(model.summary().thin, 0);
+        model.sever(pairs);
+        assert_eq!((model.summary().bodies, model.summary().loose), (2, 0));
+        model.summary().thin
+    };
+    assert_eq!([thin(0.05, 0.015), thin(0.05, 0.025), thin(0.02, 0.01)], [36, 0, 0]);
+}
+
 #[test]
 fn a_crack_along_a_clamp_takes_its_fracture_energy() {
     let text = solid(0.005, 0.0, &strength_and_energy(1e6, 100.0))

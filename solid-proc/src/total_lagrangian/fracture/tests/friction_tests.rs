@@ -74,7 +74,6 @@ fn an_impact_of_fragments_that_slide_takes_mu_times_its_impulse() {
         assert!(v[1] > -0.15 && v[0] > 1.7, "they have met, and slide: {v:?}");
         let p = run.momentum();
         assert!((p[0] - 10.0).abs() < 1e-13 && (p[1] + 2.5).abs() < 1e-13, "{p:?}");
-        println!("{friction}: rest {:e} of {taken}", run.rest());
         assert!(run.rest().abs() < 1e-3 * run.start, "{} of {}", run.rest(), run.start);
         assert!(friction == 0.0 && taken == 0.0 || taken > 1.5 * friction, "{taken}");
         (2.0 - v[0]) / (v[1] + 0.5)
@@ -99,7 +98,6 @@ fn a_block_that_slides_on_a_floor_stops() {
     assert!(taken > 0.7 * 2.5 && taken < 2.5, "{taken}");
     // What lies still takes nothing: 5 kg/m are 24.5 mm above the floor in the end.
     let rest = run.rest() + 5.0 * 9.81 * (x[1] - 0.025);
-    println!("rest {rest:e} of {taken}");
     assert!(rest.abs() < 5e-3 * taken, "{rest} of {taken}");
 }
 
