@@ -201,16 +201,26 @@ impl<const D: usize> Walls<D> {
         }
     }
 
+    /// Wall particles that the solid particle at a slot touches, with the square of its distance, m².
+    fn touching<'w>(
+        &'w self,
+        solid: Touching<'w, D>,
+        slot: usize,
+    ) -> impl Iterator<Item = (usize, f64)> + use<'w, D> {
+        self.neighbours.of(slot).iter().filter_map(move |&j| {
+            let j = j as usize;
+            let apart = |d: usize| solid.position[d][slot] - self.position[d][j];
+            let square = (0..D).map(|d| apart(d).powi(2)).sum::<f64>();
+            (square < solid.spacing * solid.spacing).then_some((j, square))
+        })
+    }
+
     /// What walls add to the square of a particle's frequency, 1/s², and its damping, 1/s.
     pub(crate) fn stiffness(&self, solid: Touching<'_, D>, slot: usize) -> (f64, f64) {
         if self.acceleration(slot) == [0.0; D] {
             return (0.0, 0.0);
         }
-        let touches = |&&j: &&u32| {
-            let apart = |d: usize| solid.position[d][slot] - self.position[d][j as usize];
-            (0..D).map(|d| apart(d).powi(2)).sum::<f64>() < solid.spacing * solid.spacing
-        };
-        let count = self.neighbours.of(slot).iter().filter(touches).count() as f64;
+        let count = self.touching(solid, slot).count() as f64;
         (count * solid.repulsion, count * solid.dashpot())
     }
 
@@ -236,15 +246,10 @@ impl<const D: usize> Walls<D> {
     /// Velocity of the surface that pushes the solid particle at a slot, m/s: that of its particles by their overlap.
     pub(crate) fn velocity_at(&self, solid: Touching<'_, D>, slot: usize) -> [f64; D] {
         let (mut sum, mut weights) = ([0.0; D], 0.0);
-        for &j in self.neighbours.of(slot) {
-            let j = j as usize;
-            let apart = |d: usize| solid.position[d][slot] - self.position[d][j];
-            let overlap = solid.spacing - (0..D).map(|d| apart(d).powi(2)).sum::<f64>().sqrt();
-            if overlap > 0.0 && self.id[j] != PADDING {
-                let belt = self.belt[self.id[j] as usize];
-                sum = std::array::from_fn(|d| sum[d] + overlap * (self.velocity[d][j] + belt[d]));
-                weights += overlap;
-            }
+        for (j, square) in self.touching(solid, slot).filter(|(j, _)| self.id[*j] != PADDING) {
+            let (overlap, belt) = (solid.spacing - square.sqrt(), self.belt[self.id[j] as usize]);
+            sum = std::array::from_fn(|d| sum[d] + overlap * (self.velocity[d][j] + belt[d]));
+            weights += overlap;
         }
         if weights > 0.0 { sum.map(|v| v / weights) } else { sum }
     }

@@ -100,8 +100,9 @@ impl Recorder {
         // Momentum is kept only where nothing outside acts.
         let isolated = scene.gravity == [0.0; 3]
             && scene.frame.is_none()
-            && scene.shapes.iter().all(|s| s.phase != Phase::Wall && s.clamp.is_empty())
-            && scene.shapes.iter().all(|s| s.motion.is_none() && s.load.is_none())
+            && scene.shapes.iter().all(|s| {
+                s.phase != Phase::Wall && s.clamp.is_empty() && s.motion.is_none() && s.load.is_none()
+            })
             && scene.fluid.as_ref().is_none_or(|fluid| fluid.beach.is_none())
             && scene.solids.iter().all(|s| s.side_friction == 0.0)
             && scene.solids.iter().filter_map(Solid::rigid).all(|keys| keys.joints.is_empty());

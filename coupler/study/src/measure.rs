@@ -109,15 +109,15 @@ fn number(metric: &Metric, curve: &Curve) -> Result<f64, Unmeasured> {
         return value_at(curve, at);
     }
     let part = window(metric, curve)?;
-    let peak =
-        || part.iter().copied().reduce(|a, b| if b[1] > a[1] { b } else { a }).ok_or(Unmeasured::Empty);
-    let trough =
-        || part.iter().copied().reduce(|a, b| if b[1] < a[1] { b } else { a }).ok_or(Unmeasured::Empty);
+    let extreme = |beyond: fn(&f64, &f64) -> bool| {
+        let farther = |a: [f64; 2], b: [f64; 2]| if beyond(&b[1], &a[1]) { b } else { a };
+        part.iter().copied().reduce(farther).ok_or(Unmeasured::Empty)
+    };
     match metric.kind {
-        MetricKind::Peak => peak().map(|p| p[1]),
-        MetricKind::PeakTime => peak().map(|p| p[0]),
-        MetricKind::Trough => trough().map(|p| p[1]),
-        MetricKind::TroughTime => trough().map(|p| p[0]),
+        MetricKind::Peak => extreme(f64::gt).map(|p| p[1]),
+        MetricKind::PeakTime => extreme(f64::gt).map(|p| p[0]),
+        MetricKind::Trough => extreme(f64::lt).map(|p| p[1]),
+        MetricKind::TroughTime => extreme(f64::lt).map(|p| p[0]),
         MetricKind::FirstAbove { level } => first_above(&part, level),
         MetricKind::Mean => Ok(mean(&part)),
         MetricKind::Period { level } => period(&part, level),

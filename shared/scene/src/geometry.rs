@@ -89,9 +89,14 @@ pub struct SolidPoint<const D: usize> {
 impl<const D: usize> SolidPoint<D> {
     /// It begins in the box of its shape's load, which acts on it unless it is clamped.
     pub fn is_in_load(&self, scene: &Scene) -> bool {
+        self.would_be_in_load(scene, &self.position)
+    }
+
+    /// The box of its shape's load holds a place.
+    pub fn would_be_in_load(&self, scene: &Scene, place: &[f64; D]) -> bool {
         let shape = &scene.shapes[self.body as usize];
         let tolerance = 1e-6 * scene.spacing(shape);
-        shape.load.as_ref().is_some_and(|load| holds(&load.within, &self.position, tolerance))
+        shape.load.as_ref().is_some_and(|load| holds(&load.within, place, tolerance))
     }
 }
 

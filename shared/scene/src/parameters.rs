@@ -85,23 +85,22 @@ pub(super) fn resolve(root: &mut Node, report: &Report) -> Doubtful {
             return nothing();
         }
     };
-    let known = BTreeMap::new();
-    let mut parameters = Parameters { table: &table, known, angles: Vec::new(), radians: Vec::new(), report };
+    let (known, doubtful) = (BTreeMap::new(), Doubtful::default());
+    let mut parameters = Parameters { table: &table, known, doubtful, report };
     parameters.replace(root, "");
     let unused: Vec<String> =
         table.keys().filter(|name| !parameters.known.contains_key(*name)).cloned().collect();
     for name in &unused {
         parameters.named(name, &mut Vec::new());
     }
-    Doubtful { unused, whole_angles: parameters.angles, radians: parameters.radians }
+    Doubtful { unused, ..parameters.doubtful }
 }
 
 struct Parameters<'a> {
     table: &'a BTreeMap<String, Entry>,
     /// Those that are computed; `None`: an error that was noted.
     known: BTreeMap<String, Option<f64>>,
-    angles: Vec<WholeAngle>,
-    radians: Vec<[String; 2]>,
+    doubtful: Doubtful,
     report: &'a Report,
 }
 
@@ -186,7 +185,7 @@ impl Parameters<'_> {
             self.note_whole(key, call, angle);
         }
         if DEGREES.iter().any(|name| key.ends_with(name)) && computes_radians(formula) {
-            self.radians.push([key.to_owned(), formula.to_owned()]);
+            self.doubtful.radians.push([key.to_owned(), formula.to_owned()]);
         }
         Some(value)
     }
@@ -201,7 +200,7 @@ impl Parameters<'_> {
         let value = values.filter(|values| values.len() < 2).and_then(|values| expression.eval(&values).ok());
         if let Some(radians) = value.filter(|x| x.abs() > std::f64::consts::PI && (2.0 * x).fract() == 0.0) {
             let [key, call, angle] = [key, call, angle.trim()].map(str::to_owned);
-            self.angles.push(WholeAngle { key, call, angle, radians });
+            self.doubtful.whole_angles.push(WholeAngle { key, call, angle, radians });
         }
     }
 

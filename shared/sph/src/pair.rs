@@ -203,7 +203,7 @@ impl<const D: usize, W: PairLaw<D>> Work<D> for Both<'_, W> {
 
 /// Runs a law over all targets of a list; `sums` has one entry for each four of them.
 pub fn pass<const D: usize, W: PairLaw<D>>(isa: Isa, law: &W, list: &ClusterList, sums: &mut [W::Sum<Lane>]) {
-    run_chunks(isa, (law, list), Replace(|_, sum: &W::Sum<Lane>| *sum), sums);
+    run_tasks(isa, (law, list), Replace(|_, sum: &W::Sum<Lane>| *sum), sums);
 }
 
 /// The pass, adding to what `sums` holds.
@@ -213,7 +213,7 @@ pub fn pass_adding<const D: usize, W: PairLaw<D>>(
     list: &ClusterList,
     sums: &mut [W::Sum<Lane>],
 ) {
-    run_chunks(isa, (law, list), Add, sums);
+    run_tasks(isa, (law, list), Add, sums);
 }
 
 /// The pass; the sum of each four goes through `finish`, with the first of its slots, before it is stored.
@@ -224,7 +224,7 @@ pub fn pass_into<const D: usize, W: PairLaw<D>, T: Send>(
     finish: impl Fn(usize, &W::Sum<Lane>) -> T + Copy + Sync,
     out: &mut [T],
 ) {
-    run_chunks(isa, (law, list), Replace(finish), out);
+    run_tasks(isa, (law, list), Replace(finish), out);
 }
 
 /// The same over two sets of neighbours, the second after the first.
@@ -235,10 +235,10 @@ pub fn pass_both_into<const D: usize, W: PairLaw<D>, T: Send>(
     finish: impl Fn(usize, &W::Sum<Lane>) -> T + Copy + Sync,
     out: &mut [T],
 ) {
-    run_chunks(isa, Both([first, second]), Replace(finish), out);
+    run_tasks(isa, Both([first, second]), Replace(finish), out);
 }
 
-fn run_chunks<const D: usize, W: Work<D>, S: Sink<W::Sum<Lane>>>(
+fn run_tasks<const D: usize, W: Work<D>, S: Sink<W::Sum<Lane>>>(
     isa: Isa,
     work: W,
     sink: S,
@@ -277,7 +277,7 @@ fn run_task<const D: usize, W: Work<D>, S: Sink<W::Sum<Lane>>>(
 ) {
     if W::SINGLE && precision == Precision::Mixed {
         return match isa {
-            // SAFETY: `run_chunks` asked the processor.
+            // SAFETY: `run_tasks` asked the processor.
             #[cfg(target_arch = "x86_64")]
             Isa::Avx512vl => unsafe { run_avx512::<D, W, S, Single<WIDEST_SINGLE>>(work, task, sink, out) },
             // SAFETY: as above.
@@ -287,7 +287,7 @@ fn run_task<const D: usize, W: Work<D>, S: Sink<W::Sum<Lane>>>(
         };
     }
     match isa {
-        // SAFETY: `run_chunks` asked the processor.
+        // SAFETY: `run_tasks` asked the processor.
         #[cfg(target_arch = "x86_64")]
         Isa::Avx512vl if W::WIDE => unsafe { run_avx512::<D, W, S, Eight>(work, task, sink, out) },
         // SAFETY: as above.

@@ -52,10 +52,8 @@ impl<const D: usize> TotalLagrangian<D> {
                     }
                 }
             });
-            sinks.moving_walls = self.mass
-                * contact.power_of_walls(self.isa, &self.material, |id| {
-                    if self.fixed.clamped[self.slot_of[id as usize] as usize] == 0.0 { 1.0 } else { 0.0 }
-                });
+            let free = |id: u32| f64::from(u8::from(self.is_free(self.slot_of[id as usize] as usize)));
+            sinks.moving_walls = self.mass * contact.power_of_walls(self.isa, &self.material, free);
         }
         sinks.driven = self.inner_of_driven();
         sinks

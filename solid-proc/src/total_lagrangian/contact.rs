@@ -321,28 +321,29 @@ impl<const D: usize> Contact<D> {
 
     /// Number of particles of other bodies that push a particle; those that give way count twice.
     fn touched(&self, slot: usize) -> usize {
-        if !self.pushed(slot) {
-            return 0;
-        }
-        let count = |&j: &u32| {
+        self.pushing(slot).map(|(j, ..)| 2 - usize::from(self.held(j))).sum()
+    }
+
+    /// Particles of other bodies that push the one at a slot: slot, x_ij and its square.
+    fn pushing(&self, slot: usize) -> impl Iterator<Item = (usize, [f64; D], f64)> {
+        let pushed = self.several && self.sums[slot / LANES].square.0[slot % LANES] != 0.0;
+        let near = if pushed { self.list.of(slot) } else { &[] };
+        near.iter().filter_map(move |&j| {
             let j = j as usize;
-            let r2: f64 = (0..D).map(|d| (self.position[d][slot] - self.position[d][j]).powi(2)).sum();
-            let pushes = self.body[j] != self.body[slot] && r2 < self.spacing * self.spacing;
-            if pushes { 2 - usize::from(self.held(j)) } else { 0 }
-        };
-        self.list.of(slot).iter().map(count).sum()
+            let apart: [f64; D] = std::array::from_fn(|d| self.position[d][slot] - self.position[d][j]);
+            let square: f64 = apart.iter().map(|x| x.powi(2)).sum();
+            let pushes = self.body[j] != self.body[slot] && square < self.spacing * self.spacing;
+            pushes.then_some((j, apart, square))
+        })
     }
 
     /// Calls `visit` with particles of two bodies that push each other, the lower number first, their x_ij / r, and the
     /// acceleration that either gets, m/s².
     pub(super) fn touching(&self, mut visit: impl FnMut([u32; 2], [f64; D], f64)) {
-        for slot in (0..self.id.len()).filter(|&slot| self.id[slot] != PADDING && self.pushed(slot)) {
-            for &j in self.list.of(slot) {
-                let j = j as usize;
-                let apart: [f64; D] = std::array::from_fn(|d| self.position[d][slot] - self.position[d][j]);
-                let r = apart.iter().map(|x| x * x).sum::<f64>().sqrt();
-                let other = self.id[j] != PADDING && self.id[slot] < self.id[j];
-                if other && self.body[j] != self.body[slot] && r > 0.0 && r < self.spacing {
+        for slot in (0..self.id.len()).filter(|&slot| self.id[slot] != PADDING) {
+            for (j, apart, square) in self.pushing(slot) {
+                if self.id[slot] < self.id[j] && self.id[j] != PADDING && square > 0.0 {
+                    let r = square.sqrt();
                     let push = (self.spacing - r) * self.stiffness / self.mass;
                     visit([self.id[slot], self.id[j]], apart.map(|x| x / r), push);
                 }
@@ -359,11 +360,6 @@ impl<const D: usize> Contact<D> {
                 visit(self.id[slot], push, walls.velocity_at(self.touching_solid(solid), slot));
             }
         }
-    }
-
-    /// Particles of other bodies push the particle at a slot.
-    fn pushed(&self, slot: usize) -> bool {
-        self.several && self.sums[slot / LANES].square.0[slot % LANES] != 0.0
     }
 
     /// Energy in the contacts between bodies, J.

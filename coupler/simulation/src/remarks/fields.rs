@@ -3,7 +3,7 @@
 use super::near;
 use super::reached::{Matter, by_place};
 use super::shapes::length;
-use super::water::{DEPTH, depths_below, falls, outermost};
+use super::water::{DEPTH, bare_side, falls};
 use halfstep_scene::geometry::{self, Cells, Layout};
 use halfstep_scene::{Geometry, Lattice, Phase, Scene, Shape, VelocityField};
 
@@ -93,17 +93,7 @@ pub(super) fn unpressed<const D: usize>(scene: &Scene, layout: &Layout<D>, all: 
         if depth < ROWS * dx {
             continue;
         }
-        let others: Vec<&[f64; D]> = {
-            let fluid = layout.fluid.iter().filter(|p| p.shape as usize != index).map(|p| &p.position);
-            let solid = layout.solid.iter().map(|p| &p.position);
-            fluid.chain(solid).chain(layout.wall.iter().map(|p| &p.position)).collect()
-        };
-        let held = |toward: (usize, f64)| {
-            let own = layout.fluid.iter().filter(|p| p.shape as usize == index).map(|p| p.position);
-            let row = outermost(own, toward, dx);
-            let beside = depths_below(&row, others.iter().copied(), toward, dx, 2.0 * dx);
-            beside.iter().filter(|depth| depth.is_none()).count() as f64 <= OPEN * row.len() as f64
-        };
+        let held = |toward: (usize, f64)| bare_side(scene, layout, index, toward) <= OPEN;
         let sides = (0..D).filter(|&a| a != axis).flat_map(|a| [(a, 1.0), (a, -1.0)]);
         if held((axis, way)) && sides.into_iter().all(held) {
             let speed = fluid.sound_speed;

@@ -1,7 +1,7 @@
 //! Remarks on gaps too narrow for the fluid, and on gates that hold less water than stands beside them.
 
 use super::shapes::length;
-use super::water::{depths_below, falls, outermost};
+use super::water::{depths_below, falls, others, outermost};
 use halfstep_scene::geometry::{self, Layout};
 use halfstep_scene::{Block, Geometry, Lattice, Phase, Scene, Shape};
 
@@ -79,10 +79,8 @@ pub(super) fn beside<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mu
         for (axis, way) in (0..D).filter(|axis| *axis != down).flat_map(|axis| [(axis, -1.0), (axis, 1.0)]) {
             let column =
                 outermost(layout.fluid.iter().filter(|p| own(p.shape)).map(|p| p.position), (axis, way), dx);
-            let fluid = layout.fluid.iter().filter(|p| !own(p.shape)).map(|p| &p.position);
-            let solid = layout.solid.iter().map(|p| &p.position);
-            let others = layout.wall.iter().map(|p| &p.position).chain(solid).chain(fluid);
-            let depths = depths_below(&column, others, (axis, way), dx, (1.0 + BESIDE[1]) * dx);
+            let depths =
+                depths_below(&column, others(layout, index), (axis, way), dx, (1.0 + BESIDE[1]) * dx);
             let Some(gap) = gap(&depths, dx, BESIDE.map(|rows| rows * dx)) else { continue };
             all.push(format!(
                 "`{}` ends at {} = {} m, {} m, {:.1} spacings, before what stands there: it falls into that gap at \

@@ -2,7 +2,7 @@
 
 use super::near;
 use super::shapes::{length, place};
-use halfstep_scene::geometry::{self, Cells, Layout, SolidPoint};
+use halfstep_scene::geometry::{Cells, Layout, SolidPoint};
 use halfstep_scene::{Block, Geometry, Scene, Shape, Traction};
 use serde::Serialize;
 use std::collections::BTreeSet;
@@ -96,15 +96,14 @@ pub(super) fn tractions<const D: usize>(scene: &Scene, layout: &Layout<D>, all: 
 
 /// Boxes of tractions that a shape leaves behind as it is turned or shifted: they are places of the scene.
 pub(super) fn left_behind<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
-    for (index, name, Traction { within, .. }) in tractions_of(scene) {
+    for (index, name, _) in tractions_of(scene) {
         let Geometry::Moved(moved) = &scene.shapes[index].geometry else { continue };
         if moved.angle == 0.0 && moved.translate == [0.0; 3] {
             continue;
         }
-        let tolerance = 1e-9 * scene.spacing(&scene.shapes[index]);
         let (mut taken, mut missed) = (0, 0);
         for point in layout.solid.iter().filter(|p| p.body as usize == index && !p.clamped) {
-            let own = geometry::holds(&within, &moved.back(0, point.position), tolerance);
+            let own = point.would_be_in_load(scene, &moved.back(0, point.position));
             let here = point.is_in_load(scene);
             taken += usize::from(here);
             missed += usize::from(own && !here && point.copy == 0);

@@ -20,22 +20,17 @@ pub(super) fn hanging<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &m
     // What has a velocity is thrown.
     let rests = |shape: &Shape| shape.phase == Phase::Fluid && shape.velocity == [0.0; 3];
     let shapes = || scene.shapes.iter().enumerate().filter(|(_, shape)| rests(shape));
-    let others = |index: usize| {
-        let fluid = layout.fluid.iter().filter(move |p| p.shape as usize != index).map(|p| &p.position);
-        let solid = layout.solid.iter().map(|p| &p.position);
-        fluid.chain(solid).chain(layout.wall.iter().map(|p| &p.position))
-    };
     let reach = 1.5 * scene.resolution;
     for (index, shape) in shapes() {
         let text = match &shape.geometry {
             Geometry::Box(_) => {
-                let bare = bare_bottom(scene, layout, index, others(index), (axis, down));
+                let bare = bare_side(scene, layout, index, (axis, down));
                 (bare > MOSTLY).then(|| match (100.0 * bare).round() {
                     100.0 => "nothing is right below it".to_owned(),
                     percent => format!("nothing is right below {percent:.0} % of its bottom"),
                 })
             }
-            _ => (!carried(layout, index, reach, others(index), (axis, down)))
+            _ => (!carried(layout, index, reach, others(layout, index), (axis, down)))
                 .then(|| "nothing is right below it".to_owned()),
         };
         if let Some(text) = text {
@@ -49,18 +44,25 @@ pub(super) fn hanging<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &m
 /// Part of the bottom of a box of fluid from which on it hangs.
 const MOSTLY: f64 = 0.5;
 
-/// Part of a box's lowest row, 0 to 1, below which there is none of `others`. 0 of a box without particles.
-fn bare_bottom<'l, const D: usize>(
+/// Places of all that is not of a shape of fluid.
+pub(super) fn others<const D: usize>(layout: &Layout<D>, shape: usize) -> impl Iterator<Item = &[f64; D]> {
+    let fluid = layout.fluid.iter().filter(move |p| p.shape as usize != shape).map(|p| &p.position);
+    let solid = layout.solid.iter().map(|p| &p.position);
+    fluid.chain(solid).chain(layout.wall.iter().map(|p| &p.position))
+}
+
+/// Part of a box's outermost row along an axis, in the sense of `way`, 0 to 1, beyond which there is nothing. 0 of a
+/// box without particles.
+pub(super) fn bare_side<const D: usize>(
     scene: &Scene,
-    layout: &'l Layout<D>,
+    layout: &Layout<D>,
     shape: usize,
-    others: impl Iterator<Item = &'l [f64; D]>,
-    (axis, down): (usize, f64),
+    toward: (usize, f64),
 ) -> f64 {
     let dx = scene.resolution;
     let own = layout.fluid.iter().filter(|p| p.shape as usize == shape).map(|p| p.position);
-    let row = outermost(own, (axis, down), dx);
-    let depths = depths_below(&row, others, (axis, down), dx, 2.0 * dx);
+    let row = outermost(own, toward, dx);
+    let depths = depths_below(&row, others(layout, shape), toward, dx, 2.0 * dx);
     let bare = depths.into_iter().filter(Option::is_none).count();
     if row.is_empty() { 0.0 } else { bare as f64 / row.len() as f64 }
 }

@@ -1,6 +1,6 @@
 //! The pass over neighbours that stay where they are to each other: those of a reference configuration.
 
-use super::{PairSum, Replace, Work, distance, run_chunks};
+use super::{PairSum, Replace, Work, distance, run_tasks};
 use crate::columns::Vectors;
 use crate::kernel::Kernel;
 use crate::lane::{Arch, Fused, Isa, LANES, Lane, Lanes, Unfused, components};
@@ -162,5 +162,5 @@ pub fn fixed_pass<const D: usize, W: FixedLaw<D>>(
     pairs: &FixedPairs<D>,
     sums: &mut [W::Sum<Lane>],
 ) {
-    run_chunks(isa, OverFixed(law, pairs), Replace(|_, sum: &W::Sum<Lane>| *sum), sums);
+    run_tasks(isa, OverFixed(law, pairs), Replace(|_, sum: &W::Sum<Lane>| *sum), sums);
 }

@@ -9,7 +9,7 @@
 //! at walls that move, only takes energy, so all do, and there is nothing to remember.
 
 use super::Fracture;
-use crate::columns::Vectors;
+use crate::columns::{Vectors, vector};
 use crate::total_lagrangian::model::TotalLagrangian;
 use halfstep_scene::EnergyPart;
 use halfstep_wire::state::{Fields, StateError};
@@ -46,9 +46,12 @@ fn slowed<const D: usize>(u: [f64; D], normal: [f64; D], most: f64, free: f64) -
 impl<const D: usize> TotalLagrangian<D> {
     /// Notes what rubs in the present state, which has been evaluated.
     pub(in crate::total_lagrangian) fn note_rubbing(&mut self) {
-        if self.fracture.as_ref().is_some_and(|fracture| fracture.friction > 0.0) {
-            let rubbing = self.rubbing();
-            self.fracture.iter_mut().for_each(|fracture| fracture.rubbing.clone_from(&rubbing));
+        if self.fracture.as_ref().is_none_or(|fracture| fracture.friction == 0.0) {
+            return;
+        }
+        let rubbing = self.rubbing();
+        if let Some(fracture) = &mut self.fracture {
+            fracture.rubbing = rubbing;
         }
     }
 
@@ -89,9 +92,9 @@ impl<const D: usize> TotalLagrangian<D> {
         let Some(fracture) = self.fracture.take_if(|fracture| !fracture.rubbing.is_empty()) else { return };
         let before = self.keeps_account().then(|| self.now.velocity.clone());
         for Rubbing { pair: [i, j], normal, push, wall } in &fracture.rubbing {
-            let velocity = |slot: usize| std::array::from_fn(|d| self.now.velocity[d][slot]);
+            let velocity = |slot: usize| vector(&self.now.velocity, slot as u32);
             let at_wall = i == j;
-            let (v, other): ([f64; D], [f64; D]) = (velocity(*i), if at_wall { *wall } else { velocity(*j) });
+            let (v, other) = (velocity(*i), if at_wall { *wall } else { velocity(*j) });
             let free = [*i, *j].map(|slot| self.is_free(slot));
             let count = if free[0] && free[1] && !at_wall { 2.0 } else { 1.0 };
             let u = std::array::from_fn(|d| v[d] - other[d]);

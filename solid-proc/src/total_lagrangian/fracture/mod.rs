@@ -195,7 +195,7 @@ impl<const D: usize> TotalLagrangian<D> {
     }
 
     /// The slot has a particle that its model moves.
-    fn is_free(&self, slot: usize) -> bool {
+    pub(super) fn is_free(&self, slot: usize) -> bool {
         self.id[slot] != PADDING && self.fixed.clamped[slot] == 0.0
     }
 }

@@ -46,18 +46,9 @@ fn fragments(friction: f64) -> Run<2> {
 fn rub_on(run: &mut Run<2>, until: f64) -> f64 {
     let mut taken = 0.0;
     while run.time < until {
-        let dt = run.model.sub_step_limit();
-        for stage in HalfStep::begin(run.steps, run.time).lasting(dt).both() {
-            run.model.advance(&stage, 1, &run.none).expect("within bounds");
-        }
-        run.model.account(&mut |part, joules| {
-            run.given += joules;
-            if part == EnergyPart::FragmentFriction {
-                taken -= joules;
-            }
-        });
-        run.time += dt;
-        run.steps += 1;
+        let mut see =
+            |part, joules: f64| taken -= if part == EnergyPart::FragmentFriction { joules } else { 0.0 };
+        run.step_and_see(&mut see).expect("within bounds");
     }
     taken
 }
@@ -169,11 +160,7 @@ fn a_wall_that_moves_against_a_clamp_gives_nothing() {
            contact = true\nmotion = { velocity = [0.0, 0.1], start = 0.0, end = 1.0 }\n";
     let mut run = Run::<2>::of(&text);
     for _ in 0..200 {
-        let dt = run.model.sub_step_limit();
-        for stage in HalfStep::begin(run.steps, run.time).lasting(dt).both() {
-            run.model.advance(&stage, 1, &run.none).expect("within bounds");
-        }
-        run.model.account(&mut |part, joules| assert_eq!(joules, 0.0, "{part:?}"));
-        (run.time, run.steps) = (run.time + dt, run.steps + 1);
+        let mut see = |part, joules| assert_eq!(joules, 0.0, "{part:?}");
+        run.step_and_see(&mut see).expect("within bounds");
     }
 }
