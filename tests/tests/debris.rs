@@ -112,8 +112,8 @@ fn cracks_and_debris_hang_on_no_process_and_no_thread() {
     assert!(frames[0].damage.iter().all(|damage| *damage == 0.0) && !frames[0].damage.is_empty());
     let end = &frames[frames.len() - 1].damage;
     let cracked = end.iter().filter(|damage| **damage > 0.95).count();
-    // 44 of the wall's 60: it is crumbled, and some are whole.
-    assert!((38..51).contains(&cracked) && cracked < end.len(), "{cracked} of {}", end.len());
+    // 17 of the wall's 60: some are crumbs, and some are whole.
+    assert!((12..23).contains(&cracked) && cracked < end.len(), "{cracked} of {}", end.len());
     assert!(end.iter().all(|damage| (0.0..=1.0).contains(damage)) && end.contains(&0.0));
     assert!(three.outcome.frames("second").iter().all(|frame| frame.damage.is_empty()));
     // One body at the start, several once it is cracked through.

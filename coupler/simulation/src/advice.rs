@@ -1,7 +1,7 @@
 //! What to change in a scene whose run diverged.
 
 use halfstep_coupling::clock::{Clock, above_limit};
-use halfstep_scene::{Scene, TimeStep};
+use halfstep_scene::{Scene, Shape, TimeStep};
 use halfstep_sph::Phase;
 use halfstep_wire::Name;
 use halfstep_wire::failure::{Diverged, Quantity};
@@ -42,10 +42,19 @@ pub(crate) fn advice(diverged: &Diverged, scene: &Scene, clock: &Clock, external
         (TimeStep::Auto, _) => format!("lower numerics.cfl (now {})", scene.numerics.cfl),
     };
     let breaks = scene.solids.iter().any(|solid| solid.name == name.as_str() && solid.fracture().is_some());
+    let of_it = |shape: &&Shape| {
+        let solid = shape.solid.map(|k| &scene.solids[k]);
+        shape.load.is_some() && solid.is_some_and(|solid| solid.name == name.as_str())
+    };
+    let loaded = scene.shapes.iter().find(of_it).map(|shape| &shape.name);
     match (diverged.quantity, phase) {
         (Quantity::Density, Phase::Solid) if breaks => format!(
             "it breaks ({section}.fracture): where debris is squeezed between others a smaller step seldom helps; look \
              at the last frames, and raise {section}.fracture.energy or {section}.youngs_modulus; or {change}"
+        ),
+        (Quantity::Speed, Phase::Solid) if let Some(loaded) = loaded.filter(|_| breaks) => format!(
+            "it may break ({section}.fracture), and the load of `{loaded}` goes on pulling at what has broken off: let \
+             the run end before (end_time), or {change}"
         ),
         (Quantity::TimeStep, _) => {
             "the time steps that the phases allow became too small to reach end_time: \
@@ -142,5 +151,11 @@ mod tests {
         let ModelKeys::TotalLagrangian(keys) = &mut brittle.solids[0].model else { panic!("a plate") };
         keys.fracture = Some(Fracture { strength: 1e5, energy: 10.0, friction: 0.0 });
         assert!(advised(&brittle, 1e-5, 1e-5, &dense).contains("raise solid.fracture.energy"));
+        assert!(!advised(&brittle, 1e-5, 1e-5, &DIVERGED).contains("broken off"));
+        let plate = brittle.shapes.iter_mut().find(|shape| shape.phase == scene::Phase::Solid).unwrap();
+        let within = plate.clamp[0];
+        plate.load = Some(scene::Traction { within, traction: [0.0, -1e5, 0.0], ramp: 0.0 });
+        let pulled = advised(&brittle, 1e-5, 1e-5, &DIVERGED);
+        assert!(pulled.contains("the load of `plate` goes on pulling at what has broken off"), "{pulled}");
     }
 }

@@ -26,6 +26,8 @@ pub struct Check {
     resolution: f64,
     /// h / dx of the water's kernel.
     smoothing_ratio: f64,
+    /// What the water's defaults are chosen for.
+    water_meets: &'static str,
     particles: Particles,
     shapes: Vec<Placed>,
     bodies: Vec<Body>,
@@ -165,6 +167,7 @@ fn check_in<const D: usize>(scene: &Scene, isa: Isa) -> Check {
         path: scene.path.display().to_string(),
         resolution: scene.resolution,
         smoothing_ratio: scene.smoothing_ratio,
+        water_meets: scene.water_meets(),
         particles: Particles { fluid, solid, wall },
         bodies_listed: (solid > 0).then(|| remarks::bodies_listed(scene, &bodies)),
         bodies: bodies.iter().map(|body| named(scene, body)).collect(),
@@ -302,7 +305,9 @@ impl Display for Check {
             }
         }
         if self.fluid_dt_limit.is_some() {
-            line("water's kernel", &format_args!("h / dx = {}", self.smoothing_ratio))?;
+            let Self { smoothing_ratio, water_meets, .. } = self;
+            line("water's kernel", &format_args!("h / dx = {smoothing_ratio}"))?;
+            line("water's defaults", &format_args!("for water that meets {water_meets}"))?;
         }
         if let Some(Speeds { sound, fastest }) = self.speeds {
             let mach = fastest / sound;

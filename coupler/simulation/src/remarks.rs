@@ -20,6 +20,7 @@ mod idle;
 mod joined;
 mod joints;
 mod jolts;
+mod lines;
 mod loaded;
 mod loads;
 mod lost;
@@ -124,6 +125,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     bodies::touching(scene, layout, &bodies, &mut all);
     bodies::standing(scene, layout, &bodies, &mut all);
     contacts::overlaps(scene, layout, &mut all);
+    contacts::face_to_face(scene, layout, &mut all);
     contacts::unsaid(scene, &mut all);
     contacts::of_walls(scene, &bodies, &mut all);
     contacts::debris(scene, &mut all);
@@ -136,6 +138,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     lost::copies(scene, layout, &mut all);
     shapes::locking(scene, placed, &mut all);
     thickness::thin(scene, placed, &mut all);
+    lines::lines(scene, layout, &mut all);
     walls::thin(scene, layout, &mut all);
     walls::across(scene, layout, &mut all);
     domain::domain(scene, layout, &mut all);
@@ -177,6 +180,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     dry::driven::<D>(scene, &mut all);
     settings::fluxes(scene, &mut all);
     settings::thin_gauges(scene, placed, &mut all);
+    settings::dry_gauges(scene, layout, &mut all);
     magnitudes::materials(scene, &mut all);
     magnitudes::gravity(scene, &mut all);
     magnitudes::viscosity(scene, &mut all);

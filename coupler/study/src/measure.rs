@@ -62,13 +62,20 @@ pub fn measure(scene: &Scene, metric: &Metric, probes: &Table) -> Result<f64, Un
     }
 }
 
-/// What a metric's number is not: a peak is the largest value, and not the largest in size.
+/// What a metric's number is not: a peak is the largest value and not the largest in size, and extremes are of rows.
 pub fn remark(metric: &Metric, probes: &Table) -> Option<String> {
-    let values = probes.column(&metric.probe).filter(|_| metric.kind == MetricKind::Peak)?;
+    let values = probes.column(&metric.probe)?;
     let curve: Curve = probes.times().into_iter().zip(values).map(|(t, v)| [t, v]).collect();
     let part = window(metric, &curve).ok()?;
-    let (least, largest) =
-        part.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p[1]), h.max(p[1])));
+    match metric.kind {
+        MetricKind::Peak => of_what_is_negative(metric, &part).or_else(|| between_rows(metric, &part, 1.0)),
+        MetricKind::Trough => between_rows(metric, &part, -1.0),
+        _ => None,
+    }
+}
+
+fn of_what_is_negative(metric: &Metric, part: &Curve) -> Option<String> {
+    let [least, largest] = range(part);
     (-least > MUCH * largest.abs().max(f64::MIN_POSITIVE) || largest < 0.0).then(|| {
         format!(
             "`{}` is the largest value of {}, {}, which goes down to {}: `peak` is not the largest in size \
@@ -80,6 +87,36 @@ pub fn remark(metric: &Metric, probes: &Table) -> Option<String> {
         )
     })
 }
+
+/// The parabola through an extreme row and its neighbours goes farther than the row, by a part of the curve's range.
+fn between_rows(metric: &Metric, part: &Curve, sign: f64) -> Option<String> {
+    let [least, largest] = range(part);
+    let top = (0..part.len()).reduce(|a, b| if sign * part[b][1] > sign * part[a][1] { b } else { a })?;
+    let [before, row, after] = [part.get(top.checked_sub(1)?)?, &part[top], part.get(top + 1)?];
+    let slopes = [[before, row], [row, after]].map(|[a, b]| (b[1] - a[1]) / (b[0] - a[0]));
+    let curvature = (slopes[1] - slopes[0]) / (after[0] - before[0]);
+    let slope = (slopes[0] * (after[0] - row[0]) + slopes[1] * (row[0] - before[0])) / (after[0] - before[0]);
+    // Of the parabola row + slope s + curvature s².
+    let beyond = sign * -slope * slope / (4.0 * curvature);
+    (beyond > BETWEEN * (largest - least)).then(|| {
+        format!(
+            "`{}`, {}, is of the row at t = {} s, and a parabola through it and its neighbours goes on by {:.0} % of \
+             the curve's range: rows nearer to each other (output.probe_interval) would see more of the extreme",
+            metric.name,
+            short(row[1]),
+            short(row[0]),
+            100.0 * beyond / (largest - least)
+        )
+    })
+}
+
+/// The least and the largest value.
+fn range(part: &Curve) -> [f64; 2] {
+    part.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], p| [l.min(p[1]), h.max(p[1])])
+}
+
+/// Part of a curve's range by which an extreme may lie between rows.
+const BETWEEN: f64 = 0.01;
 
 /// Least value of a curve over its largest, from which on a peak is hardly meant.
 const MUCH: f64 = 3.0;
@@ -260,6 +297,25 @@ mod tests {
         assert_eq!(remark(&metric(0.0), &sags).as_deref(), Some(said));
         assert_eq!(remark(&metric(0.0), &table(&[0.0, -0.2, 0.1])), None);
         assert!(remark(&metric(1.0), &table(&[5.0, -3.0, -2.0])).is_some_and(|said| said.contains("-2.000")));
+    }
+
+    #[test]
+    fn an_extreme_between_rows_is_told() {
+        let table = |interval: f64| {
+            let row = |k: u32| interval * (f64::from(k) + 0.5);
+            let rows = (0..(1.2 / interval) as u32).map(|k| vec![row(k), (6.0 * row(k)).sin()]).collect();
+            Table { columns: vec!["time [s]".into(), "p.x [m]".into()], rows }
+        };
+        let of = |kind, interval| remark(&metric(kind), &table(interval));
+        // Eight rows a period, at 0.063 s from the largest value.
+        let said = "`m`, 0.9290, is of the row at t = 0.3250 s, and a parabola through it and its neighbours goes on by 3 \
+                    % of the curve's range: rows nearer to each other (output.probe_interval) would see more of the \
+                    extreme";
+        assert_eq!(of(MetricKind::Peak, 0.13).as_deref(), Some(said));
+        assert!(of(MetricKind::Trough, 0.13).is_some_and(|said| said.contains("by 3 %")));
+        assert_eq!(of(MetricKind::Peak, 0.01), None);
+        assert_eq!(of(MetricKind::Trough, 0.01), None);
+        assert_eq!(of(MetricKind::Mean, 0.13), None);
     }
 
     #[test]

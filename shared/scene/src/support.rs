@@ -90,6 +90,16 @@ impl Scene {
         is_wide(self.smoothing_ratio)
     }
 
+    /// What the water's defaults are chosen for, in words.
+    pub fn water_meets(&self) -> &'static str {
+        match Company::of(&self.shapes, &self.solids, self.interface.treatment) {
+            Company::None => "no solid",
+            Company::Held if self.interface.treatment == Treatment::MovingWall => "solids that are held",
+            Company::Held => "solids",
+            Company::Free => "a body that nothing holds",
+        }
+    }
+
     /// A body floats, drifts or falls: nothing holds it, and the water sees it as a moving wall.
     pub fn has_free_bodies(&self) -> bool {
         Company::of(&self.shapes, &self.solids, self.interface.treatment) == Company::Free

@@ -54,11 +54,9 @@ impl<const D: usize> Loads<D> {
 
 /// Takes pairs apart whose line crosses a crack of the scene's solid of that index.
 pub(super) fn crack<const D: usize>(scene: &Scene, solid: usize, pairs: &mut FixedPairs<D>) {
-    let cracks =
-        scene.shapes.iter().filter(|shape| shape.solid == Some(solid)).filter_map(|shape| shape.crack);
-    for [from, to] in cracks {
+    for crack in scene.cracks(Some(solid)) {
         let x = pairs.position().clone();
         let place = |slot: usize| [x[0][slot], x[1][slot]];
-        pairs.part(|i, j| crosses([place(i), place(j)], [[from[0], from[1]], [to[0], to[1]]]));
+        pairs.part(|i, j| crosses([place(i), place(j)], crack));
     }
 }

@@ -1,11 +1,13 @@
 //! Remarks on what touches: overlaps at the start, and pairs of solids of which the scene says nothing.
 
-use super::meet;
 use super::shapes::length;
-use halfstep_scene::geometry::{self, Layout, Surface};
+use super::{meet, near};
+use halfstep_scene::geometry::{self, Cells, Layout, SolidPoint, Surface};
 use halfstep_scene::{Body, ContactKeys, EffectName, Geometry, Phase, Scene, Shape, Switch};
 use std::collections::HashSet;
 
+/// Distance of particles, over their spacing, at which their surfaces meet: a spacing, and what lattices are off.
+const FACING: f64 = 1.25;
 /// Part of the spacing that surfaces may lie in each other.
 const OVERLAP: f64 = 1e-3;
 
@@ -175,6 +177,38 @@ pub(super) fn debris(scene: &Scene, all: &mut Vec<String>) {
              against the other, and a piece that breaks off takes its part of the surface along",
             scene.solids[broken].name
         ));
+    }
+}
+
+/// Two solids that begin face to face, of which no table speaks: nothing ties them, and in space nothing acts between
+/// them.
+pub(super) fn face_to_face<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
+    let spacing = |p: &SolidPoint<D>| scene.spacing(&scene.shapes[p.body as usize]);
+    let widest = layout.solid.iter().map(spacing).fold(0.0, f64::max);
+    let mut cells: Cells<&SolidPoint<D>, D> = Cells::new(FACING * widest);
+    layout.solid.iter().for_each(|p| cells.add(&p.position, p));
+    let solid = |p: &SolidPoint<D>| scene.shapes[p.body as usize].solid;
+    let mut told = HashSet::new();
+    for p in &layout.solid {
+        let facing = |q: &&&SolidPoint<D>| {
+            solid(q) > solid(p) && near(&p.position, &q.position, FACING * 0.5 * (spacing(p) + spacing(q)))
+        };
+        for q in cells.around(&p.position).filter(facing) {
+            let (Some(a), Some(b)) = (solid(p), solid(q)) else { continue };
+            let said = scene.pair_contacts.iter().any(|pair| pair.solids == [a, b]);
+            if said || !told.insert([a, b]) {
+                continue;
+            }
+            let [a, b] = [p, q].map(|p| &scene.shapes[p.body as usize].name);
+            let acts = match D {
+                2 => "they push each other without friction and come apart freely",
+                _ => "in space nothing acts between these, so that they go through each other",
+            };
+            all.push(format!(
+                "`{a}` and `{b}` begin face to face and are of two solids: {acts} (shapes of one [[solid]] with the \
+                 same `body` are one piece; [[contact]] says how two solids touch in the plane)"
+            ));
+        }
     }
 }
 

@@ -126,3 +126,26 @@ fn friction_of_solids_that_do_not_touch() {
     assert!(!has(&pair("touch = false"), "do not touch"));
     assert!(!has(&pair("friction = 0.4"), "do not touch"));
 }
+
+#[test]
+fn a_row_of_one_particle_carries_nothing() {
+    // Two voids leave a row of the beam's four, 5 mm each.
+    let ligament = |upper: f64| {
+        let void = |name: &str, low: f64, high: f64| {
+            format!(
+                "[[shape]]\nname = \"{name}\"\nphase = \"void\"\nbox = {{ min = [0.2, {low}], max = [0.3, {high}] }}\n"
+            )
+        };
+        on(&format!(
+            "resolution = 0.005\nend_time = 0.1\ngravity = [0.0, -9.81]\n[solid]\ndensity = 1000.0\n\
+             youngs_modulus = 1e8\npoissons_ratio = 0.3\n{}{}[[shape]]\nname = \"beam\"\nphase = \"solid\"\n\
+             box = {{ min = [0.0, 0.0], max = [0.4, 0.02] }}\nclamp = {{ min = [0.0, 0.0], max = [0.02, 0.02] }}\n",
+            void("lower", -0.01, 0.005),
+            void("upper", upper, 0.03)
+        ))
+    };
+    let said = "20 particles of `beam`, at [0.2025, 0.0075] first, have their neighbours on one line or nearly so, and \
+                the strain across is not known: no stress, no strength, and nothing holds what hangs there (two rows carry)";
+    assert!(has(&ligament(0.01), said), "{:?}", ligament(0.01));
+    assert!(!has(&ligament(0.015), "on one line"), "{:?}", ligament(0.015));
+}

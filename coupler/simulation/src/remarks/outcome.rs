@@ -1,7 +1,7 @@
 //! Remarks on how a run went.
 
 use halfstep_output::RunReport;
-use halfstep_output::run_json::{ContactReport, WALLS};
+use halfstep_output::run_json::{ContactReport, ProbeReport, WALLS};
 use halfstep_scene::{BodyQuantity, EnergyPart, Probe, ProbeKind, Scene, Shape};
 
 /// Density error that a weakly compressible fluid should stay below.
@@ -14,6 +14,9 @@ const TENSION: f64 = 0.04;
 
 /// Energy that a contact may give to two solids, over its largest force times its largest penetration.
 const CREATED: f64 = 0.1;
+
+/// Energy that fracture may take over that of the area that it opened.
+const BESIDE_CRACKS: f64 = 3.0;
 
 /// Part of the largest energy that the ledger may leave to the error of time integration.
 const RESIDUAL: f64 = 0.05;
@@ -61,6 +64,7 @@ pub fn outcome(scene: &Scene, report: &RunReport) -> Vec<String> {
         }
     }
     all.extend(forces_with_contact(scene, report));
+    all.extend(beside_cracks(scene, report));
     if let Some(energy) = &report.energy {
         if energy.relative_residual > RESIDUAL {
             let percent = 100.0 * energy.relative_residual;
@@ -76,6 +80,32 @@ pub fn outcome(scene: &Scene, report: &RunReport) -> Vec<String> {
                     participant.name
                 ));
             }
+        }
+    }
+    all
+}
+
+/// What fracture took beyond the energy of the area that was opened: of solids with a probe for either.
+fn beside_cracks(scene: &Scene, report: &RunReport) -> Vec<String> {
+    let mut all = Vec::new();
+    for (k, solid) in scene.solids.iter().enumerate() {
+        let Some(keys) = solid.fracture() else { continue };
+        let end = |is: fn(&ProbeKind) -> bool| {
+            let probe = scene.probes.iter().find(|probe| is(&probe.kind) && probe.solid.unwrap_or(0) == k)?;
+            let column =
+                |column: &&ProbeReport| column.name.split_once('.').is_some_and(|c| c.0 == probe.name);
+            report.probes.iter().find(column)?.end
+        };
+        let energy = end(|kind| matches!(kind, ProbeKind::CrackEnergy));
+        let area = end(|kind| matches!(kind, ProbeKind::CrackArea));
+        let Some((taken, area)) = energy.zip(area).filter(|(_, area)| *area > 0.0) else { continue };
+        let times = taken / (keys.energy * area);
+        if times > BESIDE_CRACKS {
+            all.push(format!(
+                "fracture of the {} took {taken:.3} J, {times:.1} times what the cracks of {area:.3} take at \
+                 {} J/m²: a crushed particle, and a last row that holds as a hinge, store more than a crack",
+                solid.name, keys.energy
+            ));
         }
     }
     all
@@ -146,5 +176,26 @@ mod tests {
         };
         assert_eq!(of(0.0), [""; 0], "they never met");
         assert_eq!(of(1.0), ["probe `push` holds the force of the contact of a and b, too"]);
+    }
+
+    #[test]
+    fn what_fracture_takes_beside_cracks_is_told() {
+        let text = "resolution = 0.01\nend_time = 1.0\ngravity = [0.0, -10.0]\n[solid]\ndensity = 2000.0\n\
+                    youngs_modulus = 1e9\npoissons_ratio = 0.2\nfracture = { strength = 1e5, energy = 2.0 }\n\
+                    [[shape]]\nname = \"wall\"\nphase = \"solid\"\nbox = { min = [0.0, 0.0], max = [0.1, 0.3] }\n\
+                    [[probe]]\nname = \"taken\"\nkind = \"crack-energy\"\n[[probe]]\nname = \"open\"\n\
+                    kind = \"crack-area\"\n";
+        let scene = halfstep_scene::parse(text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}"));
+        let column =
+            |name: &str, end| ProbeReport { name: name.into(), end: Some(end), ..Default::default() };
+        let of = |taken, area| {
+            let probes = vec![column("taken.energy", taken), column("open.area", area)];
+            beside_cracks(&scene, &RunReport { probes, ..RunReport::default() })
+        };
+        assert_eq!(of(1.19, 0.2), [""; 0], "2.98 times");
+        assert_eq!(of(0.3, 0.0), [""; 0], "it is damaged");
+        let said = "fracture of the solid took 1.400 J, 3.5 times what the cracks of 0.200 take at 2 J/m²: a crushed \
+                    particle, and a last row that holds as a hinge, store more than a crack";
+        assert_eq!(of(1.4, 0.2), [said]);
     }
 }

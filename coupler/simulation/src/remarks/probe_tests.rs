@@ -130,3 +130,20 @@ fn probes_in_a_paddle() {
         assert!(!has(&on(&point, 0.03), "throughout"), "{kind}: {:?}", on(&point, 0.03));
     }
 }
+
+#[test]
+fn a_gauge_that_begins_dry_beside_water_below_zero() {
+    let of = |floor: f64, x: f64| {
+        let down = |text: &str| {
+            let raised = |text: String, y: f64| text.replace(&format!("{y:.1}]"), &format!("{}]", floor + y));
+            raised(raised(text.replace("0.0], max", &format!("{floor}], max")), 0.3), 0.1)
+        };
+        plain(&[&down(TANK), &down(WATER), PLATE, &probe(&format!("kind = \"water-level\"\nx = {x}"))])
+    };
+    let said = "the gauge `p` begins dry at x = 0.3 m, and stands at 0 there until water comes: a level that water can \
+                have, since the lowest place of the fluid is y = -0.2 m";
+    assert!(has(&of(-0.2, 0.3), said), "{:?}", of(-0.2, 0.3));
+    assert!(has(&of(0.5, 0.3), "below its floor, since the lowest place of the fluid is y = 0.5 m"));
+    assert!(!has(&of(0.0, 0.3), "begins dry"));
+    assert!(!has(&of(-0.2, 0.1), "begins dry"));
+}

@@ -1,11 +1,12 @@
 //! Remarks on settings that cannot act in their scene, or act the other way around.
 
+use super::curves::level_at;
 use super::near;
 use super::shapes::{Placed, length};
 use super::walls::kernel_support;
 use super::water::INSTANTS;
 use halfstep_scene::geometry::{Cells, Layout};
-use halfstep_scene::{Course, Motion, Phase, ProbeKind, Scene, geometry};
+use halfstep_scene::{Course, Geometry, Motion, Phase, ProbeKind, Scene, Shape, geometry};
 
 /// Motions that begin, or reach their amplitude, after the run.
 pub(super) fn motions(scene: &Scene, all: &mut Vec<String>) {
@@ -146,6 +147,29 @@ pub(super) fn thin_gauges(scene: &Scene, placed: &[Placed], all: &mut Vec<String
                 thickness as f32
             ));
         }
+    }
+}
+
+/// Water levels that begin dry where 0, which they say then, is a level that water can have, or one below the floor.
+pub(super) fn dry_gauges<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
+    let tank = |shape: &Shape| match &shape.geometry {
+        Geometry::Tank { cavity, .. } => Some(cavity.min[1]),
+        _ => None,
+    };
+    let wet = layout.fluid.iter().map(|p| p.position[1] - 0.5 * scene.resolution);
+    let Some(lowest) = wet.chain(scene.shapes.iter().filter_map(tank)).reduce(f64::min) else { return };
+    if lowest.abs() < scene.resolution {
+        return;
+    }
+    for probe in &scene.probes {
+        let ProbeKind::WaterLevel { x } = &probe.kind else { continue };
+        let Some(dry) = x.iter().find(|&&x| level_at(scene, layout, x).is_none()) else { continue };
+        let what = if lowest < 0.0 { "a level that water can have" } else { "below its floor" };
+        all.push(format!(
+            "the gauge `{}` begins dry at x = {dry} m, and stands at 0 there until water comes: {what}, since the \
+             lowest place of the fluid is y = {} m",
+            probe.name, lowest as f32
+        ));
     }
 }
 

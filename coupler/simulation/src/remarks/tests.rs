@@ -101,6 +101,19 @@ fn two_solids_whose_own_bodies_rub_and_that_do_not() {
 }
 
 #[test]
+fn two_solids_that_begin_face_to_face() {
+    let said = "`block-0` and `block-1` begin face to face and are of two solids: they push each other without \
+                friction and come apart freely (shapes of one [[solid]] with the same `body` are one piece; \
+                [[contact]] says how two solids touch in the plane)";
+    let found = rigid(["a", "b"], [0.1, 0.0], "");
+    assert!(found.iter().any(|text| text == said), "{found:?}");
+    let contact = "[[contact]]\nsolids = [\"a\", \"b\"]\nfriction = 0.0\n";
+    assert_eq!(rigid(["a", "b"], [0.1, 0.0], contact), [""; 0]);
+    let apart = rigid(["a", "b"], [0.12, 0.0], "");
+    assert!(!apart.iter().any(|text| text.contains("face to face")), "{apart:?}");
+}
+
+#[test]
 fn a_rigid_body_in_the_nodal_lattice_lacks_half_a_spacing() {
     let found = rigid(["a", "a"], [0.2, 0.0], "numerics.lattice = \"nodal\"\n");
     let lacks = found.iter().filter(|text| text.contains("has 81 % of the mass that its size asks for"));

@@ -1,13 +1,16 @@
-//! Where lines in the plane cross.
+//! Which lines a crack crosses.
 
-/// Two lines in the plane cross; one that ends on the other does.
+/// Part of a crack's length by which a point may be beside its line and count as on it.
+const ON_IT: f64 = 1e-9;
+
+/// The line from a to b crosses a crack. Who is on the crack's own line is on its left: each has one side, and a row on
+/// the line stays with its neighbours there. A crack that ends on the line from a to b crosses it.
 pub fn crosses([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> bool {
     let side =
         |p: [f64; 2], q: [f64; 2], r: [f64; 2]| (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
-    // Two on one line may lie apart.
-    let meet = |k: usize| a[k].min(b[k]) <= c[k].max(d[k]) && c[k].min(d[k]) <= a[k].max(b[k]);
-    let across = side(a, b, c) * side(a, b, d) <= 0.0 && side(c, d, a) * side(c, d, b) <= 0.0;
-    across && meet(0) && meet(1)
+    let length_squared = (d[0] - c[0]).powi(2) + (d[1] - c[1]).powi(2);
+    let left = |p: [f64; 2]| side(c, d, p) >= -ON_IT * length_squared;
+    left(a) != left(b) && side(a, b, c) * side(a, b, d) <= 0.0
 }
 
 #[cfg(test)]
@@ -22,6 +25,10 @@ mod tests {
         assert!(!crosses([[1.8, -0.5], [2.6, 0.5]], crack), "beyond the end");
         assert!(!crosses([[1.0, 0.5], [1.0, 1.5]], crack), "above it");
         assert!(!crosses([[2.5, 0.0], [3.0, 0.0]], crack), "on its line, beyond the end");
-        assert!(crosses([[1.5, 0.0], [2.5, 0.0]], crack), "along it");
+        assert!(!crosses([[1.5, 0.0], [2.5, 0.0]], crack), "along it");
+        for on_it in [1e-16, 0.0, -1e-16] {
+            assert!(crosses([[1.0, on_it], [1.0, -0.5]], crack), "a row on it is on its left");
+            assert!(!crosses([[1.0, on_it], [1.0, 0.5]], crack));
+        }
     }
 }

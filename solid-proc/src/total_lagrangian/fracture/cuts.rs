@@ -40,13 +40,25 @@ impl<const D: usize> TotalLagrangian<D> {
                 }
                 let strain =
                     if rigid(j) { fracture.strain[i] } else { fracture.strain[i].min(fracture.strain[j]) };
-                let (x, y) = (self.position_at(i), self.position_at(j));
-                let present: f64 = (0..D).map(|d| (x[d] - y[d]).powi(2)).sum();
-                let reference = self.apart(i, j).norm_squared();
-                if present > reference * (1.0 + STRETCHED * strain).powi(2) {
+                if self.is_stretched([i, j], STRETCHED * strain) {
                     torn.push([i.min(j), i.max(j)]);
                 }
             }
+        }
+        // A particle without a deformation gradient has no stress and no damage that grows: how far a pair of it is
+        // stretched tells alone whether it holds.
+        for i in (0..self.id.len()).filter(|&slot| fracture.loose > 0 && self.is_free(slot)) {
+            if self.has_strain(i) {
+                continue;
+            }
+            let onset = if fracture.strain[i] > 0.0 {
+                fracture.onset[i]
+            } else {
+                fracture.keys.strength / fracture.modulus
+            };
+            let strain = STRETCHED * fracture.law(i, onset).strain_of(super::BROKEN);
+            let stretched = self.pairs.neighbours(i).filter(|&(j, _)| self.is_stretched([i, j], strain));
+            torn.extend(stretched.map(|(j, _)| [i.min(j), i.max(j)]));
         }
         for &i in &fracture.crushed {
             torn.extend(self.pairs.neighbours(i).map(|(j, _)| [i.min(j), i.max(j)]));
@@ -54,6 +66,13 @@ impl<const D: usize> TotalLagrangian<D> {
         torn.sort_unstable();
         torn.dedup();
         torn
+    }
+
+    /// A pair is longer than its reference by more than this strain.
+    fn is_stretched(&self, [i, j]: [usize; 2], strain: f64) -> bool {
+        let (x, y) = (self.position_at(i), self.position_at(j));
+        let present: f64 = (0..D).map(|d| (x[d] - y[d]).powi(2)).sum();
+        present > self.apart(i, j).norm_squared() * (1.0 + strain).powi(2)
     }
 
     /// Cuts what is torn in the present state, which has been evaluated, and evaluates what is left.

@@ -1,6 +1,7 @@
 //! Damage grows at the end of an accepted sub-step, from the deformation gradients of its state.
 
 use super::Fracture;
+use super::principal::largest;
 use crate::total_lagrangian::evaluate::at;
 use crate::total_lagrangian::material::Matrix;
 use crate::total_lagrangian::model::TotalLagrangian;
@@ -15,7 +16,32 @@ fn resistance(damage: f64) -> f64 {
     square(square(fourth))
 }
 
+/// Where a particle is on its softening curve.
+struct Point {
+    /// e0.
+    onset: f64,
+    /// Its largest principal stretch when damage began, at e0.
+    begun: f64,
+    /// e: the largest strain that it has had.
+    strain: f64,
+    /// d.
+    damage: f64,
+}
+
 impl<const D: usize> Fracture<D> {
+    fn point(&self, slot: usize) -> Point {
+        let [onset, begun, strain, damage] =
+            [&self.onset, &self.begun, &self.strain, &self.damage].map(|column| column[slot]);
+        Point { onset, begun, strain, damage }
+    }
+
+    fn set(&mut self, slot: usize, point: &Point) {
+        self.onset[slot] = point.onset;
+        self.begun[slot] = point.begun;
+        self.strain[slot] = point.strain;
+        self.damage[slot] = point.damage;
+    }
+
     /// Norm of P, Pa, squared, below which nothing happens to an intact particle: at a surface twice the tension.
     pub(in crate::total_lagrangian) fn screen(&self) -> f64 {
         if self.accepted { 0.2 * self.keys.strength * self.keys.strength } else { f64::INFINITY }
@@ -50,31 +76,38 @@ impl<const D: usize> TotalLagrangian<D> {
         let Some(fracture) = &self.fracture else { return };
         let mut grown = Vec::new();
         for &slot in candidates.iter().filter(|&&slot| self.has_strain(slot)) {
-            let tension = self.tension(slot);
-            let strain = tension / fracture.modulus;
-            if fracture.strain[slot] > 0.0 {
-                if strain > fracture.strain[slot] {
-                    grown.push((slot, fracture.onset[slot], strain));
+            let (tension, stretch) = (self.tension(slot), self.stretch(slot));
+            let mut point = match fracture.strain[slot] > 0.0 {
+                true => fracture.point(slot),
+                false => {
+                    let outward = &fracture.outward[slot];
+                    let ratio = if *outward == [0.0; D] { 1.0 } else { self.at_surface(slot, outward) };
+                    if ratio * tension <= fracture.keys.strength {
+                        continue;
+                    }
+                    let onset = fracture.keys.strength / (ratio * fracture.modulus);
+                    Point { onset, begun: stretch, strain: onset, damage: 0.0 }
                 }
-                continue;
-            }
-            let outward = &fracture.outward[slot];
-            let ratio = if *outward == [0.0; D] { 1.0 } else { self.at_surface(slot, outward) };
-            if ratio * tension > fracture.keys.strength {
-                grown.push((slot, fracture.keys.strength / (ratio * fracture.modulus), strain));
+            };
+            // A force over the area that it had.
+            let nominal = tension * self.volume_ratio[slot] / stretch;
+            // What a squeeze stretches across it is no opening: the law of the whole has no tension there.
+            let strain = (tension / fracture.modulus).min(point.onset + stretch - point.begun);
+            point.strain = point.strain.max(strain);
+            let damage = 1.0 - fracture.law(slot, point.onset).tension(point.strain) / nominal;
+            if nominal > 0.0 && damage > point.damage {
+                grown.push((slot, Point { damage, ..point }));
             }
         }
-        for (slot, onset, strain) in grown {
+        for (slot, point) in grown {
             let before = self.energy_at(slot);
             let Some(fracture) = &mut self.fracture else { return };
             if fracture.strain[slot] == 0.0 {
                 let place = fracture.damaged.partition_point(|&other| other < slot);
                 fracture.damaged.insert(place, slot);
             }
-            let old = fracture.damage[slot];
-            (fracture.onset[slot], fracture.strain[slot]) = (onset, strain);
-            fracture.damage[slot] = fracture.softening(slot).damage(strain);
-            let (damage, last) = (fracture.damage[slot], fracture.last[slot]);
+            let (old, damage, last) = (fracture.damage[slot], point.damage, fracture.last[slot]);
+            fracture.set(slot, &point);
             self.soften(slot);
             let after = before - self.energy_at(slot);
             // Over the sub-step, in which the strain went from the last one to the present one: for e² the velocity
@@ -89,6 +122,12 @@ impl<const D: usize> TotalLagrangian<D> {
             let bracket = self.stress_at(slot, &f, j) * correction - h * self.hourglass[slot];
             self.set_bracket(slot, &bracket);
         }
+    }
+
+    /// The largest principal stretch of a slot.
+    fn stretch(&self, slot: usize) -> f64 {
+        let f = &self.gradient[slot];
+        largest(&(f.transpose() * f)).sqrt()
     }
 
     /// Strain energy that damage takes from a particle at F, J, by growing.

@@ -1,9 +1,10 @@
 //! Fracture (`solid.fracture`): crack-band damage in particles, cuts of pairs, and the bodies that are left.
 //!
 //! **Damage.** The principal tension sigma of the undamaged law (Rankine), carried to the surface where a particle lies
-//! under one, starts damage where it reaches f_t. The largest strain e = sigma / E' that a particle has seen then gives
-//!   d(e) = 1 - (e0 / e) exp(-(e - e0) / e_f),   e0 = f_t / E',   e_f = G_f / (f_t b) - e0 / 2
-//! (Bazant and Oh 1983), so a band of width b takes G_f from a crack across it.
+//! under one, starts damage where it reaches f_t. From then on the nominal tension follows the largest stretch s,
+//!   (1 - d) sigma J / s <= f_t exp(-(e - e0) / e_f),   e = e0 + s - s0,   e0 = f_t / E',
+//!   e_f = G_f / (f_t b) - e0 / 2   (Bazant and Oh 1983),
+//! so a band of width b takes G_f from a crack across it, whatever Poisson's ratio is.
 //! Damage scales the tensile part of the stored energy (see `split`) and, to the sixteenth power of 1 - d, the
 //! hourglass resistance, which would stiffen the band.
 //!
@@ -65,6 +66,8 @@ pub(super) struct Fracture<const D: usize> {
     strain: Vec<f64>,
     /// Strain at which damage began.
     onset: Vec<f64>,
+    /// Largest principal stretch at which it did.
+    begun: Vec<f64>,
     /// d.
     damage: Vec<f64>,
     /// F at the end of the last accepted sub-step.
@@ -116,6 +119,7 @@ impl<const D: usize> Fracture<D> {
             band: Vec::new(),
             strain: Vec::new(),
             onset: Vec::new(),
+            begun: Vec::new(),
             damage: Vec::new(),
             last: Vec::new(),
             damaged: Vec::new(),
@@ -160,7 +164,12 @@ impl<const D: usize> Fracture<D> {
     }
 
     fn softening(&self, slot: usize) -> Softening {
-        Softening::new(self.onset[slot], self.modulus, self.keys.energy / self.band[slot])
+        self.law(slot, self.onset[slot])
+    }
+
+    /// Softening of a slot from this strain on.
+    fn law(&self, slot: usize, onset: f64) -> Softening {
+        Softening::new(onset, self.modulus, self.keys.energy / self.band[slot])
     }
 }
 
@@ -172,7 +181,8 @@ impl<const D: usize> TotalLagrangian<D> {
         let determinant = |slot: usize| tensor::determinant(&self.moment(slot));
         fracture.inside = (0..slots).filter(|&slot| self.is_free(slot)).map(determinant).fold(0.0, f64::max);
         let none = vec![0.0; slots];
-        (fracture.strain, fracture.onset, fracture.damage) = (none.clone(), none.clone(), none);
+        (fracture.strain, fracture.onset) = (none.clone(), none.clone());
+        (fracture.begun, fracture.damage) = (none.clone(), none);
         fracture.last = vec![Matrix::identity(); slots];
         fracture.outward = (0..slots).map(|slot| self.outward(slot, fracture.inside)).collect();
         // Toward a rigid clamp a particle sees the opening gain times, and alone.

@@ -8,13 +8,15 @@ pub(super) struct Softening {
     onset: f64,
     /// e_f.
     fade: f64,
+    /// f, Pa.
+    strength: f64,
 }
 
 impl Softening {
     /// From the strain at which damage begins, E' in Pa, and the energy G_f / b, J/m³. A particle under the surface,
     /// whose surface reaches f_t first, begins earlier and takes the same energy.
     pub(super) fn new(onset: f64, modulus: f64, energy: f64) -> Self {
-        Self { onset, fade: energy / (onset * modulus) - 0.5 * onset }
+        Self { onset, fade: energy / (onset * modulus) - 0.5 * onset, strength: onset * modulus }
     }
 
     /// The strain at which `left` of the strength is left.
@@ -22,12 +24,9 @@ impl Softening {
         self.onset - self.fade * libm::log(left)
     }
 
-    /// d of the largest strain so far.
-    pub(super) fn damage(&self, strain: f64) -> f64 {
-        if strain <= self.onset {
-            return 0.0;
-        }
-        1.0 - self.onset / strain * libm::exp(-(strain - self.onset) / self.fade)
+    /// sigma of a strain from e0 on, Pa.
+    pub(super) fn tension(&self, strain: f64) -> f64 {
+        self.strength * libm::exp(-(strain - self.onset) / self.fade)
     }
 }
 
@@ -40,11 +39,11 @@ mod tests {
         let (onset, modulus, energy) = (1e-3, 2e9, 5e3);
         let law = Softening::new(onset, modulus, energy);
         let (n, end) = (2_000_000, 0.08);
-        let stress = |e: f64| (1.0 - law.damage(e)) * modulus * e;
         let step = end / f64::from(n);
+        let stress = |e: f64| if e < onset { modulus * e } else { law.tension(e) };
         let area: f64 = (0..n).map(|k| stress((f64::from(k) + 0.5) * step) * step).sum();
         assert!((area / energy - 1.0).abs() < 1e-4, "{area}");
-        assert_eq!(law.damage(onset), 0.0);
-        assert!((law.damage(2.0 * onset) - (1.0 - 0.5 * (-onset / law.fade).exp())).abs() < 1e-15);
+        assert_eq!(law.tension(onset), onset * modulus);
+        assert!((law.tension(law.strain_of(0.005)) / (onset * modulus) - 0.005).abs() < 1e-15);
     }
 }

@@ -1,4 +1,4 @@
-//! What fracture keeps over an interruption: strains, onsets and cuts, by particle number; all else follows.
+//! What fracture keeps over an interruption: damage, where it began, and cuts, by slot; all else follows.
 
 use super::Fracture;
 use super::faces::Face;
@@ -18,8 +18,12 @@ impl<const D: usize> State for Saved<'_, D> {
         let slots = self.fracture.strain.len();
         fields.reals("strain", &mut self.fracture.strain)?;
         fields.reals("onset", &mut self.fracture.onset)?;
-        fields.length("strain", slots, self.fracture.strain.len())?;
-        fields.length("onset", slots, self.fracture.onset.len())?;
+        fields.reals("begun", &mut self.fracture.begun)?;
+        fields.reals("damage", &mut self.fracture.damage)?;
+        let Fracture { strain, onset, begun, damage, .. } = &*self.fracture;
+        for (name, column) in [("strain", strain), ("onset", onset), ("begun", begun), ("damage", damage)] {
+            fields.length(name, slots, column.len())?;
+        }
         fields.real("taken", &mut self.fracture.taken)?;
         fields.numbers("cuts", self.cuts)?;
         fields.reals("distances", self.distances)?;
@@ -48,9 +52,6 @@ impl<const D: usize> TotalLagrangian<D> {
             return Err(StateError::contradiction("cuts between other particles than the scene's"));
         }
         let damaged: Vec<usize> = (0..slots).filter(|&slot| fracture.strain[slot] > 0.0).collect();
-        for &slot in &damaged {
-            fracture.damage[slot] = fracture.softening(slot).damage(fracture.strain[slot]);
-        }
         fracture.damaged = damaged.clone();
         let pairs = cuts.chunks_exact(2).map(|pair| [pair[0] as usize, pair[1] as usize]);
         fracture.faces = pairs.zip(distances).map(|(pair, distance)| Face { pair, distance }).collect();

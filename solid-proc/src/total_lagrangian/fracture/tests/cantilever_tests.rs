@@ -76,8 +76,8 @@ impl Cantilever {
             )
     }
 
-    /// The load at the first damage and at the cut through half of the thickness, over that of beam theory.
-    fn broken(&self) -> [f64; 2] {
+    /// The run, and the rate of the load over that of beam theory, 1/s.
+    fn begun(&self) -> (Run<2>, f64) {
         let mut run = Run::<2>::of(&self.text());
         let (t, dx) = (Self::THICKNESS, self.dx());
         // Whole cells carry the load: in a turned lattice more or less of them than the box is long.
@@ -95,11 +95,17 @@ impl Cantilever {
                 run.model.now.velocity[1][slot] = force * x * x * (3.0 * arm - x);
             }
         }
+        (run, rate)
+    }
+
+    /// The load at the first damage and at the cut through half of the thickness, over that of beam theory.
+    fn broken(&self) -> [f64; 2] {
+        let (mut run, rate) = self.begun();
         while run.model.summary().energy == 0.0 {
             run.step();
         }
         let first = rate * run.time;
-        while run.model.summary().area < 0.5 * t {
+        while run.model.summary().area < 0.5 * Self::THICKNESS {
             assert!(run.time < self.ramp, "it holds");
             run.step();
         }
@@ -123,20 +129,92 @@ fn a_brittle_cantilever_breaks_where_beam_theory_says() {
 
 /// Without a swing. Plane elasticity has the outermost particle at the clamp reach f_t at 0.98 (10 across) and 0.97
 /// (20) of beam theory's load: the clamp holds the section from warping. Measured: 0.965 and 0.962; the break at 0.971
-/// and 1.040. Asked for are 5 and 10 %; bands of 1 % about what is measured lie within.
+/// and 1.040. Asked for are 5 and 10 %; bands of 1 % about what is measured lie within. In the turned lattice the first
+/// damage misses them, and the break meets them where the band is wide beside the spacing: 20 across, 4.5.
 #[test]
-#[ignore = "many minutes"]
+#[ignore = "a quarter of an hour"]
 fn finer_cantilevers_break_where_beam_theory_says() {
-    for (across, measured) in [(10.0, [0.965, 0.971]), (20.0, [0.962, 1.040])] {
-        let found = Cantilever { across, brittleness: 8.0, glides: true, ..BEAM }.broken();
+    let cases = [
+        (10.0, 8.0, 0.0, [0.965, 0.971]),
+        (20.0, 8.0, 0.0, [0.962, 1.040]),
+        (10.0, 4.5, 0.0, [0.965, 1.091]),
+        (10.0, 8.0, 30.0, [0.829, 0.830]),
+        (10.0, 4.5, 30.0, [0.829, 0.835]),
+        (20.0, 4.5, 30.0, [0.795, 0.933]),
+    ];
+    for (across, brittleness, angle, measured) in cases {
+        let found = Cantilever { across, brittleness, angle, glides: true, ..BEAM }.broken();
         for (found, measured) in found.into_iter().zip(measured) {
-            assert!((found / measured - 1.0).abs() < 0.01, "{across}: {found}");
+            assert!((found / measured - 1.0).abs() < 0.01, "{across}, {brittleness}, {angle}: {found}");
         }
     }
 }
 
-/// A turned lattice has ragged faces and clamps: the first damage misses the 5 % of a straight one. 10 across it misses
-/// the break's 10 %, too (0.83).
+/// The tension in the inner corners of a ragged face, over that of beam theory in the same place: a corner whose cell
+/// is missing is a notch.
+#[test]
+#[ignore = "minutes"]
+fn a_ragged_face_is_a_row_of_notches() {
+    for (across, measured) in [(10.0, 1.75), (20.0, 1.52)] {
+        let beam = Cantilever { across, angle: 30.0, glides: true, ..BEAM };
+        let (mut run, rate) = beam.begun();
+        let places = run.model.particles().position.to_vec();
+        let corners: Vec<(usize, f64)> = (0..places.len())
+            .filter_map(|p| {
+                let (slot, [x, y]) = (run.model.slot_of[p] as usize, places[p]);
+                let nominal = (1.0 - 2.0 * y / Cantilever::THICKNESS) * (1.0 - x / beam.length);
+                let inside = run.model.fracture.as_ref().expect("a brittle beam").outward[slot] == [0.0; 2];
+                (inside && run.model.is_free(slot) && (0.2..1.5).contains(&(x / Cantilever::THICKNESS)))
+                    .then_some((slot, nominal))
+                    .filter(|_| y < 1.5 * beam.dx())
+            })
+            .collect();
+        let (mut sums, mut count) = (vec![0.0; corners.len()], 0.0);
+        while rate * run.time < 0.7 {
+            run.step();
+            if rate * run.time > 0.5 {
+                count += 1.0;
+                for (sum, (slot, nominal)) in sums.iter_mut().zip(&corners) {
+                    *sum += run.model.tension(*slot) / (rate * run.time * 1e6 * nominal);
+                }
+            }
+        }
+        let mean = sums.into_iter().fold(0.0, f64::max) / count;
+        println!(
+            "{across} across: {mean:.3} of the beam's tension in the sharpest of {} corners",
+            corners.len()
+        );
+        assert!((mean / measured - 1.0).abs() < 0.02, "{across}: {mean}");
+    }
+}
+
+/// The last row of a cantilever that its own weight breaks holds as a hinge: what fracture takes until it is off, or
+/// until 0.1 s, over G_f t.
+#[test]
+fn walls_of_few_rows_hold_as_hinges() {
+    let dx = 0.005;
+    for (rows, off, measured) in [(6.0, Some(0.0475), 1.67), (5.0, Some(0.080), 3.93), (4.0, None, 14.1)] {
+        let t = rows * dx;
+        let text = format!(
+            "resolution = {dx}\nend_time = 1.0\ngravity = [0.0, -9.81]\n[solid]\ndensity = 2400.0\n\
+             youngs_modulus = 1e9\npoissons_ratio = 0.2\n{}\n[[shape]]\nname = \"bar\"\nphase = \"solid\"\n\
+             box = {{ min = [-0.01, 0.0], max = [0.21, {t}] }}\n\
+             clamp = {{ min = [-0.02, -0.01], max = [0.0, {}] }}\n",
+            strength_and_energy(5e4, 0.1),
+            t + 0.01
+        );
+        let mut run = Run::<2>::of(&text);
+        while run.model.summary().bodies == 1 && run.time < 0.1 {
+            run.step();
+        }
+        let ratio = run.model.summary().energy / (0.1 * t);
+        println!("{rows} rows: {ratio:.2} of G_f t at {:.4} s", run.time);
+        assert!((ratio / measured - 1.0).abs() < 0.1, "{rows}: {ratio}");
+        assert!(off.is_none_or(|off: f64| (run.time / off - 1.0).abs() < 0.05), "{rows}: {} s", run.time);
+    }
+}
+
+/// A turned lattice has ragged faces and clamps: the first damage misses the 5 % of a straight one.
 #[test]
 fn a_cantilever_of_a_turned_lattice_breaks_earlier() {
     let [first, broken] = Cantilever { angle: 30.0, ..BEAM }.broken();
