@@ -17,13 +17,6 @@ pub struct Body {
 }
 
 impl Scene {
-    /// Cracks that shapes of a solid begin with, m.
-    pub fn cracks(&self, solid: Option<usize>) -> impl Iterator<Item = [[f64; 2]; 2]> {
-        let own =
-            self.shapes.iter().filter(move |shape| shape.solid == solid).filter_map(|shape| shape.crack);
-        own.map(|ends| ends.map(|[x, y, _]| [x, y]))
-    }
-
     /// The bodies, in the order of their first particles.
     pub fn bodies(&self) -> Vec<Body> {
         let all = dispatch!(self.dimension, D => self.bodies_of::<D>(&geometry::solids(self)));

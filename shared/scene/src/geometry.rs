@@ -34,7 +34,7 @@ pub use alone::{measure_alone, places_alone};
 pub use at_start::cantilever_velocity;
 use at_start::{added, field_velocity, initial_pressure, surfaces};
 pub use cells::{Cells, cell};
-pub use crossing::crosses;
+pub use crossing::{Cracks, crosses};
 pub use line::along;
 pub use moved::Moved;
 pub use nearest::nearest;

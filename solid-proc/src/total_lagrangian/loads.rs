@@ -1,7 +1,7 @@
 //! Tractions and cracks that a scene prescribes.
 
 use crate::columns::Vectors;
-use halfstep_scene::geometry::{SolidPoint, crosses};
+use halfstep_scene::geometry::{Cracks, SolidPoint, crosses};
 use halfstep_scene::{Scene, Traction};
 use halfstep_sph::pair::FixedPairs;
 
@@ -54,7 +54,7 @@ impl<const D: usize> Loads<D> {
 
 /// Takes pairs apart whose line crosses a crack of the scene's solid of that index.
 pub(super) fn crack<const D: usize>(scene: &Scene, solid: usize, pairs: &mut FixedPairs<D>) {
-    for crack in scene.cracks(Some(solid)) {
+    for crack in Cracks::of(scene).of_solid(Some(solid)) {
         let x = pairs.position().clone();
         let place = |slot: usize| [x[0][slot], x[1][slot]];
         pairs.part(|i, j| crosses([place(i), place(j)], crack));

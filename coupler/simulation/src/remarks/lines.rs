@@ -1,7 +1,7 @@
 //! Remarks on single rows, whose particles have their neighbours on one line.
 
 use super::shapes::place;
-use halfstep_scene::geometry::{self, Cells, Layout, SolidPoint};
+use halfstep_scene::geometry::{self, Cells, Cracks, Layout, SolidPoint};
 use halfstep_scene::{Scene, SolidModelName};
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::{tensor, with_kernel};
@@ -18,7 +18,7 @@ pub(super) fn lines<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut
     let own: Vec<_> = layout.solid.iter().zip(geometry::pieces(scene, layout)).collect();
     let mut cells = Cells::new(layout.solid.iter().map(|p| 2.0 * length(p)).fold(0.0, f64::max));
     own.iter().for_each(|entry| cells.add(&entry.0.position, entry));
-    let any_crack = scene.shapes.iter().any(|shape| shape.crack.is_some());
+    let cracks = Cracks::of(scene);
     let mut found: BTreeMap<u32, (usize, [f64; D])> = BTreeMap::new();
     for (p, piece) in
         own.iter().filter(|(p, _)| model(p) == Some(SolidModelName::TotalLagrangian) && !p.clamped)
@@ -26,10 +26,8 @@ pub(super) fn lines<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut
         let (h, volume) = (length(p), spacing(p).powi(D as i32));
         let mut moment = SMatrix::<f64, D, D>::zeros();
         for (q, other) in cells.around(&p.position) {
-            let line = [[p.position[0], p.position[1]], [q.position[0], q.position[1]]];
-            let crack = || any_crack && scene.cracks(solid(p)).any(|crack| geometry::crosses(line, crack));
             let x = SVector::<f64, D>::from_fn(|d, _| p.position[d] - q.position[d]);
-            if piece == other && x.norm() > 0.0 && !crack() {
+            if piece == other && x.norm() > 0.0 && !cracks.part(p, q) {
                 let slope = with_kernel!(scene.numerics.kernel, h, D, |k| k.slope_at(x.norm()));
                 moment -= x * x.transpose() * (volume * slope);
             }

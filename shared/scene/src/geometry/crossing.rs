@@ -1,4 +1,7 @@
-//! Which lines a crack crosses.
+//! Which lines a crack crosses, and which pairs of particles it parts.
+
+use super::SolidPoint;
+use crate::Scene;
 
 /// Part of a crack's length by which a point may be beside its line and count as on it.
 const ON_IT: f64 = 1e-9;
@@ -11,6 +14,34 @@ pub fn crosses([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> bool {
     let length_squared = (d[0] - c[0]).powi(2) + (d[1] - c[1]).powi(2);
     let left = |p: [f64; 2]| side(c, d, p) >= -ON_IT * length_squared;
     left(a) != left(b) && side(a, b, c) * side(a, b, d) <= 0.0
+}
+
+/// The cracks that solids begin with.
+pub struct Cracks<'s> {
+    scene: &'s Scene,
+    /// With the solid that has it, m.
+    all: Vec<(Option<usize>, [[f64; 2]; 2])>,
+}
+
+impl<'s> Cracks<'s> {
+    /// Of all solids.
+    pub fn of(scene: &'s Scene) -> Self {
+        let ends = |crack: [[f64; 3]; 2]| crack.map(|[x, y, _]| [x, y]);
+        let all = scene.shapes.iter().filter_map(|shape| Some((shape.solid, ends(shape.crack?)))).collect();
+        Self { scene, all }
+    }
+
+    /// Those of a solid, m.
+    pub fn of_solid(&self, solid: Option<usize>) -> impl Iterator<Item = [[f64; 2]; 2]> {
+        self.all.iter().filter(move |(of, _)| *of == solid).map(|(_, crack)| *crack)
+    }
+
+    /// Whether one of the first particle's solid parts it from the second.
+    pub fn part<const D: usize>(&self, one: &SolidPoint<D>, other: &SolidPoint<D>) -> bool {
+        let line = [one, other].map(|p| [p.position[0], p.position[1]]);
+        let solid = self.scene.shapes[one.body as usize].solid;
+        self.of_solid(solid).any(|crack| crosses(line, crack))
+    }
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Connected pieces of solids.
 
 use super::cells::Cells;
-use super::crossing::crosses;
+use super::crossing::Cracks;
 use super::{Layout, SolidPoint};
 use crate::{Scene, SolidModelName};
 use std::collections::{BTreeSet, HashMap};
@@ -57,17 +57,10 @@ fn each_pair<const D: usize>(scene: &Scene, layout: &Layout<D>, mut visit: impl 
 pub fn pieces<const D: usize>(scene: &Scene, layout: &Layout<D>) -> Vec<u32> {
     let labels: Vec<Label<'_>> = layout.solid.iter().map(|point| label(scene, point)).collect();
     let mut parent: Vec<u32> = (0..labels.len() as u32).collect();
-    let any_crack = scene.shapes.iter().any(|shape| shape.crack.is_some());
-    let cracked = |i: u32, j: u32| {
-        if !any_crack {
-            return false;
-        }
-        let [one, other] = [i, j].map(|k| &layout.solid[k as usize]);
-        let line = [one, other].map(|p| [p.position[0], p.position[1]]);
-        scene.cracks(scene.shapes[one.body as usize].solid).any(|crack| crosses(line, crack))
-    };
+    let cracks = Cracks::of(scene);
     each_pair(scene, layout, |i, j| {
-        if labels[i as usize] == labels[j as usize] && !cracked(i, j) {
+        let [one, other] = [i, j].map(|k| &layout.solid[k as usize]);
+        if labels[i as usize] == labels[j as usize] && !cracks.part(one, other) {
             let (a, b) = (root(&mut parent, i), root(&mut parent, j));
             parent[a.max(b) as usize] = a.min(b);
         }

@@ -47,10 +47,7 @@ impl<const D: usize> TotalLagrangian<D> {
         }
         // A particle without a deformation gradient has no stress and no damage that grows: how far a pair of it is
         // stretched tells alone whether it holds.
-        for i in (0..self.id.len()).filter(|&slot| fracture.loose > 0 && self.is_free(slot)) {
-            if self.has_strain(i) {
-                continue;
-            }
+        for i in (0..self.id.len()).filter(|&slot| fracture.loose > 0 && self.is_loose(slot)) {
             let onset = if fracture.strain[i] > 0.0 {
                 fracture.onset[i]
             } else {
@@ -66,6 +63,11 @@ impl<const D: usize> TotalLagrangian<D> {
         torn.sort_unstable();
         torn.dedup();
         torn
+    }
+
+    /// The slot has a free particle without a deformation gradient.
+    fn is_loose(&self, slot: usize) -> bool {
+        self.is_free(slot) && !self.has_strain(slot)
     }
 
     /// A pair is longer than its reference by more than this strain.
@@ -217,8 +219,7 @@ impl<const D: usize> TotalLagrangian<D> {
             count += u32::from(first == p);
         }
         fracture.bodies = count;
-        let loose = |&slot: &usize| self.is_free(slot) && !self.has_strain(slot);
-        fracture.loose = (0..self.id.len()).filter(loose).count() as u32;
+        fracture.loose = (0..self.id.len()).filter(|&slot| self.is_loose(slot)).count() as u32;
         fracture.thin = self.thin(&fracture);
         if count > 1 {
             if self.contact.is_none() {

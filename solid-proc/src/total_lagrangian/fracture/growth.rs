@@ -76,18 +76,21 @@ impl<const D: usize> TotalLagrangian<D> {
         let Some(fracture) = &self.fracture else { return };
         let mut grown = Vec::new();
         for &slot in candidates.iter().filter(|&&slot| self.has_strain(slot)) {
-            let (tension, stretch) = (self.tension(slot), self.stretch(slot));
-            let mut point = match fracture.strain[slot] > 0.0 {
-                true => fracture.point(slot),
-                false => {
-                    let outward = &fracture.outward[slot];
-                    let ratio = if *outward == [0.0; D] { 1.0 } else { self.at_surface(slot, outward) };
-                    if ratio * tension <= fracture.keys.strength {
-                        continue;
-                    }
-                    let onset = fracture.keys.strength / (ratio * fracture.modulus);
-                    Point { onset, begun: stretch, strain: onset, damage: 0.0 }
+            let tension = self.tension(slot);
+            let begins = if fracture.strain[slot] > 0.0 {
+                None
+            } else {
+                let outward = &fracture.outward[slot];
+                let ratio = if *outward == [0.0; D] { 1.0 } else { self.at_surface(slot, outward) };
+                if ratio * tension <= fracture.keys.strength {
+                    continue;
                 }
+                Some(fracture.keys.strength / (ratio * fracture.modulus))
+            };
+            let stretch = self.stretch(slot);
+            let mut point = match begins {
+                Some(onset) => Point { onset, begun: stretch, strain: onset, damage: 0.0 },
+                None => fracture.point(slot),
             };
             // A force over the area that it had.
             let nominal = tension * self.volume_ratio[slot] / stretch;
