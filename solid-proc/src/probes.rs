@@ -37,6 +37,8 @@ pub(crate) enum Measurement<const D: usize> {
     Body(usize, BodyQuantity),
     /// Kinetic and strain energy of these particles.
     EnergyOf(Vec<u32>),
+    /// Something of the body that strains and has these particles.
+    OfParticles(Vec<u32>, BodyQuantity),
     /// The ledger or a part of it.
     Energy(Option<EnergyPart>),
 }
@@ -98,6 +100,9 @@ pub(crate) fn of_solid<const D: usize>(
         }
         ProbeKind::Body { body, quantity: BodyQuantity::Energy } if model.rigid_bodies().is_empty() => {
             Some(Measurement::EnergyOf(of_body(body)))
+        }
+        ProbeKind::Body { body, quantity } if model.rigid_bodies().is_empty() => {
+            Some(Measurement::OfParticles(of_body(body), *quantity))
         }
         ProbeKind::Body { body, quantity } => {
             let of_name = model.rigid_bodies().iter().position(|state| state.name == *body);
@@ -201,10 +206,62 @@ impl<const D: usize> Measurement<D> {
                 put(particles.iter().map(of).sum());
             }
             Self::EnergyOf(particles) => put(model.energy_of(particles)),
+            Self::OfParticles(particles, quantity) => {
+                of_particles(model, load, particles, *quantity, &mut put)
+            }
             Self::Body(body, quantity) => of_body(model, load, *body, *quantity, &mut put),
             Self::Energy(_) => {}
         }
     }
+}
+
+/// Puts the components of something of a body that strains: of its centre of mass, or of the forces on its particles.
+fn of_particles<const D: usize>(
+    model: &dyn SolidModel<D>,
+    load: &Load<D>,
+    particles: &[u32],
+    quantity: BodyQuantity,
+    put: &mut impl FnMut(f64),
+) {
+    let state = model.particles();
+    let mass: f64 = particles.iter().map(|&p| state.mass[p as usize]).sum();
+    let mean = |of: &[[f64; D]]| -> [f64; D] {
+        let sum = |d| particles.iter().map(|&p| state.mass[p as usize] * of[p as usize][d]).sum::<f64>();
+        std::array::from_fn(|d| sum(d) / mass)
+    };
+    let vector = match quantity {
+        BodyQuantity::Position => mean(state.position),
+        BodyQuantity::Velocity => mean(state.velocity),
+        BodyQuantity::Force => {
+            std::array::from_fn(|d| particles.iter().map(|&p| load.force[p as usize][d]).sum())
+        }
+        BodyQuantity::Moment => {
+            let centre = mean(state.position);
+            let all = particles.iter().map(|&p| (&load.force[p as usize], &state.position[p as usize]));
+            return about(centre, all, put);
+        }
+        // A scene cannot ask for the others.
+        _ => [f64::NAN; D],
+    };
+    vector.iter().for_each(|&x| put(x));
+}
+
+/// Puts the components of the moment of forces at these places about a point.
+fn about<'a, const D: usize>(
+    point: [f64; D],
+    forces: impl Iterator<Item = (&'a [f64; D], &'a [f64; D])>,
+    put: &mut impl FnMut(f64),
+) {
+    let mut sum = [0.0; 3];
+    for (force, position) in forces {
+        let force = wide(*force);
+        let arm = wide(std::array::from_fn::<f64, D, _>(|d| position[d] - point[d]));
+        for d in 0..3 {
+            let [a, b] = [(d + 1) % 3, (d + 2) % 3];
+            sum[d] += arm[a] * force[b] - arm[b] * force[a];
+        }
+    }
+    if D == 2 { put(sum[2]) } else { sum.iter().for_each(|&x| put(x)) }
 }
 
 /// Puts the components of something of a rigid body.
@@ -220,25 +277,13 @@ fn of_body<const D: usize>(
         let of = model.body_of().iter().zip(&load.force).zip(model.particles().position);
         of.filter(|((of, _), _)| **of as usize == body).map(|((_, force), position)| (force, position))
     };
-    let moment = || {
-        let mut sum = [0.0; 3];
-        for (force, position) in own() {
-            let force = wide(*force);
-            let arm = wide(std::array::from_fn::<f64, D, _>(|d| position[d] - state.center[d]));
-            for d in 0..3 {
-                let [a, b] = [(d + 1) % 3, (d + 2) % 3];
-                sum[d] += arm[a] * force[b] - arm[b] * force[a];
-            }
-        }
-        sum
-    };
     let vector = match quantity {
         BodyQuantity::Position => wide(state.center),
         BodyQuantity::Angle => state.angle,
         BodyQuantity::Velocity => wide(state.velocity),
         BodyQuantity::AngularVelocity => state.angular_velocity,
         BodyQuantity::Force => wide::<D>(std::array::from_fn(|d| own().map(|(force, _)| force[d]).sum())),
-        BodyQuantity::Moment => moment(),
+        BodyQuantity::Moment => return about(state.center, own(), put),
         BodyQuantity::ContactForce => wide(state.contact_force),
         BodyQuantity::ContactMoment => state.contact_moment,
         BodyQuantity::Energy => return put(state.kinetic_energy),

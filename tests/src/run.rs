@@ -4,6 +4,8 @@
 //! on their cores slows all of them down; runs of a single phase share it.
 
 use crate::curve::Curve;
+use crate::process::kill;
+use halfstep_output::checkpoint::{FOLDERS, Manifest};
 use halfstep_output::run_json::RunStatus;
 use halfstep_output::{Frame, RunReport, Table, read_probes, series::Series, vtkhdf};
 use std::ffi::OsString;
@@ -11,7 +13,7 @@ use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::{OnceLock, PoisonError, RwLock, RwLockWriteGuard};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Who has the machine: coupled runs write, others read.
 static MACHINE: RwLock<()> = RwLock::new(());
@@ -177,6 +179,22 @@ impl Running {
     /// Whether the launcher still runs.
     pub fn is_alive(&mut self) -> bool {
         self.child.try_wait().expect("a child").is_none()
+    }
+
+    /// Kills the launcher once there is a checkpoint of this time, s, or later; returns the newest one's.
+    pub fn killed_at(mut self, time: f64) -> f64 {
+        let dir = self.dir.clone();
+        let newest = || {
+            let read = |folder: &&str| Manifest::read(&dir.join(folder)).ok().flatten();
+            FOLDERS.iter().filter_map(read).map(|manifest| manifest.time).fold(0.0, f64::max)
+        };
+        while newest() < time {
+            assert!(self.is_alive(), "ended before {time} s");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        kill(self.pid(), libc::SIGKILL);
+        self.wait();
+        newest()
     }
 
     /// Waits for the launcher's end.

@@ -139,8 +139,8 @@ struct Whole {
     files: BTreeMap<String, Vec<u8>>,
 }
 
-/// Disturbs so many runs of all kinds in turn, or fewer where the time is over. `python` is the interpreter for the
-/// external solid; without it there is none.
+/// Disturbs so many runs of all kinds in turn, or fewer where the time is over and one of them did not end by itself.
+/// `python` is the interpreter for the external solid; without it there is none.
 pub fn torture(
     runs: usize,
     seed: u64,
@@ -154,7 +154,7 @@ pub fn torture(
     let kinds: Vec<usize> = (0..KINDS.len()).filter(|&k| python.is_some() || !KINDS[k].external).collect();
     let python = python.unwrap_or_default();
     for number in 0..runs {
-        if started.elapsed() > time {
+        if started.elapsed() > time && tally.disturbed > 0 {
             break;
         }
         let index = kinds[number % kinds.len()];

@@ -1,6 +1,5 @@
 //! `scenes/breaking-wall.toml`, `scenes/tsunami-wall.toml`: water breaks brittle walls.
 
-use halfstep_output::checkpoint::{FOLDERS, Manifest};
 use halfstep_output::run_json::RunStatus;
 use halfstep_tests::run::{repository, scene_at};
 use halfstep_tests::scene;
@@ -36,10 +35,19 @@ fn the_wall_breaks_alike_in_processes_and_threads_and_its_ledger_is_closed() {
     let largest = |name: &str| broken.curve(name).values.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
     let (rest, given) = (largest("ledger.integration"), largest("ledger.interface-pressure"));
     println!("rest of the ledger {rest} J, given by the water {given} J");
-    // 1.6e-3 measured, 1.7e-2 with the default sub-step.
-    assert!(rest < 3e-3 * given, "{rest} of {given}");
+    // 1.9e-3 and 5.0e-3 in two runs whose last digits differ: debris that strikes the floor.
+    assert!(rest < 1e-2 * given, "{rest} of {given}");
+    // Of water and wall, as run.json has it.
+    let energy = broken.report.energy.as_ref().expect("ledgers");
+    assert!(energy.relative_residual < 1e-2, "{}", energy.relative_residual);
+    // The crack runs along the foot: what is cracked through lies in the lowest row.
+    let frames = broken.outcome.frames("solid");
+    let early = frames.iter().rfind(|frame| frame.time < 0.1705).expect("a frame");
+    let cracked = (0..early.len()).filter(|&k| early.damage[k] > 0.95);
+    let heights: Vec<f32> = cracked.map(|k| early.points[k][1] - early.displacement[k][1]).collect();
+    assert!(!heights.is_empty() && heights.iter().all(|y| (0.0..0.004).contains(y)), "{heights:?}");
     // Beam theory lets it break under an even pressure of 3 kPa, a jet of 2.4 m/s, which is there 30 ms after the water
-    // (0.12 s); a spacing of 2 mm breaks 3 % later. The first two of three rows take G_f times their length, and
+    // (0.12 s); a spacing of 2 mm breaks 5 % later. The first two of three rows take G_f times their length, and
     // what swings: 1.12 measured.
     let opened = broken.curve("opened.area");
     let first = broken.curve("crack.energy").first_above(f64::MIN_POSITIVE).unwrap();
@@ -174,19 +182,8 @@ fn the_first_of_two_walls_breaks_and_the_run_is_killed_and_goes_on() {
     let dir = folder.path().join("run");
     let short =
         two_walls().set("output.checkpoint_interval", 0.02).until(0.25).out(&dir).in_process().start();
-    let newest = || {
-        let read = |folder: &&str| Manifest::read(&dir.join(folder)).ok().flatten();
-        FOLDERS.iter().filter_map(read).map(|manifest| manifest.time).fold(0.0, f64::max)
-    };
     // It has begun to crack.
-    let mut running = short;
-    while newest() < 0.23 {
-        assert!(running.is_alive(), "{:?}", running.wait());
-        std::thread::sleep(std::time::Duration::from_millis(1));
-    }
-    // SAFETY: the launcher is a child of this process that has not been waited for.
-    unsafe { libc::kill(running.pid() as i32, libc::SIGKILL) };
-    running.wait();
+    short.killed_at(0.23);
     let resumed = scene("tsunami-wall").resume(&dir).until(0.3).in_process().run();
     assert!(resumed.report.resumed[0].time > 0.2, "{:?}", resumed.report.resumed);
     assert_eq!(resumed.state_hash(), whole.state_hash());
@@ -194,8 +191,8 @@ fn the_first_of_two_walls_breaks_and_the_run_is_killed_and_goes_on() {
     assert_eq!(cracks(&resumed), cracks(&whole));
 }
 
-/// To the end, when the first wall has struck the second and both are debris: 1.9e-3 of the most that they move with,
-/// 1.6e-2 with the default sub-step.
+/// To the end, when the first wall has struck the second and both are debris: 3e-3 of the most that they move with,
+/// 1.9e-2 with the default sub-step.
 #[test]
 #[ignore = "a minute"]
 fn the_ledger_of_two_walls_is_closed_among_their_debris() {

@@ -1,7 +1,7 @@
 //! What the program answers beside runs, and a run that is made once more from its own folder.
 
 use halfstep_output::RunReport;
-use halfstep_tests::run::{program, repository};
+use halfstep_tests::run::{program, repository, whole_machine};
 use std::path::Path;
 use std::process::{Command, Output};
 
@@ -20,14 +20,26 @@ fn told(words: &[&str]) -> String {
 /// From the `scene.json` of a run's folder: the same scene in every key, so the same bits.
 #[test]
 fn a_run_is_made_once_more_from_its_folder() {
+    made_once_more("hydrostatic-tank", &["resolution=0.05"], "0.1");
+}
+
+/// Water, a solid, and a motion from a file beside the scene.
+#[test]
+fn a_coupled_run_with_a_recorded_motion_is_made_once_more() {
+    let baffle = "shape.baffle.box={ min = [0.3005, 0.0575], max = [0.3085, 0.3525] }";
+    made_once_more("rolling-tank", &["resolution=0.004", baffle], "0.01");
+}
+
+fn made_once_more(name: &str, settings: &[&str], until: &str) {
     let folder = tempfile::tempdir().expect("a folder");
-    let scene = repository().join("scenes/hydrostatic-tank.toml");
+    let scene = repository().join(format!("scenes/{name}.toml"));
     let run = |words: &[&str]| {
         let ended = halfstep(folder.path(), &[&["run", "--quiet"], words].concat());
         assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
     };
     let report = |dir: &str| RunReport::read(&folder.path().join(dir).join("run.json")).expect("a report");
-    run(&["--set", "resolution=0.05", "--until", "0.1", "--out", "first", &scene.to_string_lossy()]);
+    let set: Vec<&str> = settings.iter().flat_map(|setting| ["--set", setting]).collect();
+    run(&[&set[..], &["--until", until, "--out", "first", &scene.to_string_lossy()]].concat());
     run(&["--out", "again", "first/scene.json"]);
     let [first, again] = ["first", "again"].map(report);
     assert!(first.steps > 10 && first.audit.state_hash.is_some());
@@ -60,4 +72,27 @@ fn completions_and_the_manual_know_the_commands() {
     let manual = told(&["man"]);
     assert!(manual.contains(".TH halfstep") && manual.contains("resume"), "{manual}");
     assert_eq!(halfstep(&repository(), &["completions", "nosuch"]).status.code(), Some(1));
+}
+
+/// Where nobody looks at a terminal a run says in lines how far it has come, some seconds of it every second or so.
+#[test]
+fn a_run_without_a_terminal_tells_its_progress_in_lines() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scene = repository().join("scenes/elastic-gate.toml");
+    let scene = scene.to_str().expect("a path");
+    let words =
+        ["run", scene, "--until", "0.12", "--set", "resolution=0.00166666666666666667", "--threads", "1"];
+    let _machine = whole_machine();
+    let ended = halfstep(folder.path(), &words);
+    assert!(ended.status.success(), "{ended:?}");
+    let text = String::from_utf8_lossy(&ended.stderr).into_owned();
+    let parts: Vec<f64> = text
+        .lines()
+        .filter(|line| line.contains("s gone, about"))
+        .map(|line| line.split('%').next().and_then(|part| part.trim().parse().ok()).expect("a part"))
+        .collect();
+    assert!(
+        !parts.is_empty() && parts.is_sorted() && parts.iter().all(|part| (10.0..=100.0).contains(part)),
+        "{text}"
+    );
 }

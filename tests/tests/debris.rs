@@ -1,13 +1,10 @@
 //! Water breaks a wall into debris: the same bits in processes and threads and after an interruption, beside a solid of
 //! another program, and none of it where nothing breaks.
 
-use halfstep_output::checkpoint::{FOLDERS, Manifest};
-use halfstep_tests::process::kill;
 use halfstep_tests::python::python;
 use halfstep_tests::run::{repository, scene, scene_at, whole_machine};
 use halfstep_tests::{Finished, RunBuilder};
 use std::path::Path;
-use std::time::Duration;
 
 /// A dam break on a weak wall, three particles across, and a second solid behind it that does not break. The water is
 /// there at 0.085 s; at 0.14 s there are ten bodies, and at 0.15 s the largest one hits the second wall.
@@ -150,18 +147,7 @@ fn killed_among_debris(second: &str) -> Finished {
     let whole = run().run();
     let killed = {
         let _machine = whole_machine();
-        let mut running = run().set("output.checkpoint_interval", 0.01).out(&dir).start();
-        let newest = || {
-            let read = |folder: &&str| Manifest::read(&dir.join(folder)).ok().flatten();
-            FOLDERS.iter().filter_map(read).map(|manifest| manifest.time).fold(0.0, f64::max)
-        };
-        while newest() < 0.145 {
-            assert!(running.is_alive(), "{:?}", running.wait());
-            std::thread::sleep(Duration::from_millis(1));
-        }
-        kill(running.pid(), libc::SIGKILL);
-        running.wait();
-        newest()
+        run().set("output.checkpoint_interval", 0.01).out(&dir).start().killed_at(0.145)
     };
     let bodies = whole.curve("pieces.bodies").between(0.0, killed);
     assert!(*bodies.values.last().unwrap() > 2.0, "there is debris at {killed} s: {:?}", bodies.values);

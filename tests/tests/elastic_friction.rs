@@ -1,4 +1,5 @@
-//! Solids that strain rub on walls and bounce off them as their `contact` says: the coupler holds them.
+//! Solids that strain rub on walls and on each other's bodies and bounce off them as their `contact` says: the coupler
+//! holds them.
 
 use halfstep_output::run_json::ContactReport;
 use halfstep_tests::run::{Finished, RunBuilder, scene_at};
@@ -92,6 +93,37 @@ fn a_sliding_block_stops_as_coulomb_says() {
         assert!(lost < 1e-3, "{model}: {lost}");
         // The model itself leaves walls alone.
         assert_eq!(run.curve("ledger.wall-contact").at(0.5), 0.0);
+    }
+}
+
+/// The floor is a slab of the same solid instead, which a clamp holds.
+fn on_a_slab() -> String {
+    let slab = "name = \"slab\"\nphase = \"solid\"\nclamp = { min = [-0.2, -0.1], max = [0.7, -0.02] }\n";
+    let probes = ["position", "velocity", "force", "moment"]
+        .map(|what| format!("[[probe]]\nname = \"{what}\"\nkind = \"body-{what}\"\nbody = \"block\"\n"));
+    BLOCK.replace("name = \"floor\"\nphase = \"wall\"\n", slab) + &probes.concat()
+}
+
+#[test]
+fn a_block_that_slides_on_a_slab_of_its_own_solid_stops_as_coulomb_says() {
+    let scene = Written::new(&on_a_slab());
+    for model in &MODELS[..2] {
+        let run = scene.run(model).in_process().run();
+        let x = run.curve("position.x");
+        let way = x.at(0.5) - x.at(0.0);
+        let contact = run.report.contacts.first().expect("contact");
+        let (friction, lost) = (contact.friction, unexplained(&run));
+        println!("{model}: {way:.5} m, friction {friction:.4} J/m, unexplained {lost:.1e}, {contact:?}");
+        assert_eq!(contact.solids, ["solid", "solid"]);
+        assert!((x.at(0.0) - 0.05).abs() < 1e-12 && (run.curve("position.y").at(0.0) - 0.025).abs() < 1e-12);
+        assert!((run.curve("velocity.x").at(0.0) - 1.0).abs() < 1e-12, "{model}");
+        // What carries the block is a part of the force on it, in the middle at rest.
+        let weight = run.curve("force.y").at(0.5) / (5.0 * G);
+        let lever = run.curve("moment.moment").at(0.5) / (5.0 * G * 0.05);
+        assert!((weight - 1.0).abs() < 0.01 && lever.abs() < 0.02, "{model}: {weight}, {lever}");
+        assert!((way * 2.0 * 0.3 * G - 1.0).abs() < 0.005, "{model}: {way}");
+        assert!((friction / -2.5 - 1.0).abs() < 0.02, "{model}: {friction}");
+        assert!(lost < 1e-3, "{model}: {lost}");
     }
 }
 
@@ -212,12 +244,27 @@ pressure = "hydrostatic"
 
 #[test]
 fn processes_do_not_matter_and_an_interrupted_run_goes_on() {
-    let scene = Written::new(WET);
-    for model in MODELS {
+    goes_on(&Written::new(WET), &MODELS, &[["solid", "wall"]]);
+}
+
+/// A second body of the same solid lands on the block.
+#[test]
+fn processes_do_not_matter_for_bodies_of_one_solid() {
+    let lid = "[[shape]]\nname = \"lid\"\nphase = \"solid\"\nbox = { min = [0.34, 0.115], max = [0.42, 0.175] }\n\
+               velocity = [0.5, -0.5]\n";
+    let scene = Written::new(&(WET.to_owned() + lid));
+    goes_on(&scene, &MODELS[..2], &[["solid", "solid"], ["solid", "wall"]]);
+}
+
+/// Who touches whom, and loses energy by friction, is the same in processes, threads and after an interruption.
+fn goes_on(scene: &Written, models: &[&str], touching: &[[&str; 2]]) {
+    for model in models {
         let run = || scene.run(model);
         let whole = run().run();
-        println!("{model}: {:?}", contact(&whole));
-        assert!(contact(&whole).friction < 0.0);
+        println!("{model}: {:?}", whole.report.contacts);
+        let names: Vec<&[String]> = whole.report.contacts.iter().map(|of| of.solids.as_slice()).collect();
+        assert_eq!(names, touching);
+        assert!(whole.report.contacts.iter().all(|of| of.friction < 0.0 && of.normal < 0.0));
         for other in [run().in_process(), run().threads(1)] {
             let other = other.run();
             assert_eq!(other.state_hash(), whole.state_hash(), "{model}");

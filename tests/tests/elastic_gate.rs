@@ -53,11 +53,11 @@ fn sound(run: &Finished) {
     assert!(roles.fluid.is_some() && roles.solid.is_some() && roles.coupler.is_some());
 }
 
-/// As far as the published computations of such a plate: 35.5 mm (Yang et al. 2012) to 42.7 mm (Khayyer et al. 2018),
-/// at 0.10 to 0.12 s.
-fn as_a_linear_plate((time, peak): (f64, f64)) {
-    assert!((35.5..=42.7).contains(&peak), "{peak} mm");
-    assert!((0.10..=0.125).contains(&time), "{time} s");
+/// As far as the published computations of such a plate, 35.5 mm (Yang et al. 2012) to 42.7 mm (Khayyer et al. 2018) at
+/// 0.10 to 0.12 s, and as measured, to half a millimetre: other processors round otherwise.
+fn as_a_linear_plate((time, peak): (f64, f64), measured: f64) {
+    assert!((35.5..=42.7).contains(&peak) && (peak - measured).abs() < 0.5, "{peak} mm");
+    assert!((0.10..=0.12).contains(&time), "{time} s");
 }
 
 /// The experiment itself while the gate opens, 12.5 mm at 0.04 s and 34.0 mm at 0.08 s: farther by `ahead`, mm, at
@@ -76,10 +76,10 @@ fn opens_as_in_the_experiment(run: &Finished, ahead: [f64; 2]) {
 fn a_coarse_gate_opens_as_others_open() {
     let run = scene("elastic-gate").set("resolution", THREE_ACROSS).until(0.2).run();
     sound(&run);
-    as_a_linear_plate(state("gate, 3 across", &run));
+    as_a_linear_plate(state("gate, 3 across", &run), 38.24);
     opens_as_in_the_experiment(&run, [2.3, 0.4]);
-    // A free end that swings on a fixed length rises.
-    assert!(tip(&run, "y").at(0.12) > 5.0);
+    // A free end that swings on a fixed length rises: 11.3 mm measured.
+    assert!((tip(&run, "y").at(0.12) - 11.3).abs() < 0.5);
     for stem in ["fluid", "solid"] {
         let frames = run.outcome.frames(stem);
         assert_eq!(frames.len(), 21, "{stem}");
@@ -186,7 +186,7 @@ fn a_fitted_plate_meets_the_experiment_where_it_was_not_fitted() {
 fn the_gate_at_5_across() {
     let run = scene("elastic-gate").until(0.24).threads(2).run();
     sound(&run);
-    as_a_linear_plate(state("gate, 5 across", &run));
+    as_a_linear_plate(state("gate, 5 across", &run), 36.7);
     opens_as_in_the_experiment(&run, [2.4, -0.4]);
 }
 
@@ -264,7 +264,7 @@ fn the_gate_from_3_to_5_across() {
         let run = scene("elastic-gate").set("resolution", resolution).until(0.16).threads(2).run();
         sound(&run);
         let (time, peak) = state(&format!("gate, {across} across"), &run);
-        as_a_linear_plate((time, peak));
+        as_a_linear_plate((time, peak), expected);
         assert!((peak - expected).abs() < 0.3, "{across} across: {peak} mm");
     }
 }

@@ -76,6 +76,7 @@ fn a_finer_plate_carries_coarse_water() {
 fn a_finer_plate_bends_as_theory_says() {
     let run = scene("hydrostatic-plate").until(0.2).run();
     let (deflection, pressure) = ratios("5 across", &run);
-    assert!((1.0..1.1).contains(&deflection), "{deflection}");
-    assert!((pressure - 1.0).abs() < 0.02, "{pressure}");
+    // 1.041 and 1.009 measured; shear makes it 1.036.
+    assert!((1.033..1.05).contains(&deflection), "{deflection}");
+    assert!((pressure - 1.009).abs() < 0.006, "{pressure}");
 }

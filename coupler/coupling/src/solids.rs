@@ -110,6 +110,10 @@ impl<const D: usize> Solids<D> {
     pub(crate) fn new(scene: &Scene, external: Vec<Option<ExternalSolid>>, isa: Isa) -> Self {
         let touches_walls = scene.walls_to_touch().next().is_some();
         let layout = external.iter().any(Option::is_some).then(|| geometry::layout::<D>(scene));
+        let mut contact = Contact::new(scene);
+        for (solid, _) in external.iter().enumerate().filter(|(_, external)| external.is_some()) {
+            contact.iter_mut().for_each(|contact| contact.leave_bodies(solid));
+        }
         let side = |(solid, external): (usize, Option<ExternalSolid>)| CoupledSolid {
             interface: Parameters::new(scene, solid, isa).map(Interface::new),
             forces: Vec::new(),
@@ -134,7 +138,7 @@ impl<const D: usize> Solids<D> {
             gravity: Gravity::of(scene),
             by_fluid: Balance::default(),
             impulse: Balance::default(),
-            contact: Contact::new(scene),
+            contact,
         }
     }
 
@@ -170,7 +174,8 @@ impl<const D: usize> Solids<D> {
         least.is_finite().then_some(least)
     }
 
-    /// What contacts did to each pair of solids, and walls to each solid that the coupler holds against them.
+    /// What contacts did to each pair of solids and to the bodies of one, and walls to each solid that the coupler
+    /// holds against them.
     pub(crate) fn contacts(&self) -> Vec<ContactSummary> {
         let of = |(solids, law, booked): ([usize; 2], &PairLaw, Booked)| ContactSummary {
             solids: solids.map(Some),

@@ -73,6 +73,11 @@ pub(crate) fn advice(diverged: &Diverged, scene: &Scene, clock: &Clock, external
         (Quantity::Density, Phase::Solid) => {
             format!("{change}; or the load is too much for {section}.youngs_modulus")
         }
+        (Quantity::Density, Phase::Fluid) if let Some(fluid) = &scene.fluid => format!(
+            "{change}; or raise fluid.sound_speed (now {:.4} m/s): beside it water that meets water or a wall is too \
+             fast",
+            fluid.sound_speed
+        ),
         _ => change,
     }
 }
@@ -143,6 +148,8 @@ mod tests {
         assert!(advised(&scene, 1e-5, 1e-5, &DIVERGED).contains("numerics.solid_cfl (now 0.6)"));
         let fluid = Diverged { participant: Name::FLUID, ..DIVERGED };
         assert!(advised(&scene, 1e-5, 1e-5, &fluid).contains("numerics.cfl (now 0.4)"));
+        let torn = advised(&scene, 1e-5, 1e-5, &Diverged { quantity: Quantity::Density, ..fluid });
+        assert!(torn.contains("numerics.cfl (now 0.4); or raise fluid.sound_speed (now 16.57"), "{torn}");
         let hot = Diverged { quantity: Quantity::Energy, ..fluid };
         assert!(advised(&scene, 1e-5, 1e-5, &hot).contains("fluid.artificial_viscosity.linear"));
         let dense = Diverged { quantity: Quantity::Density, ..DIVERGED };

@@ -228,11 +228,14 @@ fn too_soft(scene: &Scene, contact: &ContactAsks) -> Vec<String> {
         let smallest = scene.smallest_side(*solids);
         let depth = lightest / stiffness;
         let [a, b] = solids.map(|k| &scene.solids[k].name);
+        let (who, of) = match a == b {
+            true => (format!("the bodies of `{a}`"), "stiffness, from the scene,"),
+            false => (format!("`{a}` and `{b}`"), "`stiffness` of their [[contact]]"),
+        };
         (depth > SOFT * smallest).then(|| {
             format!(
-                "contact of `{a}` and `{b}` is soft: the weight of the lighter one presses it {depth:.2e} m into the \
-                 other, and the smallest side is {smallest:.2e} m (`stiffness` of their [[contact]] is {stiffness:.1e} \
-                 Pa/m)"
+                "contact of {who} is soft: the weight of the lighter one presses it {depth:.2e} m into the other, and \
+                 the smallest side is {smallest:.2e} m ({of} is {stiffness:.1e} Pa/m)"
             )
         })
     };

@@ -4,7 +4,7 @@ use halfstep_output::RunReport;
 use halfstep_output::run_json::EffectReport;
 use halfstep_role::report::Report;
 use halfstep_scene::geometry::Counts;
-use halfstep_scene::{Decision, EffectName, Phase, Scene, Treatment, dispatch};
+use halfstep_scene::{Body, Decision, EffectName, Phase, Scene, Treatment, dispatch};
 
 /// What the fluid does in any case: pressure, continuity, neighbour lists, time step.
 const FLUID: &str = "fluid";
@@ -101,16 +101,25 @@ pub(crate) fn reports(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
     list.push(row(CROSS_VISCOSITY, coupled && c > 0.0, why));
     let pairs: Vec<String> = scene
         .contacts()
-        .iter()
+        .into_iter()
+        .chain(scene.contacts_of_bodies().filter(|contact| has_bodies(scene, contact.solids[0])))
         .map(|contact| {
             let [a, b] = contact.solids.map(|solid| &scene.solids[solid].name);
-            format!("`{a}` and `{b}` (friction {}, restitution {})", contact.friction, contact.restitution)
+            let who = if a == b { format!("bodies of `{a}`") } else { format!("`{a}` and `{b}`") };
+            format!("{who} (friction {}, restitution {})", contact.friction, contact.restitution)
         })
         .collect();
     if !pairs.is_empty() {
         list.push(row(SOLID_CONTACT, true, format!("touch in the coupler: {}", pairs.join(", "))));
     }
     list
+}
+
+/// The solid of that index has more than one body.
+fn has_bodies(scene: &Scene, solid: usize) -> bool {
+    let own =
+        |body: &&Body| body.shapes.first().is_some_and(|&shape| scene.shapes[shape].solid == Some(solid));
+    scene.bodies().iter().filter(own).count() > 1
 }
 
 /// Puts the shares of the computing time of all roles into the rows, as the participants reported them. `coupler`:

@@ -1,4 +1,4 @@
-//! Contact between two solids, evaluated from the records that both published.
+//! Contact between two solids, and between the bodies of one, evaluated from the records that they published.
 //!
 //! The surfaces are the outlines of the shapes as the scene has them (`outline`). Their points are sums of particles'
 //! positions with constant weights that keep any linear field: they go with the particles, turn and strain with them,
@@ -85,17 +85,20 @@ impl Side {
     }
 }
 
-/// Two solids that may touch.
+/// Two solids that may touch, or the bodies of one.
 #[derive(Clone, Debug)]
 struct Pair {
     law: Law,
+    /// Of bodies of one solid: that of two which stands first in the outline, and the other one.
     sides: [Side; 2],
+    /// There are two that can touch.
+    acts: bool,
     /// Contacts at n, ascending.
     touches: Vec<Touch>,
     booked: Booked,
 }
 
-/// All contacts between solids of a run.
+/// All contacts between solids and between their bodies in a run.
 #[derive(Clone, Debug)]
 pub struct Contact {
     scene: Scene,
@@ -110,15 +113,17 @@ pub struct Contact {
 }
 
 impl Contact {
-    /// Between the solids of a scene; `None` where no two can touch.
+    /// Between the solids of a scene and between the bodies of those that leave it to the coupler; `None` where no two
+    /// can touch.
     pub fn new(scene: &Scene) -> Option<Self> {
-        let said = scene.contacts();
+        let said: Vec<PairContact> = scene.contacts().into_iter().chain(scene.contacts_of_bodies()).collect();
         if said.is_empty() {
             return None;
         }
         let of = |contact: &PairContact| Pair {
             law: Law::of(contact),
             sides: contact.solids.map(|solid| Side { solid, ..Side::default() }),
+            acts: true,
             touches: Vec::new(),
             booked: Booked::default(),
         };
@@ -130,6 +135,11 @@ impl Contact {
             first: Vec::new(),
             scene: scene.clone(),
         })
+    }
+
+    /// Leaves contact between the bodies of a solid to its model: of a program that is not ours.
+    pub fn leave_bodies(&mut self, solid: usize) {
+        self.pairs.retain(|pair| pair.sides.iter().any(|side| side.solid != solid));
     }
 
     /// Takes the first states of a run; of one that goes on those that it began with are known.
@@ -150,14 +160,17 @@ impl Contact {
         let scene = &self.scene;
         self.outlines = Outline::all(scene, &self.first);
         for pair in &mut self.pairs {
-            let masses = pair.sides.each_ref().map(|side| self.outlines[side.solid].least_mass());
-            pair.law.fit(scene, pair.sides.each_ref().map(|side| side.solid), masses);
+            let [a, b] = pair.sides.each_ref().map(|side| side.solid);
+            let masses = [a, b].map(|solid| self.outlines[solid].least_mass());
+            pair.law.fit(scene, [a, b], masses);
+            pair.acts = a != b || self.outlines[a].pieces.len() > 1;
         }
     }
 
     /// Largest time step that all contacts are stable with, s.
     pub fn limit(&self) -> f64 {
-        self.pairs.iter().map(|pair| pair.law.limit).fold(f64::INFINITY, f64::min)
+        let acting = self.pairs.iter().filter(|pair| pair.acts);
+        acting.map(|pair| pair.law.limit).fold(f64::INFINITY, f64::min)
     }
 
     /// Evaluates all contacts from the solids' records, in the scene's order, in a time step, s. `whole`: of a state at
@@ -169,7 +182,7 @@ impl Contact {
         for (solid, placed) in self.placed.iter_mut().enumerate() {
             placed.bound(&self.outlines[solid], records(solid));
         }
-        for pair in &mut self.pairs {
+        for pair in self.pairs.iter_mut().filter(|pair| pair.acts) {
             let [a, b] = pair.sides.each_ref().map(|side| side.solid);
             pair.sides.iter_mut().flat_map(|side| &mut side.forces).for_each(Vec::clear);
             if !self.placed[a].meets(&self.placed[b]) {
@@ -227,9 +240,10 @@ impl Contact {
         work
     }
 
-    /// What each pair did so far, with the indices of its solids.
+    /// What each pair did so far, with the indices of its solids; of bodies of one solid twice its index.
     pub fn booked(&self) -> impl Iterator<Item = ([usize; 2], &PairLaw, Booked)> {
-        self.pairs.iter().map(|pair| (pair.sides.each_ref().map(|side| side.solid), &pair.law, pair.booked))
+        let acting = self.pairs.iter().filter(|pair| pair.acts);
+        acting.map(|pair| (pair.sides.each_ref().map(|side| side.solid), &pair.law, pair.booked))
     }
 }
 

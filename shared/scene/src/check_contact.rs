@@ -18,6 +18,7 @@ impl Check<'_> {
             }
         }
         self.wall_contacts();
+        self.contacts_of_bodies();
         let unknown = |contact: &PairContact| contact.stiffness.is_none();
         let Some(pair) = self.scene.contacts().into_iter().find(unknown) else { return };
         if flow_speed(self.scene) == 0.0 {
@@ -29,6 +30,22 @@ impl Check<'_> {
                      `stiffness` (Pa/m), or with `touch = false`"
                 ),
             );
+        }
+    }
+
+    /// What the coupler holds of one solid against each other has a speed that says how hard.
+    fn contacts_of_bodies(&self) {
+        if flow_speed(self.scene) > 0.0 {
+            return;
+        }
+        let of = |solid: usize| self.scene.shapes.iter().filter(move |shape| shape.solid == Some(solid));
+        for [solid, _] in self.scene.contacts_of_bodies().map(|contact| contact.solids) {
+            let several = of(solid).any(|shape| of(solid).any(|other| other.body() != shape.body()));
+            if several {
+                let why = "how stiff contact of its bodies is follows from gravity and speeds, and nothing in the \
+                           scene moves";
+                self.wrong(&format!("{}.contact", self.solid_key(solid)), why);
+            }
         }
     }
 

@@ -108,8 +108,7 @@ impl Check<'_> {
             }
             ProbeKind::Body { body, quantity } => {
                 let key = format!("{key}.body");
-                let known =
-                    |k: &usize| *quantity == BodyQuantity::Energy || self.scene.solids[*k].rigid().is_some();
+                let known = |k: &usize| !quantity.is_of_rigid() || self.scene.solids[*k].rigid().is_some();
                 match probe.solid.filter(known) {
                     Some(solid) => _ = self.is_one_body(solid, &key, body),
                     None => self.wrong(&key, "is no rigid body: the solid's model strains"),

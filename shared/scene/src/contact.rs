@@ -1,13 +1,14 @@
-//! Contact between two solids: what `[[contact]]` says of a pair, and what holds where it says nothing.
+//! Contact between two solids: what `[[contact]]` says of a pair, and what holds where it says nothing; and between the
+//! bodies of one solid that strains, as its `contact` says.
 
 use crate::bounds::flow_speed;
-use crate::{EffectName, Phase, Scene, Shape, Switch, geometry};
+use crate::{EffectName, ModelKeys, Phase, Scene, Shape, Switch, geometry};
 use serde::{Deserialize, Serialize};
 
 /// Contact of two solids, as a scene says it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PairContact {
-    /// Indices of the two in [`Scene::solids`], ascending.
+    /// Indices of the two in [`Scene::solids`], ascending; of bodies of one solid twice its index.
     pub solids: [usize; 2],
     /// The two feel each other.
     pub touch: bool,
@@ -43,6 +44,25 @@ impl Scene {
     pub fn leaves_walls_to_coupler(&self, solid: usize) -> bool {
         let solid = &self.solids[solid];
         self.dimension == 2 && solid.rigid().is_none() && solid.contact().is_some()
+    }
+
+    /// The solid of that index has bodies that strain and says `contact`, so the coupler holds these against each
+    /// other, too: its model knows no friction. The hypoelastic solid is one continuum.
+    pub fn leaves_bodies_to_coupler(&self, solid: usize) -> bool {
+        let continuum = matches!(self.solids[solid].model, ModelKeys::Hypoelastic(_));
+        self.leaves_walls_to_coupler(solid) && !continuum
+    }
+
+    /// Contact between the bodies of each solid that leaves it to the coupler.
+    pub fn contacts_of_bodies(&self) -> impl Iterator<Item = PairContact> {
+        (0..self.solids.len()).filter(|&solid| self.leaves_bodies_to_coupler(solid)).map(|solid| {
+            let own = self.solids[solid].contact().unwrap_or_default();
+            PairContact {
+                friction: own.friction,
+                restitution: own.restitution,
+                ..PairContact::unsaid([solid; 2])
+            }
+        })
     }
 
     /// Contact of each pair of solids that feel each other, in ascending order; in space there is none.

@@ -143,7 +143,7 @@ pub enum Spot {
     Body(String),
 }
 
-/// What is measured of a body: all of a rigid one, the energy of any.
+/// What is measured of a body: all of a rigid one; see [`BodyQuantity::is_of_rigid`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum BodyQuantity {
@@ -195,6 +195,12 @@ impl BodyQuantity {
             Self::ContactMoment => "contact moment",
             Self::Energy => "energy",
         }
+    }
+
+    /// A body that strains has no such thing, or its model does not keep it apart.
+    pub fn is_of_rigid(self) -> bool {
+        use BodyQuantity::*;
+        matches!(self, Angle | AngularVelocity | ContactForce | ContactMoment)
     }
 
     /// One component about z in the plane.

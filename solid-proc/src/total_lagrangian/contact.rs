@@ -4,7 +4,7 @@
 //! bodies repel each other as soon as they are closer than the spacing dx, which is where two surfaces meet:
 //!   F_ij = k (dx - r) x_ij / r,   k = M/2 dx^(D-2),   M = K + 4 G / 3,
 //! pairwise, without friction and without loss. A body does not see itself. Walls push as they push any solid
-//! (see `crate::wall`).
+//! (see `crate::wall`). A solid that says `contact` leaves both to the coupler.
 
 use crate::columns::{Vectors, vectors};
 use crate::effects::{takes_part, touches_walls};
@@ -73,7 +73,7 @@ impl<const D: usize> Contact<D> {
             .then(|| Walls::new(scene, &layout.wall, wall_spacing + skin, isa))
             .flatten();
         let breaks = takes_part(scene, solid, EffectName::Fracture);
-        let several = body.iter().any(|&b| b != body[0]);
+        let several = !scene.leaves_bodies_to_coupler(solid) && body.iter().any(|&b| b != body[0]);
         let id = match (&walls, several) {
             (None, false) if !breaks => return None,
             // Cracks open surfaces everywhere.

@@ -76,7 +76,8 @@ pub(super) fn overlaps<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &
                 let named = !a.shape.body.is_empty() || !b.shape.body.is_empty();
                 named || a.copy == b.copy
             };
-            rigid(a.shape) && !one_body && !tied(scene, a.shape, b.shape)
+            let touch = rigid(a.shape) || a.shape.solid.is_some_and(|k| scene.leaves_bodies_to_coupler(k));
+            touch && !one_body && !tied(scene, a.shape, b.shape)
         }
         (Some(_), None) => rigid(a.shape) && !tied(scene, a.shape, b.shape),
         (None, Some(_)) => rigid(b.shape) && !tied(scene, b.shape, a.shape),
@@ -128,7 +129,7 @@ fn tied(scene: &Scene, a: &Shape, b: &Shape) -> bool {
     (moved(a) && moved(b)) || keys.joints.iter().any(|joint| joint.holds() && ties(&joint.body, &joint.with))
 }
 
-/// `contact` of a solid that strains, where there is nothing that it speaks of, or where it does not reach.
+/// `contact` of a solid, where there is nothing that it speaks of.
 pub(super) fn of_walls(scene: &Scene, bodies: &[Body], all: &mut Vec<String>) {
     for (k, solid) in scene.solids.iter().enumerate() {
         let own =
@@ -149,16 +150,15 @@ pub(super) fn of_walls(scene: &Scene, bodies: &[Body], all: &mut Vec<String>) {
             continue;
         }
         let name = &solid.name;
-        if scene.walls_to_touch().next().is_none() {
+        let alone = !scene.leaves_bodies_to_coupler(k) || bodies.iter().filter(own).count() == 1;
+        if alone && scene.walls_to_touch().next().is_none() {
+            let kind = match scene.leaves_bodies_to_coupler(k) {
+                true => "it has one body",
+                false => "a hypoelastic solid is one continuum",
+            };
             all.push(format!(
-                "the `contact` of `{name}` changes nothing: it is about walls, and there is none that may touch it \
-                 (contact = true at a wall)"
-            ));
-        }
-        if says && bodies.iter().filter(own).count() > 1 {
-            all.push(format!(
-                "the bodies of `{name}` touch each other without friction: its `contact` is about walls (a [[solid]] \
-                 for each and [[contact]] say how they touch)"
+                "the `contact` of `{name}` changes nothing: {kind}, and there is no wall that may touch it (contact = \
+                 true at a wall)"
             ));
         }
     }

@@ -56,9 +56,9 @@ pub fn outcome(scene: &Scene, report: &RunReport) -> Vec<String> {
         // Walls that move give what they like.
         let judged = !driven || contact.solids.iter().all(|name| name != WALLS);
         if judged && contact.normal > CREATED * contact.largest_force * contact.largest_penetration {
+            let who = parties(&contact.solids);
             all.push(format!(
-                "contact of {} gave them {:.2e} J instead of taking some: say a `stiffness` or a shorter step",
-                contact.solids.join(" and "),
+                "contact of {who} gave them {:.2e} J instead of taking some: say a `stiffness` or a shorter step",
                 contact.normal
             ));
         }
@@ -111,6 +111,14 @@ fn beside_cracks(scene: &Scene, report: &RunReport) -> Vec<String> {
     all
 }
 
+/// Two solids that touch, walls as one, or the bodies of one.
+fn parties(names: &[String]) -> String {
+    match names {
+        [a, b] if a == b => format!("the bodies of {a}"),
+        _ => names.join(" and "),
+    }
+}
+
 /// Forces of the fluid on a solid that another one touched were measured together with the contact.
 fn forces_with_contact(scene: &Scene, report: &RunReport) -> Vec<String> {
     let of_fluid = |kind: &ProbeKind| match kind {
@@ -122,8 +130,8 @@ fn forces_with_contact(scene: &Scene, report: &RunReport) -> Vec<String> {
         let solid = &scene.solids.get(probe.solid?)?.name;
         let pressed =
             |contact: &&ContactReport| contact.largest_force > 0.0 && contact.solids.contains(solid);
-        let other = report.contacts.iter().find(pressed)?.solids.iter().find(|name| *name != solid)?;
-        Some(format!("probe `{}` holds the force of the contact of {solid} and {other}, too", probe.name))
+        let who = parties(&report.contacts.iter().find(pressed)?.solids);
+        Some(format!("probe `{}` holds the force of the contact of {who}, too", probe.name))
     };
     scene.probes.iter().filter(|probe| of_fluid(&probe.kind)).filter_map(touched).collect()
 }

@@ -96,7 +96,8 @@ impl Law {
         self.rest = REST * gravity * self.limit;
     }
 
-    /// Points of the first solid inside of the second, in a time step, s; returns the largest penetration, m.
+    /// Points of the first solid inside of the second, in a time step, s; returns the largest penetration, m. Of one
+    /// solid twice: points of bodies inside of those after them, and in the second pass of those before them.
     pub(super) fn pass(
         &self,
         pass: u32,
@@ -107,9 +108,15 @@ impl Law {
     ) -> f64 {
         let (outline, placed) = own;
         let mut deepest = 0.0_f64;
-        for (points, around) in outline.pieces.iter().map(|piece| &piece.points).zip(&placed.pieces) {
+        let one_solid = on_own.solid == on_other.solid;
+        let is_other = |own: usize, target: usize| match pass {
+            0 => own < target,
+            _ => own > target,
+        };
+        let pieces = outline.pieces.iter().map(|piece| &piece.points).zip(&placed.pieces);
+        for (own_piece, (points, around)) in pieces.enumerate() {
             for (k, target) in other.1.pieces.iter().enumerate() {
-                if !around.touches(target) {
+                if one_solid && !is_other(own_piece, k) || !around.touches(target) {
                     continue;
                 }
                 for &point in points {

@@ -6,11 +6,11 @@ use std::fmt;
 /// What [`ContactReport::solids`] calls the walls of a scene: the name of no solid.
 pub const WALLS: &str = "wall";
 
-/// What contact did to a pair of solids, or walls to a solid that the coupler holds against them.
+/// What contact did to a pair of solids or to the bodies of one, or walls to a solid, where the coupler evaluates it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ContactReport {
-    /// Names of the two; all walls together are [`WALLS`].
+    /// Names of the two, of bodies of one solid twice its name; all walls together are [`WALLS`].
     pub solids: Vec<String>,
     /// Pressure over penetration, Pa/m.
     pub stiffness: f64,

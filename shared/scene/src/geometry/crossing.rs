@@ -13,7 +13,9 @@ pub fn crosses([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> bool {
         |p: [f64; 2], q: [f64; 2], r: [f64; 2]| (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
     let length_squared = (d[0] - c[0]).powi(2) + (d[1] - c[1]).powi(2);
     let left = |p: [f64; 2]| side(c, d, p) >= -ON_IT * length_squared;
-    left(a) != left(b) && side(a, b, c) * side(a, b, d) <= 0.0
+    let [from, to] = [side(a, b, c), side(a, b, d)];
+    let on_it = ON_IT * (length_squared * ((b[0] - a[0]).powi(2) + (b[1] - a[1]).powi(2))).sqrt();
+    left(a) != left(b) && from.min(to) <= on_it && from.max(to) >= -on_it
 }
 
 /// The cracks that solids begin with.
@@ -54,6 +56,9 @@ mod tests {
         assert!(crosses([[1.0, -0.5], [1.0, 0.5]], crack));
         assert!(crosses([[1.5, -0.5], [2.4, 0.5]], crack));
         assert!(!crosses([[1.8, -0.5], [2.6, 0.5]], crack), "beyond the end");
+        for beside in [1e-16, 0.0, -1e-16] {
+            assert!(crosses([[2.0 + beside, -0.5], [2.0 + beside, 0.5]], crack), "it ends on the line");
+        }
         assert!(!crosses([[1.0, 0.5], [1.0, 1.5]], crack), "above it");
         assert!(!crosses([[2.5, 0.0], [3.0, 0.0]], crack), "on its line, beyond the end");
         assert!(!crosses([[1.5, 0.0], [2.5, 0.0]], crack), "along it");

@@ -79,13 +79,16 @@ impl<const D: usize> FixedPairs<D> {
         Some((chunk, first + neighbours.iter().position(|&k| k as usize == j)?))
     }
 
-    /// Cuts a pair, by its slots: it has no slope from now on, whichever of the two asks.
-    pub fn cut(&mut self, i: usize, j: usize) {
+    /// Cuts a pair, by its slots: it has no slope from now on, whichever of the two asks. `false`: it had none.
+    pub fn cut(&mut self, i: usize, j: usize) -> bool {
+        let mut had = false;
         for (i, j) in [(i, j), (j, i)] {
             if let Some((chunk, entry)) = self.place(i, j) {
-                self.slopes[chunk][entry].0[i % LANES] = 0.0;
+                let slope = std::mem::take(&mut self.slopes[chunk][entry].0[i % LANES]);
+                had |= slope != 0.0;
             }
         }
+        had
     }
 
     /// Slots of the neighbours that a slot is not cut off from, in the list's order, with the slopes F.

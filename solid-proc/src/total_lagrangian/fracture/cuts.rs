@@ -11,7 +11,7 @@ use halfstep_sph::tensor;
 /// row it is stretched by 2 (straight) or 1 (diagonal) of them, along it by nothing.
 const STRETCHED: f64 = 0.5;
 /// Smallest determinant of the moment matrix with which a particle that was cut off from neighbours keeps a
-/// deformation gradient, over that of a corner of the lattice: there it is 1/4 of that inside, in space 1/8.
+/// deformation gradient, over that of a corner of the lattice.
 const SMALLEST: f64 = 0.5;
 /// Largest volume of a damaged particle over its reference volume, and of the latter over the former: half of what ends
 /// a run. A crack that opens is cut at less than twice its volume.
@@ -193,7 +193,7 @@ impl<const D: usize> TotalLagrangian<D> {
             return true;
         }
         let moment = self.moment(slot);
-        let corner = 0.5_f64.powi(D as i32) * self.fracture.as_ref().map_or(1.0, |fracture| fracture.inside);
+        let corner = self.fracture.as_ref().map_or(1.0, Fracture::corner);
         let enough = tensor::determinant(&moment) >= SMALLEST * corner;
         let correction = tensor::moment_inverse(&moment).filter(|_| enough);
         self.correction[slot] = correction.unwrap_or_else(Matrix::zeros);
@@ -230,6 +230,15 @@ impl<const D: usize> TotalLagrangian<D> {
             }
         }
         self.fracture = Some(fracture);
+    }
+}
+
+impl<const D: usize> Fracture<D> {
+    /// det M of a corner. In the plane it is 0.71 to 1 times a quarter of that inside, whatever the kernel, which lets
+    /// every corner keep its gradient; in space 0.40 to 0.97 times an eighth.
+    fn corner(&self) -> f64 {
+        let part = 0.5_f64.powi(D as i32) * self.inside;
+        if D == 2 { part } else { part.min(self.corner) }
     }
 }
 

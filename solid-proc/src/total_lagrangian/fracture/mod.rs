@@ -41,8 +41,10 @@ use faces::Face;
 pub(super) use friction::Drift;
 use friction::Rubbing;
 use halfstep_scene::{EffectName, Fracture as Keys, Scene};
+use halfstep_sph::kernel::Kernel;
+use halfstep_sph::lane::{Lane, Lanes, Unfused};
 use halfstep_sph::neighbours::PADDING;
-use halfstep_sph::tensor;
+use halfstep_sph::{tensor, with_kernel};
 use softening::Softening;
 
 /// Part of its strength with which a particle is broken: its stretched pairs with other broken ones are cut. Above, a
@@ -58,6 +60,8 @@ pub(super) struct Fracture<const D: usize> {
     accepted: bool,
     /// det M inside of the lattice.
     inside: f64,
+    /// det M of a corner of the lattice.
+    corner: f64,
     /// From a particle under the intact surface to the surface, m; zero inside.
     outward: Vec<[f64; D]>,
     /// Width of the band of a crack through a particle, m.
@@ -100,6 +104,21 @@ pub(super) struct Fracture<const D: usize> {
     dormant: Option<Contact<D>>,
 }
 
+/// det M of a corner of a lattice of spacing `dx`: of the neighbours in one quadrant, in space octant.
+fn corner<K: Kernel<D>, const D: usize>(kernel: K, dx: f64) -> f64 {
+    let rows = (2.0 * kernel.smoothing_length() / dx).ceil() as usize + 1;
+    let place = |k: usize| {
+        Matrix::<D>::from_fn(|a, b| if b == 0 { (k / rows.pow(a as u32) % rows) as f64 } else { 0.0 })
+    };
+    let mut moment = Matrix::<D>::zeros();
+    for k in 1..rows.pow(D as u32) {
+        let x = place(k).column(0) * dx;
+        let slope = kernel.gradient_over_r::<Unfused, Lane>(Lane::splat(x.norm())).0[0];
+        moment += x * x.transpose() * (-dx.powi(D as i32) * slope);
+    }
+    tensor::determinant(&moment)
+}
+
 impl<const D: usize> Fracture<D> {
     /// Of the scene's solid of that index; `None` where it does not break.
     pub(super) fn new(
@@ -110,11 +129,14 @@ impl<const D: usize> Fracture<D> {
     ) -> Option<Self> {
         let material = scene.solids.get(solid)?;
         let keys = material.fracture().filter(|_| takes_part(scene, solid, EffectName::Fracture))?;
+        let dx = scene.solid_spacing(solid);
+        let h = material.smoothing_ratio * dx;
         Some(Self {
             keys,
             modulus: material.strip_modulus(D),
             accepted: false,
             inside: 1.0,
+            corner: with_kernel!(scene.numerics.kernel, h, D, |k| corner(k, dx)),
             outward: Vec::new(),
             band: Vec::new(),
             strain: Vec::new(),
@@ -185,8 +207,11 @@ impl<const D: usize> TotalLagrangian<D> {
         (fracture.begun, fracture.damage) = (none.clone(), none);
         fracture.last = vec![Matrix::identity(); slots];
         fracture.outward = (0..slots).map(|slot| self.outward(slot, fracture.inside)).collect();
-        // Toward a rigid clamp a particle sees the opening gain times, and alone.
-        let band = |slot: usize| Keys::BAND * self.spacing / (1.0 + self.fixed.excess_gain[slot]);
+        // The rigid side of a clamp stores nothing: the row beside it takes all of the energy, however much of the
+        // opening it sees.
+        let clamped = |slot: usize| self.fixed.clamped[slot] != 0.0;
+        let beside = |slot| self.rigid_clamps && self.pairs.neighbours(slot).any(|(j, _)| clamped(j));
+        let band = |slot: usize| if beside(slot) { self.spacing } else { Keys::BAND * self.spacing };
         fracture.band = (0..slots).map(band).collect();
         self.note_thickness(&mut fracture);
         self.fracture = Some(fracture);

@@ -55,13 +55,13 @@ impl<const D: usize> TotalLagrangian<D> {
         fracture.damaged = damaged.clone();
         let pairs = cuts.chunks_exact(2).map(|pair| [pair[0] as usize, pair[1] as usize]);
         fracture.faces = pairs.zip(distances).map(|(pair, distance)| Face { pair, distance }).collect();
-        for Face { pair: [i, j], .. } in &fracture.faces {
-            self.pairs.cut(*i, *j);
-        }
-        cuts.sort_unstable();
-        cuts.dedup();
-        for &slot in &cuts {
-            self.correct_again(slot as usize);
+        // Not all sides that touch were neighbours: who lost none keeps the moment matrix of the start, bit for bit.
+        let pairs = fracture.faces.iter().map(|face| face.pair);
+        let mut touched: Vec<usize> = pairs.filter(|&[i, j]| self.pairs.cut(i, j)).flatten().collect();
+        touched.sort_unstable();
+        touched.dedup();
+        for slot in touched {
+            self.correct_again(slot);
         }
         damaged.into_iter().for_each(|slot| self.soften(slot));
         if !cuts.is_empty() {

@@ -1,0 +1,94 @@
+//! `validation/tsunami-wall/solitary.toml`: a solitary wave breaks a wall, which falls on a second one, another solid.
+
+use halfstep_scene::EnergyPart;
+use halfstep_tests::python::python;
+use halfstep_tests::run::{Finished, RunBuilder, repository, scene_at, whole_machine};
+
+const TO: f64 = 2.0;
+
+/// 3 and 6 particles across the walls.
+fn walls() -> RunBuilder {
+    let scene = scene_at(&repository().join("validation/tsunami-wall/solitary.toml"));
+    scene.set("resolution", 0.016 / 3.0)
+}
+
+/// Largest of the means over 10 ms, and the integral, of a force until a time, s.
+fn largest_and_impulse(run: &Finished, name: &str, until: f64) -> [f64; 2] {
+    let curve = run.curve(name);
+    let starts = (0..).map(|k| 0.002 * f64::from(k)).take_while(|t| t + 0.01 < until);
+    let mean = |from: f64| curve.between(from, from + 0.01).mean();
+    [starts.map(mean).fold(0.0, f64::max), curve.between(0.0, until).mean() * until]
+}
+
+/// What the page says of the wave, the break, the strike, both ledgers and the forces of a wall that holds.
+#[test]
+#[ignore = "minutes"]
+fn a_solitary_wave_breaks_a_wall_at_the_depth_of_beam_theory() {
+    let broken = walls().run();
+    let whole =
+        walls().set("solid.first.fracture.strength", 12e6).set("solid.first.fracture.energy", 2500.0).run();
+    let gauge = |run: &Finished, k: usize| run.curve(&format!("gauge.level-{k}"));
+    // The crest is asked to be 130 mm; third-order theory (Su and Mirie 1980) runs it up to 166 mm.
+    let (crest, up) = (gauge(&broken, 1).peak().1, gauge(&broken, 3).between(0.0, 1.78).peak().1);
+    println!("crest {crest} m, up to {up} m at the wall");
+    assert!((crest / 0.13 - 1.0).abs() < 0.03 && (up / 0.166 - 1.0).abs() < 0.06, "{crest} {up}");
+    // Beam theory's onset, 6 M / t² = f_t + the own weight, is at 139.6 mm. Single particles at the foot softened
+    // before, in the pressure waves of the piston's start: 1.2e-4 J/m measured.
+    let opened = broken.curve("opened.area");
+    let taken = broken.curve("crack.energy");
+    let early = taken.at(1.6);
+    let first = taken.between(1.6, TO).first_above(early + 1e-5).expect("damage");
+    let cut = opened.first_above(0.0105).expect("a crack through two of three rows");
+    let depth = gauge(&broken, 3).at(first);
+    println!("damage grows from {first} s on at {depth} m, cut at {cut} s; {early} J/m before");
+    assert!((depth / 0.1396 - 1.0).abs() < 0.05 && early < 2e-4, "{depth} {early}");
+    assert!((1.70..1.85).contains(&cut), "{cut}");
+    // It strikes the second wall, which nothing touches where the first one holds.
+    let strikes = |run: &Finished| run.report.contacts[0].largest_force;
+    assert!(strikes(&broken) > 100.0 && strikes(&whole) == 0.0);
+    let [first_broken, of_broken] = largest_and_impulse(&broken, "force-1.x", TO);
+    let [first_whole, of_whole] = largest_and_impulse(&whole, "force-1.x", TO);
+    println!("first wall: {first_broken} of {first_whole} N/m, {of_broken} of {of_whole} N s/m");
+    // Until it breaks the forces are the same; then it gives way.
+    let until_cut = [&broken, &whole].map(|run| run.curve("force-1.x").between(0.0, first).mean());
+    assert!((until_cut[0] / until_cut[1] - 1.0).abs() < 0.01, "{until_cut:?}");
+    assert!(of_broken < 0.97 * of_whole, "{of_broken} of {of_whole}");
+    let through = |run: &Finished| run.curve("breach.flux").mean() * TO;
+    println!("{:e} m² through the breach, {:e} past a wall that holds", through(&broken), through(&whole));
+    assert!(through(&broken) > 3.0 * through(&whole).max(1e-4));
+    // Wall and water.
+    let largest = |name: &str| broken.curve(name).values.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+    let rest = [largest("ledger.integration"), largest("water-ledger.integration")];
+    let (moves, holds) = (largest("ledger.kinetic"), largest("water-ledger.kinetic"));
+    println!("rests {rest:?} J/m, kinetic energy of the wall up to {moves}, of the water {holds} J/m");
+    assert!(rest[0] < 5e-3 * moves && rest[1] < 1e-2 * holds, "{rest:?}");
+    let energy = broken.report.energy.as_ref().expect("ledgers");
+    let fracture = energy.joules("first", EnergyPart::Fracture).expect("its part");
+    assert!((fracture + taken.at(TO)).abs() < 1e-9 * taken.at(TO), "{fracture} in run.json");
+    assert!(energy.relative_residual < 1e-2, "{}", energy.relative_residual);
+}
+
+/// The second wall is of finite elements of another program, in a fourth process.
+#[test]
+#[ignore = "minutes"]
+fn killed_after_the_strike_it_goes_on_beside_a_solid_of_another_program() {
+    let script = repository().join("python/examples/scikit-fem/gate.py");
+    let second = format!("second=OMP_NUM_THREADS=1 {} {}", python().display(), script.display());
+    let folder = tempfile::tempdir().expect("a folder");
+    let dir = folder.path().join("run");
+    let whole = walls().argument("--solid").argument(&second).run();
+    let killed = {
+        let _machine = whole_machine();
+        let short = walls().set("output.checkpoint_interval", 0.01).argument("--solid").argument(&second);
+        short.out(&dir).start().killed_at(1.975)
+    };
+    let hit = whole.curve("tip-2.x").between(0.0, killed).peak().1;
+    assert!(hit > 1e-5, "the second wall is struck before {killed} s: {hit} m");
+    let resumed = scene_at(&repository().join("validation/tsunami-wall/solitary.toml")).resume(&dir);
+    let resumed = resumed.argument("--solid").argument(&second).run();
+    assert!(resumed.report.resumed[0].time > 1.965, "{:?}", resumed.report.resumed);
+    assert_eq!(resumed.state_hash(), whole.state_hash());
+    for name in ["crack.energy", "opened.area", "pieces.bodies"] {
+        assert_eq!(resumed.curve(name).values, whole.curve(name).values, "{name}");
+    }
+}
