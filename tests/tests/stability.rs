@@ -118,7 +118,7 @@ fn part_of_page(title: &str) -> String {
     let heading = format!("### {title}\n");
     let part = page.split_once(&heading).expect("the family's heading").1;
     let end = part.find("\n### ").or_else(|| part.find("\n<!-- ")).expect("an end");
-    format!("{heading}{}\n", &part[..end])
+    format!("{heading}{}\n", part[..end].trim_end())
 }
 
 /// Puts a table into docs/stability.md if HALFSTEP_PAGE is set.
