@@ -1,10 +1,12 @@
 //! The effects of a scene: which take part in a scene, why, and what they cost.
 
+use crate::remarks::bodies_of;
 use halfstep_output::RunReport;
 use halfstep_output::run_json::EffectReport;
 use halfstep_role::report::Report;
 use halfstep_scene::geometry::Counts;
-use halfstep_scene::{Body, Decision, EffectName, Phase, Scene, Treatment, dispatch};
+use halfstep_scene::{Decision, EffectName, PairContact, Phase, Scene, Treatment, dispatch};
+use std::cell::OnceCell;
 
 /// What the fluid does in any case: pressure, continuity, neighbour lists, time step.
 const FLUID: &str = "fluid";
@@ -99,10 +101,15 @@ pub(crate) fn reports(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
         }
     };
     list.push(row(CROSS_VISCOSITY, coupled && c > 0.0, why));
+    // Placed once, where a scene asks for it.
+    let bodies = OnceCell::new();
+    let several = |contact: &PairContact| {
+        bodies_of(scene, bodies.get_or_init(|| scene.bodies()), contact.solids[0]) > 1
+    };
     let pairs: Vec<String> = scene
         .contacts()
         .into_iter()
-        .chain(scene.contacts_of_bodies().filter(|contact| has_bodies(scene, contact.solids[0])))
+        .chain(scene.contacts_of_bodies().filter(several))
         .map(|contact| {
             let [a, b] = contact.solids.map(|solid| &scene.solids[solid].name);
             let who = if a == b { format!("bodies of `{a}`") } else { format!("`{a}` and `{b}`") };
@@ -113,13 +120,6 @@ pub(crate) fn reports(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
         list.push(row(SOLID_CONTACT, true, format!("touch in the coupler: {}", pairs.join(", "))));
     }
     list
-}
-
-/// The solid of that index has more than one body.
-fn has_bodies(scene: &Scene, solid: usize) -> bool {
-    let own =
-        |body: &&Body| body.shapes.first().is_some_and(|&shape| scene.shapes[shape].solid == Some(solid));
-    scene.bodies().iter().filter(own).count() > 1
 }
 
 /// Puts the shares of the computing time of all roles into the rows, as the participants reported them. `coupler`:

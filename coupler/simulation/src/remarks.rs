@@ -46,6 +46,7 @@ mod walls;
 mod water;
 
 pub(crate) use bodies::{MOST_LISTED, listed as bodies_listed};
+pub(crate) use contacts::bodies_of;
 pub(crate) use joined::{Joined, Massive, joined, massive};
 pub(crate) use loads::{Loaded, listed as loaded};
 pub use outcome::outcome;

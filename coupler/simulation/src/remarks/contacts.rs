@@ -129,14 +129,18 @@ fn tied(scene: &Scene, a: &Shape, b: &Shape) -> bool {
     (moved(a) && moved(b)) || keys.joints.iter().any(|joint| joint.holds() && ties(&joint.body, &joint.with))
 }
 
+/// How many of the bodies are of the solid of that index.
+pub(crate) fn bodies_of(scene: &Scene, bodies: &[Body], solid: usize) -> usize {
+    let is_of = |shape: &usize| scene.shapes[*shape].solid == Some(solid);
+    bodies.iter().filter(|body| body.shapes.first().is_some_and(is_of)).count()
+}
+
 /// `contact` of a solid, where there is nothing that it speaks of.
 pub(super) fn of_walls(scene: &Scene, bodies: &[Body], all: &mut Vec<String>) {
     for (k, solid) in scene.solids.iter().enumerate() {
-        let own =
-            |body: &&Body| body.shapes.first().is_some_and(|&shape| scene.shapes[shape].solid == Some(k));
-        let says = solid.contact().unwrap_or_default() != ContactKeys::default();
         if solid.rigid().is_some() {
-            let alone = bodies.iter().filter(own).count() == 1;
+            let says = solid.contact().unwrap_or_default() != ContactKeys::default();
+            let alone = bodies_of(scene, bodies, k) == 1;
             if says && alone && scene.walls_to_touch().next().is_none() {
                 all.push(format!(
                     "the `contact` of `{}` changes nothing: it has one body, and no wall that may touch it (contact = \
@@ -150,14 +154,13 @@ pub(super) fn of_walls(scene: &Scene, bodies: &[Body], all: &mut Vec<String>) {
             continue;
         }
         let name = &solid.name;
-        let alone = !scene.leaves_bodies_to_coupler(k) || bodies.iter().filter(own).count() == 1;
-        if alone && scene.walls_to_touch().next().is_none() {
-            let kind = match scene.leaves_bodies_to_coupler(k) {
-                true => "it has one body",
-                false => "a hypoelastic solid is one continuum",
-            };
+        let why = match scene.leaves_bodies_to_coupler(k) {
+            false => Some("a hypoelastic solid is one continuum"),
+            true => (bodies_of(scene, bodies, k) == 1).then_some("it has one body"),
+        };
+        if let Some(why) = why.filter(|_| scene.walls_to_touch().next().is_none()) {
             all.push(format!(
-                "the `contact` of `{name}` changes nothing: {kind}, and there is no wall that may touch it (contact = \
+                "the `contact` of `{name}` changes nothing: {why}, and there is no wall that may touch it (contact = \
                  true at a wall)"
             ));
         }

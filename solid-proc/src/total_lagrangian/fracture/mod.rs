@@ -42,9 +42,9 @@ pub(super) use friction::Drift;
 use friction::Rubbing;
 use halfstep_scene::{EffectName, Fracture as Keys, Scene};
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Lane, Lanes, Unfused};
 use halfstep_sph::neighbours::PADDING;
 use halfstep_sph::{tensor, with_kernel};
+use nalgebra::SVector;
 use softening::Softening;
 
 /// Part of its strength with which a particle is broken: its stretched pairs with other broken ones are cut. Above, a
@@ -107,13 +107,10 @@ pub(super) struct Fracture<const D: usize> {
 /// det M of a corner of a lattice of spacing `dx`: of the neighbours in one quadrant, in space octant.
 fn corner<K: Kernel<D>, const D: usize>(kernel: K, dx: f64) -> f64 {
     let rows = (2.0 * kernel.smoothing_length() / dx).ceil() as usize + 1;
-    let place = |k: usize| {
-        Matrix::<D>::from_fn(|a, b| if b == 0 { (k / rows.pow(a as u32) % rows) as f64 } else { 0.0 })
-    };
     let mut moment = Matrix::<D>::zeros();
     for k in 1..rows.pow(D as u32) {
-        let x = place(k).column(0) * dx;
-        let slope = kernel.gradient_over_r::<Unfused, Lane>(Lane::splat(x.norm())).0[0];
+        let x = SVector::<f64, D>::from_fn(|axis, _| (k / rows.pow(axis as u32) % rows) as f64 * dx);
+        let slope = kernel.slope_at(x.norm());
         moment += x * x.transpose() * (-dx.powi(D as i32) * slope);
     }
     tensor::determinant(&moment)
