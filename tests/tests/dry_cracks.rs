@@ -24,39 +24,46 @@ fn cracks(run: RunBuilder) -> Vec<(f64, Vec<[f64; 2]>)> {
 /// Rayleigh's speed of the glass, m/s: 0.91 of that of shear waves.
 const RAYLEIGH: f64 = 2125.0;
 
-#[test]
-#[ignore = "a minute"]
-fn a_crack_in_glass_branches_and_stays_slower_than_rayleigh_waves() {
-    let all = cracks(scene("crack-branching"));
-    let tip = |points: &[[f64; 2]]| points.iter().map(|x| x[0]).fold(f64::NAN, f64::max);
-    let runs: Vec<(f64, f64)> = all
-        .iter()
-        .filter(|(_, points)| !points.is_empty())
-        .map(|(time, points)| (*time, tip(points)))
-        .collect();
-    assert!((6e-6..13e-6).contains(&runs[0].0), "it starts at {} s", runs[0].0);
-    for (time, x) in &runs {
-        if let Some((later, there)) = runs.iter().find(|(later, _)| *later > time + 9.5e-6) {
-            let speed = (there - x) / (later - time);
-            assert!(speed < 0.6 * RAYLEIGH, "{speed} m/s from {time} s on");
-        }
-    }
-    // Two tips, and nothing between them.
-    let branched = all.iter().find(|(_, points)| {
-        let front: Vec<f64> =
-            points.iter().filter(|x| x[0] > tip(points) - 2e-3).map(|x| x[1] - 0.02).collect();
-        let reaches = |sign: f64| front.iter().any(|y| sign * y > 1.4e-3);
-        reaches(1.0) && reaches(-1.0) && front.iter().all(|y| y.abs() > 6e-4)
-    });
-    let (time, points) = branched.expect("two branches");
-    println!("starts at {} s, branches at {time} s, {} m", runs[0].0, tip(points));
-    assert!((28e-6..50e-6).contains(time), "{time}");
-    assert!((0.06..0.085).contains(&tip(points)), "{}", tip(points));
+/// Of the points of a crack those on one section that leave a gap of 2.8 mm: the section, m.
+fn parted(points: &[[f64; 2]]) -> Option<f64> {
+    let sections = (100..200).map(|k| f64::from(k) * 0.5e-3);
+    sections.into_iter().find(|x| {
+        let mut ys: Vec<f64> = points.iter().filter(|p| (p[0] - x).abs() < 0.5e-3).map(|p| p[1]).collect();
+        ys.sort_by(f64::total_cmp);
+        ys.windows(2).any(|pair| pair[1] - pair[0] > 2.8e-3)
+    })
 }
 
-/// Angles of the line from each notch's tip to that of its crack, degrees, when the cracks are about 50 mm long.
+/// Measured for seeds 1 to 4: 32 to 45 us, 69 to 80 mm, up to 0.62 of Rayleigh's speed.
+#[test]
+#[ignore = "a minute"]
+fn a_crack_in_glass_branches_in_every_arrangement() {
+    for seed in 1..=4 {
+        let all = cracks(scene("crack-branching").set("solid.arrangement_seed", seed));
+        let tip = |points: &[[f64; 2]]| points.iter().map(|x| x[0]).fold(f64::NAN, f64::max);
+        let runs: Vec<(f64, f64)> = all
+            .iter()
+            .filter(|(_, points)| !points.is_empty())
+            .map(|(time, points)| (*time, tip(points)))
+            .collect();
+        assert!((6e-6..13e-6).contains(&runs[0].0), "it starts at {} s", runs[0].0);
+        for (time, x) in &runs {
+            if let Some((later, there)) = runs.iter().find(|(later, _)| *later > time + 9.5e-6) {
+                let speed = (there - x) / (later - time);
+                assert!(speed < 0.64 * RAYLEIGH, "{seed}: {speed} m/s from {time} s on");
+            }
+        }
+        let branched = all.iter().find_map(|(time, points)| Some((*time, parted(points)?, tip(points))));
+        let (time, at, tip) = branched.expect("two branches");
+        println!("seed {seed}: starts at {} s, branches at {time} s, {at} m, tip {tip} m", runs[0].0);
+        assert!((30e-6..48e-6).contains(&time), "{seed}: {time}");
+        assert!((0.066..0.084).contains(&at), "{seed}: {at}");
+    }
+}
+
+/// Angles of the line from each notch's tip to that of its crack, degrees, when the cracks are about 55 mm long.
 fn kalthoff_winkler(run: RunBuilder) -> [f64; 2] {
-    let all = cracks(run.until(50e-6));
+    let all = cracks(run.until(54e-6));
     let (_, points) = all.last().expect("frames");
     [1.0, -1.0].map(|side| {
         let from = points.iter().map(|x| [x[0] - 0.05, side * x[1] - 0.025]).filter(|x| x[1] > 1e-3);
@@ -66,13 +73,30 @@ fn kalthoff_winkler(run: RunBuilder) -> [f64; 2] {
     })
 }
 
-/// The experiment has about 70 degrees. Cracks prefer rows and diagonals of the lattice: at 0 degrees they miss it.
+/// The experiment has about 70 degrees, published computations 60 to 70. Measured at 54 us: 59 degrees in the mean of
+/// four arrangements at 1 mm, 61 at 0.5 mm.
 #[test]
 #[ignore = "a minute"]
 fn cracks_run_away_from_sheared_notches() {
-    let [upper, lower] = kalthoff_winkler(scene("kalthoff-winkler"));
+    let mut all = Vec::new();
+    for seed in 1..=4 {
+        let angles = kalthoff_winkler(scene("kalthoff-winkler").set("solid.arrangement_seed", seed));
+        println!("seed {seed}: {angles:?} degrees");
+        all.extend(angles);
+    }
+    assert!(all.iter().all(|angle| (53.0..66.0).contains(angle)), "{all:?}");
+    let mean = all.iter().sum::<f64>() / all.len() as f64;
+    assert!((57.0..62.0).contains(&mean), "{mean}");
+}
+
+/// On a lattice they take its rows and diagonals.
+#[test]
+#[ignore = "a minute"]
+fn cracks_on_a_lattice_follow_it() {
+    let straight = scene("kalthoff-winkler").set("solid.arrangement", "lattice");
+    let [upper, lower] = kalthoff_winkler(straight);
     println!("lattice at 0 degrees: {upper} and {lower} degrees");
-    assert!((upper - lower).abs() < 1.0 && (45.0..75.0).contains(&upper), "{upper} {lower}");
+    assert!((upper - lower).abs() < 1.0 && (47.0..55.0).contains(&upper), "{upper} {lower}");
     let turned = kalthoff_winkler(scene_at(&repository().join("validation/kalthoff-winkler/turned.toml")));
     println!("lattice at 30 degrees: {turned:?} degrees");
     let mean = 0.5 * (turned[0] + turned[1]);

@@ -92,11 +92,13 @@ fn what_a_scene_prescribes_has_its_rows() {
     assert!(why.contains("0.02 m in 0.2 m of water with a stroke of 0.017 m"), "{why}");
     let cracked = effects("kalthoff-winkler", &["resolution=0.0025"]);
     assert!(row(&cracked, "crack")["why"].as_str().unwrap().contains("`plate`, `edge`"));
+    let why = row(&cracked, "irregular-arrangement")["why"].as_str().unwrap();
+    assert!(why.contains("`solid`, seed 1: "), "{why}");
     assert!(row(&cracked, "prescribed-solids")["why"].as_str().unwrap().contains("`edge`"));
     let load = "shape.plate.load={ within = { min = [0.0, -1.0], max = [1.0, 1.0] }, traction = [0.0, 5.0] }";
     let loaded = effects("oscillating-plate", &["resolution=0.004", load]);
     assert!(row(&loaded, "load")["why"].as_str().unwrap().contains("(0, 5) Pa on "), "{loaded:#}");
-    let names = ["moving-walls", "wave-maker", "prescribed-solids", "load", "crack"];
+    let names = ["moving-walls", "wave-maker", "prescribed-solids", "load", "crack", "irregular-arrangement"];
     let still = effects("dam-break", &["resolution=0.0028575"]);
     let rows = still["effects"].as_array().unwrap();
     assert!(rows.iter().all(|row| !names.contains(&row["name"].as_str().unwrap())), "absent costs no row");

@@ -1,9 +1,9 @@
-//! Rows of `explain` for what a scene prescribes: motion, waves, loads and cracks. A scene without them has no such
-//! row.
+//! Rows of `explain` for what a scene prescribes: motion, waves, loads, cracks and arrangements. A scene without them
+//! has no such row.
 
 use crate::effects::{MOVING_WALLS, row};
 use halfstep_output::run_json::EffectReport;
-use halfstep_scene::geometry::{Counts, Layout};
+use halfstep_scene::geometry::{self, Counts, Layout};
 use halfstep_scene::{Course, Decision, Motion, Phase, Scene, Shape, dispatch};
 
 /// Bytes of a real number.
@@ -81,6 +81,18 @@ pub(crate) fn rows(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
             format!("`crack` of {names}: pairs are cut at the start, which costs nothing later"),
         );
     }
+    let off_lattice = dispatch!(scene.dimension, D => geometry::off_lattice::<D>(scene)).unwrap_or_default();
+    for (solid, count) in scene.solids.iter().zip(off_lattice) {
+        let Some((count, seed)) = count.zip(solid.irregular()) else { continue };
+        put(
+            "irregular-arrangement",
+            None,
+            format!(
+                "`arrangement` of `{}`, seed {seed}: {count} particles lie off the lattice, which costs nothing later",
+                solid.name
+            ),
+        );
+    }
     list
 }
 
@@ -91,7 +103,7 @@ fn is_solitary(motion: &Motion) -> bool {
 
 /// Number of particles that the load of a shape of that index acts on.
 fn loaded<const D: usize>(scene: &Scene, shape: usize) -> usize {
-    let layout: Layout<D> = halfstep_scene::geometry::solids(scene);
+    let layout: Layout<D> = geometry::solids(scene);
     layout.solid.iter().filter(|p| p.body as usize == shape && !p.clamped && p.is_in_load(scene)).count()
 }
 

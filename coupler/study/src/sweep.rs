@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 const NUMERICAL: [&str; 8] =
     ["resolution", "smoothing_ratio", "time_step", "preset", "numerics", "effects", "output", "interface"];
 /// The same within `[fluid]`, a solid and a shape.
-const NUMERICAL_PARTS: [&str; 13] = [
+const NUMERICAL_PARTS: [&str; 16] = [
     "sound_speed",
     "artificial_viscosity",
     "artificial_stress",
@@ -27,6 +27,9 @@ const NUMERICAL_PARTS: [&str; 13] = [
     "threads",
     "across",
     "spacing",
+    "arrangement",
+    "arrangement_seed",
+    "lattice_angle",
 ];
 
 /// Whether a key changes what is computed and not how: another material, another place, a parameter.
@@ -292,6 +295,9 @@ mod tests {
             "fluid.density_diffusion",
             "solid.model",
             "solid.gate.smoothing_ratio",
+            "solid.arrangement",
+            "solid.arrangement_seed",
+            "shape.plate.lattice_angle",
             "shape.plate.across",
             "interface.cross_viscosity",
         ] {

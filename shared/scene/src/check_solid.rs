@@ -250,6 +250,14 @@ impl Check<'_> {
                 let fracture = format!("{}.fracture", self.solid_key(k));
                 let reason = format!("must be at most {most} with {fracture}: {why}");
                 self.report.among(self.root, key, &[&fracture], reason);
+            } else if solid.irregular().is_some()
+                && self.scene.numerics.solid_cfl > most
+                && !self.report.has(key)
+            {
+                let why = "where particles are closer than their spacing, waves take less time";
+                let arrangement = format!("{}.arrangement", self.solid_key(k));
+                let reason = format!("must be at most {most} with {arrangement} = \"irregular\": {why}");
+                self.report.among(self.root, key, &[&arrangement], reason);
             }
         }
     }

@@ -15,6 +15,7 @@ mod alone;
 mod at_start;
 mod cells;
 mod crossing;
+mod irregular;
 mod line;
 mod moved;
 mod nearest;
@@ -35,6 +36,7 @@ pub use at_start::cantilever_velocity;
 use at_start::{added, field_velocity, initial_pressure, surfaces};
 pub use cells::{Cells, cell};
 pub use crossing::{Cracks, crosses};
+pub use irregular::off_lattice;
 pub use line::along;
 pub use moved::Moved;
 pub use nearest::nearest;
@@ -176,7 +178,7 @@ impl Counts {
 /// # Panics
 /// Where `D` is not the scene's dimension.
 pub fn layout<const D: usize>(scene: &Scene) -> Layout<D> {
-    of_phases(scene, &[Phase::Solid, Phase::Wall, Phase::Fluid])
+    irregular::rearranged(scene, on_lattices(scene, &[Phase::Solid, Phase::Wall, Phase::Fluid]))
 }
 
 /// Places the solid particles of a scene, which lose nothing to walls and fluid.
@@ -184,11 +186,11 @@ pub fn layout<const D: usize>(scene: &Scene) -> Layout<D> {
 /// # Panics
 /// As [`layout`].
 pub fn solids<const D: usize>(scene: &Scene) -> Layout<D> {
-    of_phases(scene, &[Phase::Solid])
+    irregular::rearranged(scene, on_lattices(scene, &[Phase::Solid]))
 }
 
 /// Places the particles of the first of the phases, which lose nothing to later ones.
-fn of_phases<const D: usize>(scene: &Scene, phases: &[Phase]) -> Layout<D> {
+fn on_lattices<const D: usize>(scene: &Scene, phases: &[Phase]) -> Layout<D> {
     assert_eq!(D, scene.dimension, "layout of another dimension than the scene's");
     let mut layout = Layout { fluid: Vec::new(), solid: Vec::new(), wall: Vec::new() };
     let widest = scene.shapes.iter().map(|shape| scene.spacing(shape)).fold(scene.resolution, f64::max);

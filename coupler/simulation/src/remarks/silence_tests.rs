@@ -81,6 +81,16 @@ fn a_plate_that_locks() {
 }
 
 #[test]
+fn an_irregular_arrangement_of_a_thin_plate() {
+    let said = "arrangement = \"irregular\" of `solid` does nothing: two rows at the surface";
+    let irregular = "poissons_ratio = 0.4\narrangement = \"irregular\"";
+    // 20 mm thick: 4 and 8 across.
+    assert!(has(&with_solid(irregular, PLATE), said), "{:?}", with_solid(irregular, PLATE));
+    assert!(!has(&with_solid("poissons_ratio = 0.4", PLATE), said));
+    assert!(!has(&with_solid(irregular, &with(PLATE, "spacing = 0.0025\n")), said));
+}
+
+#[test]
 fn a_wall_that_goes_through_a_plate() {
     let ram = |contact: bool| {
         let geometry =

@@ -1,7 +1,7 @@
 //! Remarks on keys of solids that do nothing in their scene, or all that is done.
 
 use super::shapes::length;
-use halfstep_scene::{ModelKeys, PairContact, Scene, Solid};
+use halfstep_scene::{ModelKeys, PairContact, Scene, Solid, geometry};
 
 /// Relaxation time over that of the run from which on an arm relaxes by less than a hundredth.
 const NEVER: f64 = 100.0;
@@ -76,5 +76,17 @@ pub(super) fn untouched(scene: &Scene, all: &mut Vec<String>) {
                 a.name, b.name
             ));
         }
+    }
+}
+
+/// Irregular arrangements of solids of which no particle lies off the lattice.
+pub(super) fn arrangements<const D: usize>(scene: &Scene, all: &mut Vec<String>) {
+    let off_lattice = geometry::off_lattice::<D>(scene);
+    for (solid, _) in scene.solids.iter().zip(off_lattice).filter(|(_, count)| *count == Some(0)) {
+        all.push(format!(
+            "arrangement = \"irregular\" of `{}` does nothing: two rows at the surface, beside clamps and beside cracks \
+             stay on the lattice, and it has no others",
+            solid.name
+        ));
     }
 }

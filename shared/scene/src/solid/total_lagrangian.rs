@@ -2,7 +2,7 @@
 
 use super::fracture as fracture_keys;
 use super::models::Rules;
-use super::{ContactKeys, Fracture};
+use super::{ContactKeys, Fracture, ModelKeys, Solid};
 use crate::ArtificialViscosity;
 use crate::document::{Node, Value};
 use crate::keys::{Key, Kind, words};
@@ -24,6 +24,9 @@ pub struct TotalLagrangianKeys {
     /// What happens across the plane of two dimensions.
     #[serde(default)]
     pub plane: Plane,
+    /// Seed of an irregular arrangement of its particles; `None`: they lie on their lattice.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub irregular: Option<u32>,
     /// Strength and fracture energy; `None`: it does not break.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fracture: Option<Fracture>,
@@ -71,6 +74,8 @@ pub(super) const RULES: Rules = Rules {
         ("material", "only the total-lagrangian and the finite-element model have a choice of materials"),
         ("hourglass", "only the total-lagrangian model resists hourglass modes"),
         ("prony", "only the total-lagrangian model has a strain that Maxwell arms could follow; others know its rate"),
+        ("arrangement", "only the total-lagrangian model knows particles off a lattice"),
+        ("arrangement_seed", "only the total-lagrangian model knows particles off a lattice"),
         ("fracture", "only the total-lagrangian model breaks"),
         ("plane", "only the total-lagrangian and the finite-element model know the strain across the plane"),
     ],
@@ -84,6 +89,10 @@ pub(super) const RULES: Rules = Rules {
 const MATERIALS: [(&str, Material); 2] =
     [("st-venant-kirchhoff", Material::StVenantKirchhoff), ("neo-hookean", Material::NeoHookean)];
 const PLANES: [(&str, Plane); 2] = [("strain", Plane::Strain), ("stress", Plane::Stress)];
+/// Whether an arrangement is irregular.
+const ARRANGEMENTS: [(&str, bool); 2] = [("lattice", false), ("irregular", true)];
+/// Seed of an irregular arrangement where none is said.
+const SEED: u32 = 1;
 const SHARE: Range =
     Range::positive().up_to(100.0).why("g is the arm's shear modulus over the long-time one");
 const TIME: Range = Range::at_least(1e-9).up_to(1e9).why("tau is the arm's relaxation time, s");
@@ -111,9 +120,25 @@ pub(super) const KEYS: &[Key] = &[
     )
     .only(OWN),
     Key::words("plane", || words(&PLANES), "What two dimensions mean.").default("\"strain\"").only(BOTH),
+    Key::words("arrangement", || words(&ARRANGEMENTS), "How its particles lie inside of it at the start.")
+        .default("\"lattice\"")
+        .only(OWN),
+    Key::new("arrangement_seed", Kind::Integer(0, u32::MAX), "Which of the irregular arrangements.")
+        .default("1")
+        .only(OWN),
     Key::new("fracture", Kind::Table(&fracture_keys::TABLE), "Strength and energy with which it breaks.")
         .only(OWN),
 ];
+
+impl Solid {
+    /// Seed of the irregular arrangement of its particles; `None`: they lie on a lattice.
+    pub fn irregular(&self) -> Option<u32> {
+        match &self.model {
+            ModelKeys::TotalLagrangian(keys) => keys.irregular,
+            _ => None,
+        }
+    }
+}
 
 impl TotalLagrangianKeys {
     pub(super) fn read(section: &Section<'_>, _: &Defaults) -> Self {
@@ -123,6 +148,7 @@ impl TotalLagrangianKeys {
             hourglass: section.number_or_auto("hourglass", None),
             prony,
             plane,
+            irregular: irregular(section),
             fracture: fracture(section, plane, material),
             contact: ContactKeys::read(section),
         }
@@ -137,6 +163,19 @@ impl TotalLagrangianKeys {
 /// The law of the material.
 pub(super) fn material(section: &Section<'_>) -> Material {
     section.choice("material", Some(Material::NeoHookean), &MATERIALS).unwrap_or(Material::NeoHookean)
+}
+
+fn irregular(section: &Section<'_>) -> Option<u32> {
+    let irregular = section.choice("arrangement", Some(false), &ARRANGEMENTS).unwrap_or(false);
+    let seed = section.optional_integer("arrangement_seed");
+    if let (false, Some(node)) = (irregular, section.node("arrangement_seed")) {
+        section.wrong(
+            "arrangement_seed",
+            node,
+            "is that of `arrangement` = \"irregular\", which is not said",
+        );
+    }
+    irregular.then(|| seed.unwrap_or(SEED))
 }
 
 fn fracture(section: &Section<'_>, plane: Plane, material: Material) -> Option<Fracture> {

@@ -8,6 +8,7 @@ mod cantilever_tests;
 mod cut_tests;
 mod debris_tests;
 mod friction_tests;
+mod irregular_tests;
 
 /// Runs a solid alone and keeps its ledger.
 struct Run<const D: usize> {
