@@ -15,12 +15,12 @@ pub(crate) fn deserialize<'d, D: Deserializer<'d>>(from: D) -> Result<Vec<Solid>
     #[derive(Deserialize)]
     #[serde(untagged)]
     enum Section {
-        One(Solid),
+        One(Box<Solid>),
         Several(Vec<Solid>),
     }
     Ok(match Option::<Section>::deserialize(from)? {
         None => Vec::new(),
-        Some(Section::One(solid)) => vec![solid],
+        Some(Section::One(solid)) => vec![*solid],
         Some(Section::Several(solids)) => solids,
     })
 }

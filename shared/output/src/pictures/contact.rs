@@ -50,7 +50,10 @@ pub fn draw_contact(scene: &Scene, dir: &Path) -> Result<Option<PathBuf>, Output
     let place = layout(instants.len(), view.size(), HEAD, FOOT, scene.resolution);
     let mut sheet = Sheet::new(place.width, place.height);
     let of_solids = (0..scene.solids.len()).map(|solid| scene.solid_spacing(solid)).fold(0.0, f64::max);
+    let mut moved = Vec::new();
     for (instant, &panel) in instants.iter().zip(&place.panels) {
+        let (view, by) = view.following(scene, instant);
+        moved.push(by);
         for (phase, scale) in
             [(frame::WALL, None), (frame::FLUID, Some(Scale::Fluid)), (frame::SOLID, Some(Scale::Solid))]
         {
@@ -76,9 +79,10 @@ pub fn draw_contact(scene: &Scene, dir: &Path) -> Result<Option<PathBuf>, Output
             label(area, &title(scene), (16, 14), 20, HPos::Left)?;
             scale_bar(area, &view, place.scale, width as i32)?;
             let last = instants.last().map_or(0.0, |instant| instant.time);
-            for (instant, panel) in instants.iter().zip(&place.panels) {
+            for ((instant, panel), by) in instants.iter().zip(&place.panels).zip(&moved) {
                 frame_of(area, *panel)?;
-                label(area, &time_label(instant.time, last), (panel.x, panel.y - 22), 15, HPos::Left)?;
+                let text = time_label(instant.time, last) + &way_label(*by);
+                label(area, &text, (panel.x, panel.y - 22), 15, HPos::Left)?;
             }
             bars.iter().try_for_each(|bar| bar.draw(area))
         })
@@ -228,6 +232,17 @@ pub(super) fn scale_bar(area: &Area<'_>, view: &View, scale: f64, width: i32) ->
     let ends = [(left, y - 4), (left, y + 4), (left, y), (right, y), (right, y - 4), (right, y + 4)];
     area.draw(&PathElement::new(ends, BLACK))?;
     label(area, &format!("{} {unit}", units::number(length * factor)), (left - 8, y - 9), 14, HPos::Right)
+}
+
+/// Where a view that follows has gone.
+fn way_label(by: [f64; 2]) -> String {
+    let (factor, unit) = units::shown("m", by[0].abs().max(by[1].abs()));
+    match by {
+        [0.0, 0.0] => String::new(),
+        [x, y] => {
+            format!(", view moved by ({}, {}) {unit}", units::number(x * factor), units::number(y * factor))
+        }
+    }
 }
 
 fn time_label(time: f64, last: f64) -> String {

@@ -2,7 +2,7 @@
 
 use super::contact::Instant;
 use super::stamp::Rect;
-use halfstep_scene::{Motion, Scene, Shape};
+use halfstep_scene::{Motion, Phase, Scene, Shape};
 use halfstep_wire::frame::{FLUID, SOLID, WALL};
 
 /// Largest picture, pixels.
@@ -14,14 +14,19 @@ const CAPTION: i32 = 26;
 const WIDEST_SPACING: f64 = 30.0;
 /// The view grows with what moves, at most by this part of its size at each side.
 const GROWTH: f64 = 0.5;
+/// What is left free beside the outermost particles, in spacings.
+const EDGE: f64 = 1.5;
 /// Part of the fluid on each side that does not make the view grow: spray.
 const SPRAY: f64 = 0.02;
 
 /// A rectangle of the x-y plane; of three-dimensional scenes a slice through the middle.
+#[derive(Clone)]
 pub(crate) struct View {
     min: [f64; 2],
     max: [f64; 2],
     slice: Option<[f64; 2]>,
+    /// Walls are followed wherever they go.
+    walls: bool,
 }
 
 impl View {
@@ -32,27 +37,34 @@ impl View {
         let initial = [FLUID, SOLID, WALL].into_iter().flat_map(|phase| first.phase(phase));
         let initial = around(initial.map(|(frame, k)| frame.points[k].map(f64::from)))?;
         let mut bounds = [initial[0], initial[1]];
-        // Walls that swing or turn are shown wherever they go; a gate that opens is not followed.
-        let follows = |s: &Shape| s.motion.as_ref().is_some_and(|m| !matches!(m, Motion::Steady { .. }));
-        let walls = scene.shapes.iter().any(follows);
+        let walls = follows_walls(scene);
         for instant in &instants[1..] {
             for axis in 0..2 {
-                let along = |phase| {
-                    let all = instant.phase(phase).map(|(frame, k)| f64::from(frame.points[k][axis]));
-                    let mut all: Vec<f64> = all.filter(|x| x.is_finite()).collect();
-                    all.sort_by(f64::total_cmp);
-                    all
-                };
-                let (fluid, solid) = (along(FLUID), along(SOLID));
-                let spray = (fluid.len() as f64 * SPRAY) as usize;
-                let walls = if walls { along(WALL) } else { Vec::new() };
-                let reach = [fluid.get(spray), fluid.iter().nth_back(spray), solid.first(), solid.last()];
-                for x in reach.into_iter().chain([walls.first(), walls.last()]).flatten() {
-                    bounds[axis].include(initial[axis].limit(*x));
+                for x in bulk(instant, axis, walls).into_iter().flatten() {
+                    bounds[axis].include(initial[axis].limit(x));
                 }
             }
         }
-        Some(Self::new(scene, bounds, initial[2]))
+        Some(Self { walls, ..Self::new(scene, bounds, initial[2]) })
+    }
+
+    /// The view of an instant, moved to where the bulk of its particles is, and by how much, m: what goes on and on, as
+    /// a tank that is towed, does not leave it.
+    pub(crate) fn following(&self, scene: &Scene, instant: &Instant) -> (Self, [f64; 2]) {
+        let edge = EDGE * scene.resolution;
+        let by = [0, 1].map(|axis| {
+            let ends = bulk(instant, axis, self.walls).into_iter().flatten();
+            let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+            let (before, after) = (self.min[axis] - (low - edge), (high + edge) - self.max[axis]);
+            // What sticks out on both sides is larger than the view.
+            match (before > 0.0, after > 0.0) {
+                (false, true) => after.min(-before),
+                (true, false) => -before.min(-after),
+                _ => 0.0,
+            }
+        });
+        let moved = |corner: [f64; 2]| [corner[0] + by[0], corner[1] + by[1]];
+        (Self { min: moved(self.min), max: moved(self.max), ..self.clone() }, by)
     }
 
     /// The box around these points, m; `None` without points.
@@ -61,12 +73,13 @@ impl View {
     }
 
     fn new(scene: &Scene, bounds: [Range; 2], depth: Range) -> Self {
-        let edge = 1.5 * scene.resolution;
+        let edge = EDGE * scene.resolution;
         let middle = 0.5 * (depth.low + depth.high);
         Self {
             min: bounds.map(|range| range.low - edge),
             max: bounds.map(|range| range.high + edge),
             slice: (scene.dimension == 3).then_some([middle - scene.resolution, middle + scene.resolution]),
+            walls: false,
         }
     }
 
@@ -85,6 +98,30 @@ impl View {
         let [x, y] = [f64::from(point[0]), f64::from(point[1])];
         [f64::from(panel.x) + (x - self.min[0]) * scale, f64::from(panel.y) + (self.max[1] - y) * scale]
     }
+}
+
+/// Whether walls are shown wherever they go: those that swing or turn, and where all move. A gate that opens is not
+/// followed.
+fn follows_walls(scene: &Scene) -> bool {
+    let mut walls = scene.shapes.iter().filter(|s| s.phase == Phase::Wall).peekable();
+    let swings = |s: &Shape| s.motion.as_ref().is_some_and(|m| !matches!(m, Motion::Steady { .. }));
+    let all_move = walls.peek().is_some() && walls.all(|s| s.motion.is_some());
+    all_move || scene.shapes.iter().any(swings)
+}
+
+/// Ends of the fluid but for its spray, of the solids, and of walls if they count, along an axis, m.
+fn bulk(instant: &Instant, axis: usize, walls: bool) -> [Option<f64>; 6] {
+    let along = |phase| {
+        let all = instant.phase(phase).map(|(frame, k)| f64::from(frame.points[k][axis]));
+        let mut all: Vec<f64> = all.filter(|x| x.is_finite()).collect();
+        all.sort_by(f64::total_cmp);
+        all
+    };
+    let (fluid, solid) = (along(FLUID), along(SOLID));
+    let spray = (fluid.len() as f64 * SPRAY) as usize;
+    let walls = if walls { along(WALL) } else { Vec::new() };
+    let fluid = [fluid.get(spray), fluid.iter().nth_back(spray)];
+    [fluid[0], fluid[1], solid.first(), solid.last(), walls.first(), walls.last()].map(Option::<&f64>::copied)
 }
 
 /// Ranges of the points' coordinates; `None` without points.
@@ -165,6 +202,8 @@ pub(crate) fn layout(count: usize, size: [f64; 2], head: i32, foot: i32, spacing
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Frame;
+    use halfstep_scene::parse;
 
     #[test]
     fn panels_fit_and_do_not_overlap() {
@@ -189,5 +228,53 @@ mod tests {
         // Long channels stand above each other, towers side by side.
         assert!(layout(6, [8.0, 1.0], 50, 80, 1e-4).panels[1].x == GAP);
         assert!(layout(6, [1.0, 5.0], 50, 80, 1e-4).panels[5].x > GAP);
+    }
+
+    /// A tank 1 m wide at this x, with water in it, and a drop 30 m away.
+    fn at(x: f64) -> Instant {
+        let mut frame = Frame::default();
+        let mut put = |phase: u8, x: f64, y: f64| {
+            frame.points.push([x as f32, y as f32, 0.0]);
+            frame.phase.push(phase);
+        };
+        for k in 0..=100 {
+            put(WALL, x + 0.01 * f64::from(k), 0.0);
+            put(FLUID, x + 0.01 * f64::from(k), 0.1);
+        }
+        put(FLUID, x + 30.0, 0.1);
+        Instant { time: 0.0, frames: vec![frame] }
+    }
+
+    fn tank(motion: &str) -> Scene {
+        let text = format!(
+            "resolution = 0.02\nend_time = 1.0\n[fluid]\ndensity = 1000.0\n\
+             [[shape]]\nname = \"tank\"\nphase = \"wall\"\ntank = {{ min = [0.0, 0.0], max = [1.0, 0.4] }}\n{motion}\n\
+             [[shape]]\nname = \"water\"\nphase = \"fluid\"\nbox = {{ min = [0.0, 0.0], max = [1.0, 0.2] }}\n"
+        );
+        parse(&text, "tank.toml".as_ref(), &[]).unwrap_or_else(|e| panic!("{e:?}"))
+    }
+
+    #[test]
+    fn a_view_follows_a_tank_that_is_towed() {
+        let scene = tank("motion = { velocity = [1.0, 0.0] }");
+        let instants = [0.0, 1.0, 2.0, -3.0].map(at);
+        let view = View::of(&scene, &instants[..3]).expect("particles");
+        // Particles at the first instant reach to the drop, 30 m away, and the view grows by no more than half of that.
+        let narrow = View { min: [-0.03, -0.03], max: [1.53, 0.13], ..view };
+        let moved: Vec<f64> = instants.iter().map(|i| narrow.following(&scene, i).1[0]).collect();
+        for (found, by_hand) in moved.iter().zip([0.0, 0.5, 1.5, -3.0]) {
+            assert!((found - by_hand).abs() < 1e-6, "{moved:?}");
+        }
+        let (followed, _) = narrow.following(&scene, &instants[2]);
+        assert!((followed.min[0] - 1.47).abs() < 1e-6 && (followed.size()[0] - 1.56).abs() < 1e-9);
+    }
+
+    #[test]
+    fn walls_that_open_are_not_followed() {
+        assert!(follows_walls(&tank("motion = { velocity = [1.0, 0.0] }")));
+        assert!(!follows_walls(&tank("")));
+        let gate = "motion = { velocity = [1.0, 0.0] }\n[[shape]]\nname = \"floor\"\nphase = \"wall\"\n\
+                    box = { min = [2.0, 0.0], max = [3.0, 0.2] }";
+        assert!(!follows_walls(&tank(gate)));
     }
 }
