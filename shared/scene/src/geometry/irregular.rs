@@ -5,7 +5,7 @@
 //! and beside cracks stay: the outline, what a clamp holds and the faces of a notch are those of the lattice.
 
 use super::crossing::Cracks;
-use super::{Cells, Layout, SolidPoint, pieces};
+use super::{Cells, Layout, SolidPoint, pieces, solid_point};
 use crate::{Phase, Scene};
 use std::collections::BTreeMap;
 use xxhash_rust::xxh3::xxh3_64_with_seed;
@@ -35,8 +35,10 @@ pub(super) fn rearranged<const D: usize>(scene: &Scene, mut layout: Layout<D>) -
             places[i] = to;
         }
     }
-    for (point, place) in layout.solid.iter_mut().zip(places) {
-        point.position = place;
+    for &i in moving.seeds.keys() {
+        let SolidPoint { body, copy, .. } = layout.solid[i];
+        // With the velocity that the scene has there.
+        layout.solid[i] = solid_point(scene, &scene.shapes[body as usize], [body, copy], places[i]);
     }
     layout
 }
