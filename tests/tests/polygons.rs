@@ -159,6 +159,7 @@ fn a_box_on_its_corner_floats_as_an_upright_one_does() {
         let late = |name: &str| run.curve(name).between(1.5, 3.0).mean();
         // The depth of the lowest point below the water's level.
         let draught = late("level.level") - late("box.y") + exact;
+        println!("draught {draught} m, exact {exact} m");
         assert!((draught / exact - 1.0).abs() < 0.02, "draught {draught} m, exact {exact} m");
     }
 }
