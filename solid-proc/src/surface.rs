@@ -1,6 +1,6 @@
 //! Which particles are near the surface in the reference configuration.
 
-use halfstep_scene::geometry::SolidPoint;
+use halfstep_scene::geometry::{Cells, SolidPoint};
 use halfstep_sph::neighbours::{PADDING, Rows};
 
 /// Numbers of the particles closer than `reach` to a surface particle, ascending. A surface particle lacks one of its
@@ -32,16 +32,8 @@ pub(crate) fn surface_set<const D: usize>(
             }
         });
     };
-    let body_at = |slot: usize| body.get(id[slot] as usize);
-    let apart = |i: usize, j: usize| body_at(i).zip(body_at(j)).is_some_and(|(a, b)| a != b);
-    let ring = (D as f64).sqrt() * 1.05 * resolution;
-    let full = 3_usize.pow(D as u32);
-    let mut surface = vec![false; id.len()];
-    for i in 0..id.len() {
-        let mut count = 0;
-        within(i, ring, &mut |j| count += usize::from(!apart(i, j)));
-        surface[i] = count < full;
-    }
+    let outer = outer(points, body, resolution);
+    let surface: Vec<bool> = id.iter().map(|&p| outer.get(p as usize).is_none_or(|outer| *outer)).collect();
     // At a reach of whole spacings rounding would decide about particles where the kernel ends, at 0.
     let reach = reach * (1.0 - 1e-9);
     let mut set = Vec::new();
@@ -54,4 +46,22 @@ pub(crate) fn surface_set<const D: usize>(
     }
     set.sort_unstable();
     set
+}
+
+/// Whether each particle lacks one of the neighbours of its site on the lattice: it is of the outermost row.
+pub(crate) fn outer<const D: usize>(points: &[SolidPoint<D>], body: &[u32], resolution: f64) -> Vec<bool> {
+    let ring = (D as f64).sqrt() * 1.05 * resolution;
+    let mut cells: Cells<usize, D> = Cells::new(ring);
+    for (p, point) in points.iter().enumerate() {
+        cells.add(&point.site, p);
+    }
+    let apart = |a: usize, b: usize| body.get(a).zip(body.get(b)).is_some_and(|(a, b)| a != b);
+    let lacks = |(p, point): (usize, &SolidPoint<D>)| {
+        let beside = cells.around(&point.site).filter(|&&other| {
+            let r2: f64 = (0..D).map(|d| (point.site[d] - points[other].site[d]).powi(2)).sum();
+            r2 <= ring * ring && !apart(p, other)
+        });
+        beside.count() < 3_usize.pow(D as u32)
+    };
+    points.iter().enumerate().map(lacks).collect()
 }

@@ -71,7 +71,7 @@ pub fn fastest() -> Isa {
 /// The one of two levels that computes the trial's passes in less time.
 fn quicker(one: Isa, other: Isa) -> Isa {
     let trial = parse(TRIAL, "trial.toml".as_ref(), &[]).ok();
-    let fluids = trial.and_then(|scene| Some([one, other].map(|isa| halfstep_fluid::role(&scene, isa))));
+    let fluids = trial.map(|scene| [one, other].map(|isa| halfstep_fluid::role(&scene, isa)));
     let Some([Some(mut first), Some(mut second)]) = fluids else { return one };
     let timed = serve::on_threads(1, || {
         let mut least = [Duration::MAX; 2];

@@ -78,6 +78,8 @@ pub struct FluidPoint<const D: usize> {
 pub struct SolidPoint<const D: usize> {
     /// Position, m.
     pub position: [f64; D],
+    /// Its place on the lattice, m: where it lies, unless the arrangement of its solid is irregular.
+    pub site: [f64; D],
     /// Velocity, m/s; zero where clamped.
     pub velocity: [f64; D],
     /// Whether it keeps zero velocity.
@@ -383,7 +385,14 @@ fn solid_point<const D: usize>(
     if let (Some(mode), Some(solid)) = (&shape.cantilever_mode, solid) {
         velocity[1] += cantilever_velocity(mode, solid.sound_speed(), position[0]);
     }
-    SolidPoint { position, velocity: if clamped { [0.0; D] } else { velocity }, clamped, body, copy }
+    SolidPoint {
+        position,
+        site: position,
+        velocity: if clamped { [0.0; D] } else { velocity },
+        clamped,
+        body,
+        copy,
+    }
 }
 
 /// Whether a point lies in a box, its surface included, or within `tolerance` (m) of it.

@@ -110,7 +110,7 @@ mod tests {
     use super::*;
 
     fn point(x: f64, y: f64) -> SolidPoint<2> {
-        SolidPoint { position: [x, y], velocity: [0.0; 2], clamped: false, body: 0, copy: 0 }
+        SolidPoint { position: [x, y], site: [x, y], velocity: [0.0; 2], clamped: false, body: 0, copy: 0 }
     }
 
     #[test]

@@ -40,6 +40,7 @@ pub(super) fn wall_particles<const D: usize>(
 ) -> impl Iterator<Item = SolidPoint<D>> + '_ {
     walls.iter().map(|wall| SolidPoint {
         position: wall.position,
+        site: wall.position,
         velocity: [0.0; D],
         clamped: true,
         body: wall.shape,

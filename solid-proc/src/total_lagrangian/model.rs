@@ -58,7 +58,7 @@ pub struct TotalLagrangian<const D: usize> {
     pub(super) hourglass_modulus: f64,
     /// Beyond the face of a clamp there is no strain.
     pub(super) rigid_clamps: bool,
-    points: Vec<SolidPoint<D>>,
+    pub(super) points: Vec<SolidPoint<D>>,
     shown: ParticleColumns<D>,
     interface_set: Vec<u32>,
     /// Particle number of a slot, or padding.

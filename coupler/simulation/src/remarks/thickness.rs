@@ -94,7 +94,8 @@ pub(super) fn thinnest<const D: usize>(scene: &Scene, layout: &Layout<D>) -> Vec
     let Some(least) = geometry::least_thickness(scene).filter(|_| D == 2) else { return all };
     let plane = |x: &[f64; D]| [x[0], x[1]];
     let spacing = |shape: u32| scene.spacing(&scene.shapes[shape as usize]);
-    let solids = layout.solid.iter().map(|p| (plane(&p.position), spacing(p.body)));
+    // An irregular arrangement has gaps, and is as thick as its lattice.
+    let solids = layout.solid.iter().map(|p| (plane(&p.site), spacing(p.body)));
     let widest = solids.clone().map(|(_, dx)| dx).fold(scene.resolution, f64::max);
     let (mut low, mut high) = ([f64::MAX; 2], [f64::MIN; 2]);
     for (x, _) in solids.clone() {
@@ -107,7 +108,7 @@ pub(super) fn thinnest<const D: usize>(scene: &Scene, layout: &Layout<D>) -> Vec
     let mut matter = Matter { cells: Cells::new(NEIGHBOUR * widest) };
     solids.chain(walls).for_each(|(x, dx)| matter.cells.add(&x, (x, dx)));
     for point in &layout.solid {
-        let (dx, at) = (spacing(point.body), plane(&point.position));
+        let (dx, at) = (spacing(point.body), plane(&point.site));
         // What is measured is half a row at the most from what is there.
         let most = least * scene.resolution - 0.51 * dx;
         let Some(thickness) = matter.thickness(&at, dx, most) else { continue };

@@ -168,7 +168,7 @@ pub(super) fn material(section: &Section<'_>) -> Material {
 fn irregular(section: &Section<'_>) -> Option<u32> {
     let irregular = section.choice("arrangement", Some(false), &ARRANGEMENTS).unwrap_or(false);
     let seed = section.optional_integer("arrangement_seed");
-    if let (false, Some(node)) = (irregular, section.node("arrangement_seed")) {
+    if let (None, Some(node)) = (section.node("arrangement"), section.node("arrangement_seed")) {
         section.wrong(
             "arrangement_seed",
             node,

@@ -173,8 +173,23 @@ impl<const D: usize> TotalLagrangian<D> {
     /// Area of the faces of cells between which pairs are cut, m² (2D: m).
     pub(super) fn cut_area(&self) -> f64 {
         let Some(fracture) = &self.fracture else { return 0.0 };
+        if let Some([_, face]) = fracture.irregular {
+            return face * fracture.faces.len() as f64;
+        }
         let straight = |face: &&Face| self.apart(face.pair[0], face.pair[1]).norm() < STRAIGHT * self.spacing;
         self.spacing.powi(D as i32 - 1) * fracture.faces.iter().filter(straight).count() as f64
+    }
+
+    /// Area for which each pair that a cut crosses stands in an arrangement without directions, m² (2D: m): a plane
+    /// somewhere in a volume V crosses sum |cos| R / V pairs for each m² of it, |cos| being 2 / pi in the mean, in
+    /// space 1 / 2 (Buffon; Cauchy).
+    pub(super) fn face_of_a_pair(&self) -> f64 {
+        let cosine = if D == 2 { 2.0 / std::f64::consts::PI } else { 0.5 };
+        let real = || (0..self.id.len()).filter(|&slot| self.id[slot] != PADDING);
+        // Each pair comes twice.
+        let lengths = |slot: usize| self.pairs.neighbours(slot).map(move |(j, _)| self.apart(slot, j).norm());
+        let sum = 0.5 * real().flat_map(lengths).sum::<f64>();
+        self.volume * real().count() as f64 / (cosine * sum)
     }
 
     /// M of a slot.

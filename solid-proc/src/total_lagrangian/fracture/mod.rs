@@ -62,6 +62,8 @@ pub(super) struct Fracture<const D: usize> {
     inside: f64,
     /// det M of a corner of the lattice.
     corner: f64,
+    /// Of irregular arrangements: det M inside of the lattice, and the area for which a cut pair stands, m² (2D: m).
+    irregular: Option<[f64; 2]>,
     /// From a particle under the intact surface to the surface, m; zero inside.
     outward: Vec<[f64; D]>,
     /// Width of the band of a crack through a particle, m.
@@ -96,22 +98,26 @@ pub(super) struct Fracture<const D: usize> {
     loose: u32,
     /// Particles of bodies that have become thin.
     thin: u32,
-    /// Most neighbours of a particle of the intact lattice.
-    whole: usize,
+    /// Neighbours with which a particle lacks none; more than it can have at the surface.
+    whole: Vec<usize>,
     /// Whether each particle began in a body of five rows or more.
     was_thick: Vec<bool>,
     /// What sees contacts once there are several bodies.
     dormant: Option<Contact<D>>,
 }
 
-/// det M of a corner of a lattice of spacing `dx`: of the neighbours in one quadrant, in space octant.
-fn corner<K: Kernel<D>, const D: usize>(kernel: K, dx: f64) -> f64 {
-    let rows = (2.0 * kernel.smoothing_length() / dx).ceil() as usize + 1;
+/// det M of a particle of a lattice of spacing `dx` with the neighbours in the direction of all axes (`side` = 0, a
+/// corner), or of all directions (-1).
+fn determinant<K: Kernel<D>, const D: usize>(kernel: K, dx: f64, side: i32) -> f64 {
+    let rows = (2.0 * kernel.smoothing_length() / dx).ceil() as i32 + 1;
+    let (first, count) = (side * (rows - 1), rows - side * (rows - 1));
     let mut moment = Matrix::<D>::zeros();
-    for k in 1..rows.pow(D as u32) {
-        let x = SVector::<f64, D>::from_fn(|axis, _| (k / rows.pow(axis as u32) % rows) as f64 * dx);
-        let slope = kernel.slope_at(x.norm());
-        moment += x * x.transpose() * (-dx.powi(D as i32) * slope);
+    for k in 0..count.pow(D as u32) {
+        let place = |axis: usize| first + k / count.pow(axis as u32) % count;
+        let x = SVector::<f64, D>::from_fn(|axis, _| f64::from(place(axis)) * dx);
+        if x.norm() > 0.0 {
+            moment += x * x.transpose() * (-dx.powi(D as i32) * kernel.slope_at(x.norm()));
+        }
     }
     tensor::determinant(&moment)
 }
@@ -133,7 +139,10 @@ impl<const D: usize> Fracture<D> {
             modulus: material.strip_modulus(D),
             accepted: false,
             inside: 1.0,
-            corner: with_kernel!(scene.numerics.kernel, h, D, |k| corner(k, dx)),
+            corner: with_kernel!(scene.numerics.kernel, h, D, |k| determinant(k, dx, 0)),
+            irregular: material
+                .irregular()
+                .map(|_| [with_kernel!(scene.numerics.kernel, h, D, |k| determinant(k, dx, -1)), 0.0]),
             outward: Vec::new(),
             band: Vec::new(),
             strain: Vec::new(),
@@ -155,7 +164,7 @@ impl<const D: usize> Fracture<D> {
             body: body.to_vec(),
             loose: 0,
             thin: 0,
-            whole: 0,
+            whole: Vec::new(),
             was_thick: Vec::new(),
             dormant,
         })
@@ -198,7 +207,14 @@ impl<const D: usize> TotalLagrangian<D> {
         let Some(mut fracture) = self.fracture.take() else { return };
         let slots = self.id.len();
         let determinant = |slot: usize| tensor::determinant(&self.moment(slot));
-        fracture.inside = (0..slots).filter(|&slot| self.is_free(slot)).map(determinant).fold(0.0, f64::max);
+        let free = (0..slots).filter(|&slot| self.is_free(slot));
+        fracture.inside = match &mut fracture.irregular {
+            None => free.map(determinant).fold(0.0, f64::max),
+            Some([inside, face]) => {
+                *face = self.face_of_a_pair();
+                *inside
+            }
+        };
         let none = vec![0.0; slots];
         (fracture.strain, fracture.onset) = (none.clone(), none.clone());
         (fracture.begun, fracture.damage) = (none.clone(), none);

@@ -1,6 +1,6 @@
 //! Cuts beside clamps and over an interruption.
 
-use super::super::corner;
+use super::super::determinant;
 use super::{Run, halves, run_on, solid, strength_and_energy};
 use crate::total_lagrangian::material::Matrix;
 use halfstep_sph::tensor;
@@ -69,7 +69,7 @@ fn corners_by_hand() {
     // weight w, and det M = (w dx²)².
     let kernel = CubicSpline::<2>::new(0.6);
     let w = -kernel.slope_at(1.0);
-    assert!((corner(kernel, 1.0) - w * w).abs() < 1e-14);
+    assert!((determinant(kernel, 1.0, 0) - w * w).abs() < 1e-14);
     // All eight octants: the same sum over whole rows.
     let inside = |kernel: CubicSpline<3>| {
         let mut moment = Matrix::<3>::zeros();
@@ -85,10 +85,11 @@ fn corners_by_hand() {
     };
     for (scale, ratio) in [(0.75, 0.888), (0.9, 0.482), (0.95, 0.397)] {
         let kernel = CubicSpline::<3>::new(scale);
-        let found = corner(kernel, 1.0) / (inside(kernel) / 8.0);
+        assert!((determinant(kernel, 1.0, -1) / inside(kernel) - 1.0).abs() < 1e-12);
+        let found = determinant(kernel, 1.0, 0) / (inside(kernel) / 8.0);
         assert!((found - ratio).abs() < 2e-3, "{scale}: {found}");
     }
-    assert!(corner(WendlandC2::<3>::new(0.95), 1.0) > 0.0);
+    assert!(determinant(WendlandC2::<3>::new(0.95), 1.0, 0) > 0.0);
 }
 
 #[test]
