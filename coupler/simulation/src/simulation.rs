@@ -3,7 +3,7 @@
 use crate::checkpoint::Checkpoint;
 use crate::error::Error;
 use crate::options::{Launcher, RunOptions, known_solid};
-use crate::{course, effects, isa, run};
+use crate::{course, effects, run};
 use halfstep_coupling::error::RunError;
 use halfstep_coupling::local::LocalRun;
 use halfstep_coupling::recorder::Recorder;
@@ -207,7 +207,7 @@ impl<const D: usize> Simulation<D> {
                 scene.dimension
             )));
         }
-        let isa = isa::fastest();
+        let isa = Isa::detect();
         let threads = run::threads(&scene, threads);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let pool = pool.map_err(|e| Error::Setup(format!("cannot start {threads} threads: {e}")))?;
