@@ -81,15 +81,16 @@ pub(crate) fn rows(scene: &Scene, counts: &Counts) -> Vec<EffectReport> {
             format!("`crack` of {names}: pairs are cut at the start, which costs nothing later"),
         );
     }
-    let off_lattice = dispatch!(scene.dimension, D => geometry::off_lattice::<D>(scene)).unwrap_or_default();
-    for (solid, count) in scene.solids.iter().zip(off_lattice) {
-        let Some((count, seed)) = count.zip(solid.irregular()) else { continue };
+    for (index, solid) in scene.solids.iter().enumerate() {
+        let Some(seed) = solid.irregular() else { continue };
+        let off = dispatch!(scene.dimension, D => geometry::solids::<D>(scene).off_lattice(scene, index));
         put(
             "irregular-arrangement",
             None,
             format!(
-                "`arrangement` of `{}`, seed {seed}: {count} particles lie off the lattice, which costs nothing later",
-                solid.name
+                "`arrangement` of `{}`, seed {seed}: {} particles lie off the lattice, which costs nothing later",
+                solid.name,
+                off.unwrap_or(0)
             ),
         );
     }

@@ -121,7 +121,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     loads::ramps(scene, &mut all);
     modes::cantilevers(scene, &mut all);
     solid_keys::arms(scene, &mut all);
-    solid_keys::arrangements::<D>(scene, &mut all);
+    solid_keys::arrangements(scene, layout, &mut all);
     solid_keys::side_friction(scene, &mut all);
     solid_keys::untouched(scene, &mut all);
     bodies::touching(scene, layout, &bodies, &mut all);

@@ -230,34 +230,30 @@ impl Check<'_> {
         self.scene.solids.get(solid).map(|s| s.model.name())
     }
 
-    /// A model may be stable to less than `numerics.solid_cfl` allows in general.
+    /// A model, and what a solid asks of it, may be stable to less than `numerics.solid_cfl` allows in general.
     fn solid_time_step(&self) {
-        let key = "numerics.solid_cfl";
+        let (key, given) = ("numerics.solid_cfl", self.scene.numerics.solid_cfl);
         for (k, solid) in self.scene.solids.iter().enumerate() {
             let name = solid.model.name();
-            if let Some((most, why)) = name.rules().largest_cfl
-                && self.scene.numerics.solid_cfl > most
-                && !self.report.has(key)
-            {
-                let model = format!("{}.model", self.solid_key(k));
-                let reason = format!("must be at most {most} with {model} = \"{}\": {why}", name.name());
-                self.report.among(self.root, key, &[&model], reason);
-                continue;
-            }
-            let most = Fracture::LARGEST_CFL;
-            if solid.fracture().is_some() && self.scene.numerics.solid_cfl > most && !self.report.has(key) {
+            let of_model =
+                name.rules().largest_cfl.map(|(most, why)| (most, "model", Some(name.name()), why));
+            let of_fracture = solid.fracture().map(|_| {
                 let why = "corners and crumbs of a nearly incompressible solid are stable to little more";
-                let fracture = format!("{}.fracture", self.solid_key(k));
-                let reason = format!("must be at most {most} with {fracture}: {why}");
-                self.report.among(self.root, key, &[&fracture], reason);
-            } else if solid.irregular().is_some()
-                && self.scene.numerics.solid_cfl > most
-                && !self.report.has(key)
-            {
+                (Fracture::LARGEST_CFL, "fracture", None, why)
+            });
+            let of_arrangement = solid.irregular().map(|_| {
                 let why = "where particles are closer than their spacing, waves take less time";
-                let arrangement = format!("{}.arrangement", self.solid_key(k));
-                let reason = format!("must be at most {most} with {arrangement} = \"irregular\": {why}");
-                self.report.among(self.root, key, &[&arrangement], reason);
+                (TotalLagrangianKeys::LARGEST_IRREGULAR_CFL, "arrangement", Some("irregular"), why)
+            });
+            let limits = [of_model, of_fracture, of_arrangement].into_iter().flatten();
+            let Some((most, what, value, why)) = limits.into_iter().find(|(most, ..)| given > *most) else {
+                continue;
+            };
+            if !self.report.has(key) {
+                let what = format!("{}.{what}", self.solid_key(k));
+                let value = value.map_or(String::new(), |value| format!(" = \"{value}\""));
+                let reason = format!("must be at most {most} with {what}{value}: {why}");
+                self.report.among(self.root, key, &[&what], reason);
             }
         }
     }

@@ -1,7 +1,8 @@
 //! Remarks on keys of solids that do nothing in their scene, or all that is done.
 
 use super::shapes::length;
-use halfstep_scene::{ModelKeys, PairContact, Scene, Solid, geometry};
+use halfstep_scene::geometry::Layout;
+use halfstep_scene::{ModelKeys, PairContact, Scene, Solid};
 
 /// Relaxation time over that of the run from which on an arm relaxes by less than a hundredth.
 const NEVER: f64 = 100.0;
@@ -80,13 +81,14 @@ pub(super) fn untouched(scene: &Scene, all: &mut Vec<String>) {
 }
 
 /// Irregular arrangements of solids of which no particle lies off the lattice.
-pub(super) fn arrangements<const D: usize>(scene: &Scene, all: &mut Vec<String>) {
-    let off_lattice = geometry::off_lattice::<D>(scene);
-    for (solid, _) in scene.solids.iter().zip(off_lattice).filter(|(_, count)| *count == Some(0)) {
-        all.push(format!(
-            "arrangement = \"irregular\" of `{}` does nothing: two rows at the surface, beside clamps and beside cracks \
-             stay on the lattice, and it has no others",
-            solid.name
-        ));
+pub(super) fn arrangements<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
+    for (index, solid) in scene.solids.iter().enumerate() {
+        if solid.irregular().is_some() && layout.off_lattice(scene, index) == 0 {
+            all.push(format!(
+                "arrangement = \"irregular\" of `{}` does nothing: two rows at the surface, beside clamps and beside \
+                 cracks stay on the lattice, and it has no others",
+                solid.name
+            ));
+        }
     }
 }

@@ -50,10 +50,9 @@ pub fn draw_contact(scene: &Scene, dir: &Path) -> Result<Option<PathBuf>, Output
     let place = layout(instants.len(), view.size(), HEAD, FOOT, scene.resolution);
     let mut sheet = Sheet::new(place.width, place.height);
     let of_solids = (0..scene.solids.len()).map(|solid| scene.solid_spacing(solid)).fold(0.0, f64::max);
-    let mut moved = Vec::new();
-    for (instant, &panel) in instants.iter().zip(&place.panels) {
-        let (view, by) = view.following(scene, instant);
-        moved.push(by);
+    let views: Vec<(View, [f64; 2])> =
+        instants.iter().map(|instant| view.following(scene, instant)).collect();
+    for ((instant, &panel), (view, _)) in instants.iter().zip(&place.panels).zip(&views) {
         for (phase, scale) in
             [(frame::WALL, None), (frame::FLUID, Some(Scale::Fluid)), (frame::SOLID, Some(Scale::Solid))]
         {
@@ -79,7 +78,7 @@ pub fn draw_contact(scene: &Scene, dir: &Path) -> Result<Option<PathBuf>, Output
             label(area, &title(scene), (16, 14), 20, HPos::Left)?;
             scale_bar(area, &view, place.scale, width as i32)?;
             let last = instants.last().map_or(0.0, |instant| instant.time);
-            for ((instant, panel), by) in instants.iter().zip(&place.panels).zip(&moved) {
+            for ((instant, panel), (_, by)) in instants.iter().zip(&place.panels).zip(&views) {
                 frame_of(area, *panel)?;
                 let text = time_label(instant.time, last) + &way_label(*by);
                 label(area, &text, (panel.x, panel.y - 22), 15, HPos::Left)?;

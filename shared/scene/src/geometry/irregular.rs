@@ -6,7 +6,7 @@
 
 use super::crossing::Cracks;
 use super::{Cells, Layout, SolidPoint, pieces, solid_point};
-use crate::{Phase, Scene};
+use crate::Scene;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 use xxhash_rust::xxh3::{xxh3_64_with_seed, xxh3_128};
@@ -37,17 +37,16 @@ pub(super) fn rearranged<const D: usize>(scene: &Scene, mut layout: Layout<D>) -
     layout
 }
 
-/// How many particles of each solid of a scene lie off the lattice; `None` where its arrangement is not irregular.
-pub fn off_lattice<const D: usize>(scene: &Scene) -> Vec<Option<usize>> {
-    let layout = super::on_lattices::<D>(scene, &[Phase::Solid]);
-    let solids: Vec<Option<usize>> = Moving::of(scene, &layout).map_or(Vec::new(), |moving| {
-        moving.seeds.keys().map(|&i| scene.shapes[layout.solid[i].body as usize].solid).collect()
-    });
-    let count = |k: usize| solids.iter().filter(|solid| **solid == Some(k)).count();
-    scene.solids.iter().enumerate().map(|(k, solid)| solid.irregular().map(|_| count(k))).collect()
+impl<const D: usize> Layout<D> {
+    /// How many particles of a solid of the scene lie off its lattice.
+    pub fn off_lattice(&self, scene: &Scene, solid: usize) -> usize {
+        let is_off =
+            |p: &&SolidPoint<D>| p.position != p.site && scene.shapes[p.body as usize].solid == Some(solid);
+        self.solid.iter().filter(is_off).count()
+    }
 }
 
-/// Whether the arrangement of a particle's solid is irregular, and its seed.
+/// Seed of the arrangement of a particle's solid; `None`: it lies on its lattice.
 fn seed<const D: usize>(scene: &Scene, point: &SolidPoint<D>) -> Option<u32> {
     scene.solids.get(scene.shapes[point.body as usize].solid?)?.irregular()
 }
@@ -146,7 +145,7 @@ impl Moving {
 
     /// Where all particles lie. A process lays out its scene several times: it remembers the last answer.
     fn places<const D: usize>(&self, scene: &Scene, layout: &Layout<D>) -> Vec<[f64; D]> {
-        static LAST: Mutex<Option<(u128, Vec<Vec<f64>>)>> = Mutex::new(None);
+        static LAST: Mutex<Option<(u128, Vec<f64>)>> = Mutex::new(None);
         let shifted = self.shifted(scene, layout);
         let numbers = shifted.iter().flatten().chain(&self.spacing).map(|x| x.to_bits());
         let pieces = self.piece.iter().map(|piece| piece.map_or(u64::MAX, u64::from));
@@ -155,10 +154,10 @@ impl Moving {
         let question = xxh3_128(&question);
         let mut last = LAST.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, places)) = last.as_ref().filter(|(of, _)| *of == question) {
-            return places.iter().map(|place| std::array::from_fn(|axis| place[axis])).collect();
+            return places.chunks_exact(D).map(|place| std::array::from_fn(|axis| place[axis])).collect();
         }
         let places = self.apart(shifted);
-        *last = Some((question, places.iter().map(|place| place.to_vec()).collect()));
+        *last = Some((question, places.concat()));
         places
     }
 
@@ -235,17 +234,26 @@ impl Moving {
 
 #[cfg(test)]
 mod tests {
+    use super::super::layout;
     use super::*;
     use crate::parse;
 
-    fn block(more: &str, shape: &str) -> Layout<2> {
-        let text = format!(
-            "resolution = 0.1\nend_time = 1.0\n[solid]\ndensity = 1000.0\nyoungs_modulus = 1e6\n\
-             poissons_ratio = 0.3\n{more}\n[[shape]]\nname = \"block\"\nphase = \"solid\"\n\
-             box = {{ min = [0.0, 0.0], max = [2.0, 2.0] }}\n{shape}\n"
-        );
-        let scene = parse(&text, "test.toml".as_ref(), &[]).unwrap_or_else(|e| panic!("{e:?}"));
-        super::super::layout(&scene)
+    /// Of boxes from the origin's height up: name, sides [min x, max x, height], and more keys.
+    fn scene(keys: &str, boxes: &[(&str, [f64; 3], &str)]) -> Scene {
+        let solid = "resolution = 0.1\nend_time = 1.0\n[solid]\ndensity = 1000.0\nyoungs_modulus = 1e6\n\
+                     poissons_ratio = 0.3\n";
+        let shapes = boxes.iter().map(|(name, [from, to, height], more)| {
+            format!(
+                "[[shape]]\nname = \"{name}\"\nphase = \"solid\"\n\
+                 box = {{ min = [{from}, 0.0], max = [{to}, {height}] }}\n{more}\n"
+            )
+        });
+        let text = format!("{solid}{keys}\n{}", shapes.collect::<String>());
+        parse(&text, "test.toml".as_ref(), &[]).unwrap_or_else(|e| panic!("{e:?}"))
+    }
+
+    fn block(keys: &str, more: &str) -> Layout<2> {
+        layout(&scene(keys, &[("block", [0.0, 2.0, 2.0], more)]))
     }
 
     /// Distance of two particles, m.
@@ -326,20 +334,9 @@ mod tests {
 
     #[test]
     fn other_solids_leave_an_arrangement_as_it_is() {
-        let before =
-            "[[shape]]\nname = \"other\"\nphase = \"solid\"\nbox = { min = [5.0, 0.0], max = [5.4, 0.4] }\n";
-        let text = |more: &str| {
-            format!(
-                "resolution = 0.1\nend_time = 1.0\n[solid]\ndensity = 1000.0\nyoungs_modulus = 1e6\n\
-                 poissons_ratio = 0.3\n{IRREGULAR}\n{more}[[shape]]\nname = \"block\"\nphase = \"solid\"\n\
-                 box = {{ min = [0.0, 0.0], max = [2.0, 2.0] }}\n"
-            )
-        };
-        let of = |more: &str| -> Layout<2> {
-            let scene = parse(&text(more), "test.toml".as_ref(), &[]).unwrap_or_else(|e| panic!("{e:?}"));
-            super::super::layout(&scene)
-        };
-        let (alone, beside) = (of(""), of(before));
+        let block = ("block", [0.0, 2.0, 2.0], "");
+        let alone = layout(&scene(IRREGULAR, &[block]));
+        let beside = layout(&scene(IRREGULAR, &[("other", [5.0, 5.4, 0.4], ""), block]));
         let places = |layout: &Layout<2>| -> Vec<[f64; 2]> {
             layout.solid.iter().rev().take(400).map(|p| p.position).collect()
         };
@@ -348,16 +345,12 @@ mod tests {
 
     #[test]
     fn a_thin_plate_has_no_row_that_could_move() {
-        let plate = |rows: u32| {
-            let text = format!(
-                "resolution = 0.1\nend_time = 1.0\n[solid]\ndensity = 1000.0\nyoungs_modulus = 1e6\n\
-                 poissons_ratio = 0.3\n{IRREGULAR}\n[[shape]]\nname = \"plate\"\nphase = \"solid\"\n\
-                 box = {{ min = [0.0, 0.0], max = [2.0, 0.{rows}] }}\n"
-            );
-            off_lattice::<2>(&parse(&text, "test.toml".as_ref(), &[]).unwrap_or_else(|e| panic!("{e:?}")))
+        let plate = |height: f64| {
+            let scene = scene(IRREGULAR, &[("plate", [0.0, 2.0, height], "")]);
+            layout::<2>(&scene).off_lattice(&scene, 0)
         };
-        assert_eq!(plate(4), [Some(0)]);
+        assert_eq!(plate(0.4), 0);
         // The middle row without two particles at both ends.
-        assert_eq!(plate(5), [Some(16)]);
+        assert_eq!(plate(0.5), 16);
     }
 }

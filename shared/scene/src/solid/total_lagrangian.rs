@@ -141,6 +141,9 @@ impl Solid {
 }
 
 impl TotalLagrangianKeys {
+    /// Largest `numerics.solid_cfl` of an irregular arrangement, in which particles are up to a quarter closer.
+    pub(crate) const LARGEST_IRREGULAR_CFL: f64 = 0.7;
+
     pub(super) fn read(section: &Section<'_>, _: &Defaults) -> Self {
         let (prony, plane, material) = (prony(section), plane(section), material(section));
         Self {

@@ -173,11 +173,11 @@ impl<const D: usize> TotalLagrangian<D> {
     /// Area of the faces of cells between which pairs are cut, m² (2D: m).
     pub(super) fn cut_area(&self) -> f64 {
         let Some(fracture) = &self.fracture else { return 0.0 };
-        if let Some([_, face]) = fracture.irregular {
-            return face * fracture.faces.len() as f64;
-        }
-        let straight = |face: &&Face| self.apart(face.pair[0], face.pair[1]).norm() < STRAIGHT * self.spacing;
-        self.spacing.powi(D as i32 - 1) * fracture.faces.iter().filter(straight).count() as f64
+        let counts = |face: &&Face| {
+            fracture.irregular.is_some()
+                || self.apart(face.pair[0], face.pair[1]).norm() < STRAIGHT * self.spacing
+        };
+        fracture.face * fracture.faces.iter().filter(counts).count() as f64
     }
 
     /// Area for which each pair that a cut crosses stands in an arrangement without directions, m² (2D: m): a plane

@@ -62,8 +62,10 @@ pub(super) struct Fracture<const D: usize> {
     inside: f64,
     /// det M of a corner of the lattice.
     corner: f64,
-    /// Of irregular arrangements: det M inside of the lattice, and the area for which a cut pair stands, m² (2D: m).
-    irregular: Option<[f64; 2]>,
+    /// Of an irregular arrangement: det M inside of its lattice.
+    irregular: Option<f64>,
+    /// Area for which a cut pair stands, of a lattice a straight one alone, m² (2D: m).
+    face: f64,
     /// From a particle under the intact surface to the surface, m; zero inside.
     outward: Vec<[f64; D]>,
     /// Width of the band of a crack through a particle, m.
@@ -142,7 +144,8 @@ impl<const D: usize> Fracture<D> {
             corner: with_kernel!(scene.numerics.kernel, h, D, |k| determinant(k, dx, 0)),
             irregular: material
                 .irregular()
-                .map(|_| [with_kernel!(scene.numerics.kernel, h, D, |k| determinant(k, dx, -1)), 0.0]),
+                .map(|_| with_kernel!(scene.numerics.kernel, h, D, |k| determinant(k, dx, -1))),
+            face: dx.powi(D as i32 - 1),
             outward: Vec::new(),
             band: Vec::new(),
             strain: Vec::new(),
@@ -208,13 +211,10 @@ impl<const D: usize> TotalLagrangian<D> {
         let slots = self.id.len();
         let determinant = |slot: usize| tensor::determinant(&self.moment(slot));
         let free = (0..slots).filter(|&slot| self.is_free(slot));
-        fracture.inside = match &mut fracture.irregular {
-            None => free.map(determinant).fold(0.0, f64::max),
-            Some([inside, face]) => {
-                *face = self.face_of_a_pair();
-                *inside
-            }
-        };
+        fracture.inside = fracture.irregular.unwrap_or_else(|| free.map(determinant).fold(0.0, f64::max));
+        if fracture.irregular.is_some() {
+            fracture.face = self.face_of_a_pair();
+        }
         let none = vec![0.0; slots];
         (fracture.strain, fracture.onset) = (none.clone(), none.clone());
         (fracture.begun, fracture.damage) = (none.clone(), none);

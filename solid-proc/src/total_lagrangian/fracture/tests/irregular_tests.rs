@@ -1,6 +1,7 @@
 //! Fracture of particles that lie off a lattice.
 
-use super::{Run, run_on, solid, strength_and_energy};
+use super::debris_tests::crush;
+use super::{Run, flown, run_on, sever_where, solid, strength_and_energy, strip};
 use crate::model::SolidModel;
 
 /// An irregular arrangement, one of many.
@@ -72,18 +73,7 @@ fn a_finer_irregular_bar() {
 
 #[test]
 fn an_irregular_block_that_is_crushed_on_a_wall_stays_stable() {
-    let keys = format!("{}\n{}", strength_and_energy(2e5, 2.0), irregular(1));
-    let text = solid(0.005, 0.3, &keys)
-        + "[numerics]\nsolid_cfl = 0.3\n[[shape]]\nname = \"block\"\nphase = \"solid\"\nbox = { min = [0.0, 0.003], max = [0.06, 0.063] }\n\
-           velocity = [0.0, -10.0]\n\
-           [[shape]]\nname = \"floor\"\nphase = \"wall\"\nbox = { min = [-0.1, -0.03], max = [0.16, 0.0] }\ncontact = true\n";
-    let mut run = Run::<2>::of(&text);
-    let most = run_on(&mut run, 10_000);
-    let summary = run.model.summary();
-    println!("{summary:?}, rest {} of {} J", run.rest(), run.start);
-    assert!(summary.bodies > 50, "{summary:?}");
-    assert!(most < (1.0 + 1e-9) * run.start, "{most} of {}", run.start);
-    assert!(run.rest().abs() < 0.01 * run.start, "{} of {}", run.rest(), run.start);
+    crush(&irregular(1));
 }
 
 /// A block of 30 x 30 particles, cut along a line: the area of the cut over the line's length, and what has become
@@ -93,15 +83,7 @@ fn cut(seed: u32, side: impl Fn([f64; 2]) -> bool) -> (f64, u32) {
     let text = solid(0.005, 0.3, &keys)
         + "[[shape]]\nname = \"block\"\nphase = \"solid\"\nbox = { min = [0.0, 0.0], max = [0.15, 0.15] }\n";
     let mut model = Run::<2>::of(&text).model;
-    let at = |slot: usize| side(model.position_at(slot));
-    let slots: Vec<usize> = model.slot_of.iter().map(|&slot| slot as usize).collect();
-    let across = |&i: &usize| {
-        let others = model.pairs.neighbours(i).map(move |(j, _)| [i, j]);
-        others.filter(|&[i, j]| i < j && at(i) != at(j)).collect::<Vec<_>>()
-    };
-    let pairs = slots.iter().flat_map(across).collect();
-    assert_eq!(model.summary().thin, 0);
-    model.sever(pairs);
+    sever_where(&mut model, side);
     (model.summary().area / 0.15, model.summary().thin)
 }
 
@@ -132,20 +114,8 @@ fn a_thin_slab_of_an_irregular_block_is_counted() {
 /// A free strip, eight rows thick, whose halves fly apart.
 #[test]
 fn irregular_halves_fly_with_their_momentum() {
-    let half = |name: &str, from: f64, to: f64, speed: f64| {
-        format!(
-            "[[shape]]\nname = \"{name}\"\nbody = \"strip\"\nphase = \"solid\"\nvelocity = [{speed}, 0.0]\n\
-             box = {{ min = [{from}, 0.0], max = [{to}, 0.04] }}\n"
-        )
-    };
-    let keys = format!("{}\n{}", strength_and_energy(1e6, 20.0), irregular(1));
-    let text = solid(0.005, 0.3, &keys) + &half("left", -0.05, 0.0, -1.0) + &half("right", 0.0, 0.05, 1.5);
-    let mut run = Run::<2>::of(&text);
-    let before = run.momentum();
-    run.until(1e-3);
-    let (after, torn) = (run.momentum(), run.model.summary());
-    assert!((0..2).all(|d| (after[d] - before[d]).abs() < 1e-13), "{before:?} {after:?}");
-    assert!(run.rest().abs() < 0.01 * run.start, "{} of {}", run.rest(), run.start);
+    let mut run = flown(&strip(0.04, &irregular(1), 0.0));
+    let torn = run.model.summary();
     assert!(torn.bodies >= 2, "{torn:?}");
     let energy = run.model.strain_energy() + run.model.particles().kinetic_energy();
     let most = run_on(&mut run, 10_000);
