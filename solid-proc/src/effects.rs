@@ -86,7 +86,7 @@ fn derive(scene: &Scene, k: usize, effect: EffectName) -> Derived {
         }
         EffectName::SleepingSolid => Derived::On(format!(
             "until fluid reaches it, while it has moved by less than {} % of the spacing for half its slowest period: \
-             swings of up to {:.1e} m are left out, and with them 1 % of a peak after an impact (measured)",
+             swings of up to {:.1e} m are left out, and with them 0.6 % of a peak after an impact (measured)",
             100.0 * TOLERANCE,
             TOLERANCE * scene.solid_spacing(k)
         )),
