@@ -83,8 +83,8 @@ fn water_goes_through_the_breach() {
     assert!((0.0115..0.013).contains(&broken) && (0.006..0.0075).contains(&whole), "{broken} {whole}");
 }
 
-/// A wall clamped at its foot; a piston makes the water behind it rise from 0.12 m at 10 mm/s and more. Side friction
-/// takes the swing that the start gives the wall, and holds it back by 1 % of the water's moment at most.
+/// A wall clamped at its foot; a piston at 25 mm/s makes the water behind it rise from 0.12 m, by 15 mm/s and more.
+/// Side friction takes the swing that the start gives the wall, and holds it back by 1 % of the water's moment at most.
 const RISING: &str = r#"
 resolution = 0.005
 end_time = 2.2
