@@ -124,3 +124,37 @@ fn a_bent_body_holds_strain_energy() {
         assert!(strain > 0.05 * start && kinetic + strain < 1.01 * start, "{model}");
     }
 }
+
+/// A block of 10 kg/m on the slab of another solid: the coupler evaluates their contact, and sends it together with the
+/// fluid's forces, of which there are none.
+#[test]
+fn contact_with_another_solid_is_parted_from_the_fluids_force() {
+    let probes = |solid: &str, body: &str| {
+        let of = |kind: &str| {
+            format!(
+                "[[probe]]\nname = \"{body}-{kind}\"\nkind = \"body-{kind}\"\nbody = \"{body}\"\nsolid = \"{solid}\"\n"
+            )
+        };
+        of("force") + &of("contact-force")
+    };
+    let text = format!(
+        "resolution = 0.01\nend_time = 0.4\n[[solid]]\nname = \"upper\"\nmodel = \"rigid\"\ndensity = 500.0\n\
+         [[solid]]\nname = \"lower\"\nmodel = \"rigid\"\ndensity = 500.0\n\
+         joints = [{{ name = \"held\", kind = \"fixed\", body = \"slab\" }}]\n\
+         [[contact]]\nsolids = [\"upper\", \"lower\"]\nstiffness = 1e7\n\
+         [[shape]]\nname = \"block\"\nphase = \"solid\"\nsolid = \"upper\"\n\
+         box = {{ min = [0.1, 0.0], max = [0.3, 0.1] }}\n\
+         [[shape]]\nname = \"slab\"\nphase = \"solid\"\nsolid = \"lower\"\n\
+         box = {{ min = [0.0, -0.1], max = [0.4, 0.0] }}\n{}{}",
+        probes("upper", "block"),
+        probes("lower", "slab")
+    );
+    let run = run(&text);
+    let mean = |column: &str| run.curve(column).between(0.2, 0.4).mean();
+    near("on the block", mean("block-contact-force.y"), 10.0 * G, 1e-3);
+    near("on the slab", mean("slab-contact-force.y"), -10.0 * G, 1e-3);
+    for column in ["block-force.y", "slab-force.y"] {
+        let (_, largest) = run.curve(column).peak();
+        assert!(largest.abs() < 1e-9, "{column}: {largest}");
+    }
+}

@@ -360,13 +360,13 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
             let values = &mut self.probes[place];
             values.clear();
             let measures = self.abilities[place] & ability::PROBES != 0;
-            if let Some((external, forces)) = self.solids.external(place) {
+            if let Some((external, forces, contact)) = self.solids.external(place) {
                 if tick.frame {
                     external.write(self.frame - 1, tick.time, state.records())?;
                 }
                 if !measures {
                     if tick.row {
-                        values.extend_from_slice(external.measure(state.records(), forces));
+                        values.extend_from_slice(external.measure(state.records(), forces, contact));
                     }
                     continue;
                 }
@@ -376,6 +376,7 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
                 let take = |port: &mut P| port.receive_probes(place, tick.step, values);
                 progress.await_message(place);
                 timeline::receive(&mut self.port, "wait for probes", from, times, take)?;
+                self.solids.part_contact(place, state.records(), values);
                 progress.note_message();
             }
         }

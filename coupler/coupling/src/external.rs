@@ -79,8 +79,14 @@ impl ExternalSolid {
 
     /// Probe values from the state at n.
     ///
-    /// `forces` answer the same state, record by record.
-    pub fn measure(&mut self, records: &[StateRecord], forces: &[ForceRecord]) -> &[f64] {
+    /// `forces` answer the same state, record by record; `contact` are those among them of other solids and of walls,
+    /// none where it is empty.
+    pub fn measure(
+        &mut self,
+        records: &[StateRecord],
+        forces: &[ForceRecord],
+        contact: &[[f64; 2]],
+    ) -> &[f64] {
         self.values.clear();
         let of_probes = self.kinds.iter().zip(&self.chosen).zip(&mut self.turned);
         for ((kind, chosen), turned) in of_probes {
@@ -133,7 +139,7 @@ impl ExternalSolid {
                 }
                 ProbeKind::Body { quantity, .. } => {
                     let first = &self.first;
-                    let body = body::Particles { chosen, records, forces, first, turned: *turned };
+                    let body = body::Particles { chosen, records, forces, contact, first, turned: *turned };
                     let value = body.quantity(*quantity, self.dimension, self.strains);
                     let value = value.map_or([f64::NAN; 3], |value| [value.x, value.y, value.z]);
                     if *quantity == BodyQuantity::Angle {

@@ -3,6 +3,7 @@
 
 mod expected;
 mod kinds;
+mod touched;
 mod walls;
 
 use crate::error::RunError;
@@ -24,6 +25,7 @@ use halfstep_wire::state::{Fields, State, StateError};
 use halfstep_wire::wide;
 use kinds::ByKind;
 pub use kinds::Done;
+use touched::Touched;
 use xxhash_rust::xxh3::Xxh3;
 
 /// Part of the smoothing length that a particle of a solid may move between two states: more, and the fluid's interface
@@ -96,6 +98,8 @@ struct CoupledSolid<const D: usize> {
     touches_walls: bool,
     /// Contact with them, of an external solid that does not evaluate it itself, and of one that leaves it.
     walls: Option<WallContact>,
+    /// Contact forces, where a probe parts them from the fluid's.
+    touched: Option<Touched>,
 }
 
 /// How far a record has come since n, m.
@@ -127,6 +131,7 @@ impl<const D: usize> Solids<D> {
             walls: (external.is_some() || scene.leaves_walls_to_coupler(solid))
                 .then(|| WallContact::new(scene, solid))
                 .flatten(),
+            touched: Touched::of::<D>(scene, solid),
             expected: external.as_ref().and(layout.as_ref()).map(|layout| Expected::of(scene, layout, solid)),
             external,
         };
@@ -246,10 +251,22 @@ impl<const D: usize> Solids<D> {
         place.checked_sub(self.first).is_some_and(|solid| self.solids[solid].external.is_some())
     }
 
-    /// What stands in for a participant that another program computes, and the forces on it.
-    pub(crate) fn external(&mut self, place: usize) -> Option<(&mut ExternalSolid, &[ForceRecord])> {
+    /// What stands in for a participant that another program computes, the forces on it, and of these those of contact,
+    /// where a probe asks for them.
+    pub(crate) fn external(
+        &mut self,
+        place: usize,
+    ) -> Option<(&mut ExternalSolid, &[ForceRecord], &[[f64; 2]])> {
         let side = &mut self.solids[place.checked_sub(self.first)?];
-        Some((side.external.as_mut()?, &side.forces))
+        Some((side.external.as_mut()?, &side.forces, side.touched.as_ref().map_or(&[], Touched::now)))
+    }
+
+    /// Parts contact from the fluid's forces in what a participant measured on this state.
+    pub(crate) fn part_contact(&self, place: usize, records: &[StateRecord], values: &mut [f64]) {
+        let side = place.checked_sub(self.first).map(|solid| &self.solids[solid]);
+        side.and_then(|side| side.touched.as_ref())
+            .iter()
+            .for_each(|touched| touched.correct(records, values));
     }
 
     /// Number of frames of an external solid that are on disk.
@@ -322,6 +339,9 @@ impl<const D: usize> Solids<D> {
         for (place, side) in self.solids.iter_mut().enumerate() {
             let solid = &states[place + self.first];
             side.by_kind.clear();
+            if let Some(touched) = &mut side.touched {
+                touched.begin(solid.records().len());
+            }
             side.forces.clear();
             side.forces.extend(solid.records().iter().map(|r| blank(r.id)));
             let Some(interface) = &mut side.interface else { continue };
@@ -374,6 +394,7 @@ impl<const D: usize> Solids<D> {
                 let on = walls.on(record);
                 (0..2).for_each(|d| force.stress_force[d] += on[d]);
                 side.by_kind.add(ForceKind::Walls, wide(on));
+                side.touched.iter_mut().for_each(|touched| touched.add(record, on));
             }
         }
         let Some(contact) = &mut self.contact else { return };
@@ -383,6 +404,7 @@ impl<const D: usize> Solids<D> {
             let sum = &mut side.forces[record].stress_force;
             (0..2).for_each(|d| sum[d] += force[d]);
             side.by_kind.add(ForceKind::Contact, wide(force));
+            side.touched.iter_mut().for_each(|touched| touched.add(record, force));
         });
     }
 
@@ -458,7 +480,8 @@ impl<const D: usize> State for CoupledSolid<D> {
                 self.walls = None;
             }
         }
-        self.walls.as_mut().map_or(Ok(()), |walls| fields.part("walls", walls))
+        self.walls.as_mut().map_or(Ok(()), |walls| fields.part("walls", walls))?;
+        self.touched.as_mut().map_or(Ok(()), |touched| fields.part("touched", touched))
     }
 
     fn restored(&mut self) -> Result<(), StateError> {

@@ -1,7 +1,7 @@
 //! What a scene asks for, before anything is run.
 
 use crate::forecast::{self, Forecast, megabytes};
-use crate::remarks::{Joined, Loaded, Massive, Placed, Probed};
+use crate::remarks::{DEEP, Joined, Loaded, Massive, Placed, Probed};
 use crate::step_cost::step_cost;
 use crate::{effects, remarks};
 use halfstep_coupling::clock::times_above_limit;
@@ -212,30 +212,45 @@ fn too_long(scene: &Scene, limits: &[(String, f64)]) -> Vec<String> {
     above.map(|(name, limit)| times_above_limit(dt, name, *limit)).collect()
 }
 
-/// Part of the smallest side of two solids into which the weight of the lighter may press the other.
-const SOFT: f64 = 0.1;
-
-/// Contacts that the weight of the lighter solid presses far in. A body rests on at most its longest side.
+/// Contacts that a weight presses far in: of what nothing holds, on what begins below it. A body rests on at most its
+/// longest side.
 fn too_soft(scene: &Scene, contact: &ContactAsks) -> Vec<String> {
     let gravity = scene.gravity_magnitude();
+    let height = |shape: &scene::Shape| {
+        let around = scene::geometry::bounding_box(shape, scene);
+        -(0..scene.dimension).map(|a| scene.gravity[a] * (around.min[a] + around.max[a])).sum::<f64>()
+    };
+    let is_free = |shape: &scene::Shape| {
+        let keys = shape.solid.and_then(|solid| scene.solids[solid].rigid());
+        let tied = keys.is_some_and(|keys| keys.joints.iter().any(|joint| joint.body == shape.body()));
+        shape.clamp.is_empty() && shape.motion.is_none() && !tied
+    };
     let soft = |(solids, stiffness): &([usize; 2], f64)| {
         // What rests on the longer side is as high as the shorter one.
         let pressure = |(shape, side): (&scene::Shape, f64)| {
             let own = shape.solid.map_or(f64::INFINITY, |solid| scene.solids[solid].density);
             shape.density.unwrap_or(own) * gravity * side
         };
-        let lightest = scene.shorter_sides(*solids).map(pressure).fold(f64::INFINITY, f64::min);
+        let shapes: Vec<(&scene::Shape, f64)> = scene.shorter_sides(*solids).collect();
+        let others = |shape: &scene::Shape| {
+            let other = |below: &scene::Shape| below.solid != shape.solid || below.body() != shape.body();
+            shapes.iter().any(|(below, _)| other(below) && height(shape) > height(below))
+        };
+        let above = shapes.iter().copied().filter(|(shape, _)| is_free(shape) && others(shape));
+        let (upper, weight) =
+            above.map(|one| (one.0, pressure(one))).max_by(|one, other| one.1.total_cmp(&other.1))?;
         let smallest = scene.smallest_side(*solids);
-        let depth = lightest / stiffness;
+        let depth = weight / stiffness;
         let [a, b] = solids.map(|k| &scene.solids[k].name);
         let (who, of) = match a == b {
             true => (format!("the bodies of `{a}`"), "stiffness, from the scene,"),
             false => (format!("`{a}` and `{b}`"), "`stiffness` of their [[contact]]"),
         };
-        (depth > SOFT * smallest).then(|| {
+        (depth > DEEP * smallest).then(|| {
             format!(
-                "contact of {who} is soft: the weight of the lighter one presses it {depth:.2e} m into the other, and \
-                 the smallest side is {smallest:.2e} m ({of} is {stiffness:.1e} Pa/m)"
+                "contact of {who} is soft: the weight of `{}` presses it {depth:.2e} m into what it lies on, and the \
+                 smallest side is {smallest:.2e} m ({of} is {stiffness:.1e} Pa/m)",
+                upper.name
             )
         })
     };

@@ -157,6 +157,9 @@ fn conclude(
                 RunError::StoppedAtOnce { .. } => RunStatus::Stopped,
                 RunError::Diverged { diverged, hint } => {
                     *hint = advice(diverged, scene, clock, external);
+                    if !report.warnings.is_empty() {
+                        *hint = format!("what the run warned of at its start comes first; then {hint}");
+                    }
                     RunStatus::Diverged
                 }
                 _ => RunStatus::Failed,

@@ -49,6 +49,7 @@ pub(crate) use bodies::{MOST_LISTED, listed as bodies_listed};
 pub(crate) use contacts::bodies_of;
 pub(crate) use joined::{Joined, Massive, joined, massive};
 pub(crate) use loads::{Loaded, listed as loaded};
+pub(crate) use outcome::DEEP;
 pub use outcome::outcome;
 pub(crate) use probed::{Probed, probed};
 pub(crate) use shapes::{Placed, placed};
@@ -91,6 +92,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     moving::joints(scene, &mut all);
     moving::walls(scene, &mut all);
     moving::forgotten(scene, &mut all);
+    moving::apart(scene, &mut all);
     moving::probes(scene, &mut all);
     let bodies = scene.bodies_of(layout);
     moving::gauges_at_bodies(scene, layout, &bodies, &mut all);
@@ -134,6 +136,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     clamp_faces::clamp_faces(scene, &mut all);
     clamp_faces::sections(scene, layout, &mut all);
     shapes::sizes(scene, placed, &mut all);
+    shapes::free_lengths(scene, placed, &mut all);
     nodal::mass(scene, placed, &mut all);
     nodal::touching(scene, layout, &bodies, &mut all);
     lost::overlaps::<D>(scene, placed, &mut all);
@@ -146,7 +149,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     domain::domain(scene, layout, &mut all);
     spills::spills(scene, layout, &mut all);
     gaps::over::<D>(scene, &mut all);
-    gaps::below(scene, layout, &mut all);
+    gaps::narrow(scene, layout, &mut all);
     gaps::beside(scene, layout, &mut all);
     tanks::overlapping(scene, &mut all);
     tanks::copies_outside(scene, &mut all);
@@ -205,6 +208,8 @@ mod beam_tests;
 mod body_tests;
 #[cfg(test)]
 mod curve_tests;
+#[cfg(test)]
+mod gap_tests;
 #[cfg(test)]
 mod joint_tests;
 #[cfg(test)]

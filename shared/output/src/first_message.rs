@@ -8,6 +8,12 @@ const MASS: f64 = 0.02;
 const NUMBER: f64 = 0.1;
 /// Part of the scene's places that may have no particle near: corners that a mesh cuts.
 const EMPTY: f64 = 0.02;
+/// Part of the fluid's speed of sound by which a particle may begin faster or slower: a solver's own start is noisy.
+const VELOCITY: f64 = 1e-3;
+/// Spacings that the centre of its mass may be off.
+const CENTRE: f64 = 0.5;
+/// Part of the mean density by which the records' may differ: a solid that begins strained.
+const DENSITY: f64 = 0.02;
 /// Distance in spacings below which a particle of the fluid is in the solid: the scene's own are half a spacing apart
 /// at least.
 pub const IN_FLUID: f64 = 0.45;
@@ -40,6 +46,17 @@ pub struct FirstMessage {
     pub farthest: f64,
     /// Where that one is, m.
     pub farthest_at: Option<[f64; 3]>,
+    /// Largest difference of a particle's velocity from that with which the scene's begin near it, m/s.
+    pub off_velocity: f64,
+    /// Of the fluid, m/s.
+    pub sound_speed: f64,
+    /// Distance of the centre of its mass from that of the scene's particles, in spacings: from that of all or of the
+    /// outer ones.
+    pub off_centre: f64,
+    /// Mean density of its records, kg/m³.
+    pub density: f64,
+    /// That of the scene's particles, kg/m³.
+    pub scene_density: f64,
     /// Particles of the fluid that begin closer than [`IN_FLUID`] spacings to a particle of the solid.
     pub in_fluid: u64,
 }
@@ -85,6 +102,26 @@ impl FirstMessage {
                 self.misplaced,
                 self.farthest,
                 at(&self.farthest_at)
+            ));
+        }
+        // Of particles that are elsewhere, or have another mass, nothing else is a surprise.
+        if all.is_empty() && self.off_centre > CENTRE {
+            all.push(format!(
+                "the centre of the {name}'s mass is {:.1} spacings from that of the scene's particles: a particle \
+                 displaces as much fluid as its own mass over the scene's density",
+                self.off_centre
+            ));
+        }
+        if self.off_velocity > VELOCITY * self.sound_speed {
+            all.push(format!(
+                "the {name} begins with velocities up to {:.3e} m/s away from those of the scene",
+                self.off_velocity
+            ));
+        }
+        if (self.density - self.scene_density).abs() > DENSITY * self.scene_density {
+            all.push(format!(
+                "the records of the {name} have a density of {:.1} kg/m³, and its shapes {:.1} kg/m³",
+                self.density, self.scene_density
             ));
         }
         if self.in_fluid > 0 {
@@ -151,6 +188,15 @@ mod tests {
             away,
             "1 particles of the solid are not where its shapes are, by up to 5.000e-3 m: the one at [0.5, 0.5]",
         );
+        let moving = |off_velocity| FirstMessage { off_velocity, sound_speed: 30.0, ..block() };
+        one(moving(0.031), "begins with velocities up to 3.100e-2 m/s away from those of the scene");
+        assert_eq!(moving(0.029).remarks(2), [""; 0]);
+        let off = |off_centre| FirstMessage { off_centre, ..block() };
+        one(off(0.51), "the centre of the solid's mass is 0.5 spacings from that of the scene's particles");
+        assert_eq!(off(0.49).remarks(2), [""; 0]);
+        let dense = |density| FirstMessage { density, scene_density: 8000.0, ..block() };
+        one(dense(8200.0), "have a density of 8200.0 kg/m³, and its shapes 8000.0 kg/m³");
+        assert_eq!(dense(7900.0).remarks(2), [""; 0]);
         one(FirstMessage { in_fluid: 20, ..block() }, "20 particles of the fluid begin in the solid");
     }
 }

@@ -9,6 +9,8 @@ pub(super) struct Particles<'a> {
     pub(super) chosen: &'a [usize],
     pub(super) records: &'a [StateRecord],
     pub(super) forces: &'a [ForceRecord],
+    /// Those of contact among them, N (2D: N/m); none where it is empty.
+    pub(super) contact: &'a [[f64; 2]],
     /// Positions in the reference configuration, m.
     pub(super) first: &'a [[f64; 3]],
     /// Its last angle, rad.
@@ -30,8 +32,19 @@ impl Particles<'_> {
         self.chosen.iter().map(|&i| of(i)).sum()
     }
 
+    /// Of other solids and of walls.
+    fn contact(&self, i: usize) -> Vector3<f64> {
+        self.contact.get(i).map_or(Vector3::zeros(), |[x, y]| Vector3::new(*x, *y, 0.0))
+    }
+
+    /// Of the fluid.
     fn force(&self, i: usize) -> Vector3<f64> {
-        self.forces[i].force(self.records[i].mass).into()
+        Vector3::from(self.forces[i].force(self.records[i].mass)) - self.contact(i)
+    }
+
+    fn moment(&self, of: impl Fn(usize) -> Vector3<f64>) -> Vector3<f64> {
+        let centre = self.centre();
+        self.sum(|i| (self.position(i) - centre).cross(&of(i)))
     }
 
     fn centre(&self) -> Vector3<f64> {
@@ -80,16 +93,14 @@ impl Particles<'_> {
             BodyQuantity::Angle if dimension == 2 => Some(Vector3::z() * self.angle()),
             BodyQuantity::AngularVelocity => Some(self.rate(dimension)),
             BodyQuantity::Force => Some(self.sum(|i| self.force(i))),
-            BodyQuantity::Moment => {
-                let centre = self.centre();
-                Some(self.sum(|i| (self.position(i) - centre).cross(&self.force(i))))
-            }
+            BodyQuantity::Moment => Some(self.moment(|i| self.force(i))),
             BodyQuantity::Energy if !strains => {
                 let energy: f64 = self.chosen.iter().map(|&i| kinetic_energy(&self.records[i])).sum();
                 Some(Vector3::z() * energy)
             }
-            // Contact by its own program stays within that; the coupler's is part of the force.
-            BodyQuantity::ContactForce | BodyQuantity::ContactMoment => None,
+            // Contact by its own program stays within that.
+            BodyQuantity::ContactForce => Some(self.sum(|i| self.contact(i))),
+            BodyQuantity::ContactMoment => Some(self.moment(|i| self.contact(i))),
             BodyQuantity::Angle | BodyQuantity::Energy => None,
         }
     }
@@ -113,9 +124,16 @@ mod tests {
         let speed = |arm: f64| [0.5 - 2.0 * arm * sin, 2.0 * arm * cos, 0.0];
         let records = [record(at(-3.0), speed(-3.0), 1.0), record(at(1.0), speed(1.0), 3.0)];
         let pull = ForceRecord { stress_force: [0.0, 7.0, 0.0], ..ForceRecord::default() };
-        let forces = [pull, ForceRecord::default()];
-        let rod =
-            Particles { chosen: &[0, 1], records: &records, forces: &forces, first: &first, turned: 0.0 };
+        let hit = ForceRecord { stress_force: [2.0, 0.0, 0.0], ..ForceRecord::default() };
+        let forces = [pull, hit];
+        let rod = Particles {
+            chosen: &[0, 1],
+            records: &records,
+            forces: &forces,
+            contact: &[[0.0, 0.0], [2.0, 0.0]],
+            first: &first,
+            turned: 0.0,
+        };
         let close = |of: BodyQuantity, expected: [f64; 3]| {
             for dimension in [2, 3] {
                 // In space a rod's moment of inertia about itself is zero.
@@ -132,9 +150,10 @@ mod tests {
         close(BodyQuantity::AngularVelocity, [0.0, 0.0, 2.0]);
         close(BodyQuantity::Force, [0.0, 7.0, 0.0]);
         close(BodyQuantity::Moment, [0.0, 0.0, -3.0 * cos * 7.0]);
+        close(BodyQuantity::ContactForce, [2.0, 0.0, 0.0]);
+        close(BodyQuantity::ContactMoment, [0.0, 0.0, -sin * 2.0]);
         // 4 (1/4) / 2 of the centre, (1 * 9 + 3 * 1) 4 / 2 of the rotation.
         close(BodyQuantity::Energy, [0.0, 0.0, 0.5 + 24.0]);
         assert!(rod.quantity(BodyQuantity::Energy, 2, true).is_none());
-        assert!(rod.quantity(BodyQuantity::ContactForce, 2, false).is_none());
     }
 }

@@ -22,6 +22,13 @@ pub(crate) struct Expected<const D: usize> {
     /// Their spacing, m.
     dx: f64,
     places: Vec<[f64; D]>,
+    /// Where each begins, m, as fast as this, m/s.
+    moving: Vec<([f64; D], [f64; D])>,
+    /// Centre of their mass, and of that of the outer ones, m.
+    centres: [[f64; D]; 2],
+    /// The solid's density, and the mean of its shapes', kg/m³.
+    densities: [f64; 2],
+    sound_speed: f64,
     /// Those that the fluid's kernel reaches: a solid need not publish the others.
     outer: Vec<bool>,
     /// Of all, as the scene says.
@@ -47,6 +54,16 @@ fn in_cells<const D: usize>(places: &[[f64; D]], side: f64) -> Cells<[f64; D], D
 
 fn is_near<const D: usize>(cells: &Cells<[f64; D], D>, place: &[f64; D], reach: f64) -> bool {
     cells.around(place).any(|other| squared(other, place) <= reach * reach)
+}
+
+/// Centre of places with weights.
+fn centre<const D: usize>(weighted: impl Iterator<Item = ([f64; D], f64)>) -> [f64; D] {
+    let (mut sum, mut whole) = ([0.0; D], 0.0);
+    for (x, weight) in weighted {
+        (0..D).for_each(|d| sum[d] += weight * x[d]);
+        whole += weight;
+    }
+    sum.map(|x| x / whole)
 }
 
 /// Whether each place is within a reach, m, of one that lacks neighbours on its lattice.
@@ -79,9 +96,18 @@ impl<const D: usize> Expected<D> {
         // The table of particles has the solid's density everywhere: a record's mass is what water it displaces.
         let told = density * cell * own.len() as f64;
         let part = outer.iter().filter(|outer| **outer).count() as f64 / own.len().max(1) as f64;
+        let displaced = |k: &usize| (own[*k].position, 1.0);
+        let is_outer = |k: &usize| outer[*k];
         Self {
             name: scene.solids[solid].name.clone(),
             dx,
+            moving: own.iter().map(|point| (point.position, point.velocity)).collect(),
+            centres: [
+                centre((0..own.len()).map(|k| displaced(&k))),
+                centre((0..own.len()).filter(is_outer).map(|k| displaced(&k))),
+            ],
+            densities: [density, own.iter().map(own_density).sum::<f64>() / own.len().max(1) as f64],
+            sound_speed: scene.fluid.as_ref().map_or(f64::MAX, |fluid| fluid.sound_speed),
             right_mass: [told * part, told],
             mass,
             places,
@@ -106,6 +132,18 @@ impl<const D: usize> Expected<D> {
         let outer =
             || self.places.iter().zip(&self.outer).filter(|(_, outer)| **outer).map(|(place, _)| place);
         let empty: Vec<&[f64; D]> = outer().filter(|place| !is_near(&filled, place, reach)).collect();
+        let mut moving = Cells::new(reach);
+        self.moving.iter().for_each(|(at, velocity)| moving.add(at, (*at, *velocity)));
+        let apart = records.iter().filter_map(|record| {
+            let [at, velocity] = [record.position, record.velocity].map(|x| std::array::from_fn(|d| x[d]));
+            let near = moving.around(&at).filter(|(x, _)| squared(x, &at) <= reach * reach);
+            let differences = near.map(|(_, told)| squared(told, &velocity).sqrt());
+            differences.reduce(f64::min)
+        });
+        let middle = centre(records.iter().map(|r| (std::array::from_fn(|d| r.position[d]), r.mass)));
+        let off_centre = self.centres.map(|told| squared(&told, &middle).sqrt());
+        let density = records.iter().map(|r| r.density).sum::<f64>() / records.len().max(1) as f64;
+        let [one, other] = self.densities;
         let close = IN_FLUID * self.between;
         let solid = in_cells(&published, close);
         FirstMessage {
@@ -121,6 +159,11 @@ impl<const D: usize> Expected<D> {
             misplaced: away.len() as u64,
             farthest: farthest.map_or(0.0, |(distance, _)| distance),
             farthest_at: farthest.map(|(_, at)| wide(at)),
+            off_velocity: apart.fold(0.0, f64::max),
+            sound_speed: self.sound_speed,
+            off_centre: off_centre[0].min(off_centre[1]) / self.dx,
+            density,
+            scene_density: if (density - one).abs() < (density - other).abs() { one } else { other },
             in_fluid: self.fluid.iter().filter(|x| is_near(&solid, x, close)).count() as u64,
         }
     }
@@ -173,8 +216,12 @@ mod tests {
             (0..count(0.04)).map(move |i| [0.2 + (i as f64 + 0.5) * dx + shift, (j as f64 + 0.5) * dx, 0.0])
         };
         let positions: Vec<[f64; 3]> = (0..count(0.14)).flat_map(row).collect();
-        let record =
-            |position: &[f64; 3]| StateRecord { mass, position: *position, ..StateRecord::default() };
+        let record = |position: &[f64; 3]| StateRecord {
+            mass,
+            density: 8000.0,
+            position: *position,
+            ..StateRecord::default()
+        };
         let records = positions.iter().map(record).collect();
         (positions, records)
     }
@@ -232,6 +279,23 @@ mod tests {
         assert_eq!(compare(lattice(0.5 * DX, 0.05, 0.0)).remarks(2).len(), 1);
         let heavy = compare(lattice(DX, 2.0, 0.0)).remarks(2);
         assert!(heavy.len() == 1 && heavy[0].contains("a mass of 448.0000 kg/m"), "{heavy:?}");
+    }
+
+    #[test]
+    fn a_block_that_moves_and_one_that_is_heavy_above() {
+        let (positions, mut records) = lattice(DX, 0.2, 0.0);
+        records[7].velocity = [0.3, 0.4, 0.0];
+        let first = compare((positions.clone(), records.clone()));
+        assert!((first.off_velocity - 0.5).abs() < 1e-12, "{first:?}");
+        // Masses from 0 to 0.4 kg/m over 28 rows: their centre is 28 (28^2 - 1) / 12 / (28 * 27 / 2) rows above the
+        // middle, 4.833.
+        let rows = |k: usize| (k / 8) as f64;
+        records.iter_mut().enumerate().for_each(|(k, r)| r.mass = 0.4 * rows(k) / 27.0);
+        records[7].velocity = [0.0; 3];
+        let first = compare((positions, records));
+        assert!((first.off_centre - 4.8333333).abs() < 1e-6 && first.off_velocity == 0.0, "{first:?}");
+        let remarks = first.remarks(2);
+        assert!(remarks.len() == 1 && remarks[0].contains("4.8 spacings"), "{remarks:?}");
     }
 
     /// 28 particles are a spacing left of the outline, 20 of them where water is.

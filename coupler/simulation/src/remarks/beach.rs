@@ -1,6 +1,7 @@
 //! Remarks on the beach that absorbs waves: whether it takes enough, and where it lies.
 
 use super::makers::paddles;
+use super::moving;
 use super::shapes::length;
 use super::water::depth;
 use halfstep_scene::{Beach, ProbeKind, Scene, geometry};
@@ -63,6 +64,13 @@ pub(super) fn beach(scene: &Scene, all: &mut Vec<String>) {
             ));
             return;
         }
+    }
+    if let Some((tank, _)) = moving::tanks(scene).first() {
+        all.push(format!(
+            "fluid.beach takes velocities in space toward zero, and `{}`, which holds the fluid, moves: the beach holds \
+             back what the tank takes along (seen from a `[frame]` with this motion the tank rests)",
+            tank.name
+        ));
     }
     let speed = (scene.gravity[1].abs() * depth).sqrt();
     let kept = (-beach.rate * passed(&beach, end) / speed).exp();

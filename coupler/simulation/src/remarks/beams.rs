@@ -2,6 +2,7 @@
 //! the fluid. Remarks on those that would bend beyond all measure.
 
 use super::magnitudes::STIFFNESS;
+use super::meet;
 use super::shapes::{Placed, length};
 use halfstep_scene::geometry::{self, Layout};
 use halfstep_scene::{Block, Geometry, Phase, Scene, Shape};
@@ -214,6 +215,15 @@ pub(super) fn deflection<const D: usize>(scene: &Scene, layout: &Layout<D>, inde
     let has_level = scene.fluid.is_none() || (gravity[0] == 0.0 && gravity[1] <= 0.0);
     // A crack makes two plates of one, or weakens it.
     if D != 2 || shape.phase != Phase::Solid || !has_level || shape.crack.is_some() {
+        return None;
+    }
+    // What other shapes of its body stiffen.
+    let around = geometry::bounding_box(shape, scene);
+    let is_part = scene.shapes.iter().enumerate().any(|(k, other)| {
+        let same = k != index && other.phase == Phase::Solid && other.solid == shape.solid;
+        same && other.body() == shape.body() && meet(&geometry::bounding_box(other, scene), &around, scene)
+    });
+    if is_part {
         return None;
     }
     let material = shape.solid.and_then(|k| scene.solids.get(k)).filter(|solid| solid.rigid().is_none())?;

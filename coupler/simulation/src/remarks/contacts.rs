@@ -3,13 +3,14 @@
 use super::shapes::length;
 use super::{meet, near};
 use halfstep_scene::geometry::{self, Cells, Layout, SolidPoint, Surface};
-use halfstep_scene::{Body, ContactKeys, EffectName, Geometry, Phase, Scene, Shape, Switch};
+use halfstep_scene::{Body, ContactKeys, EffectName, Geometry, Phase, Scene, Shape, SolidModelName, Switch};
 use std::collections::HashSet;
 
 /// Distance of particles, over their spacing, at which their surfaces meet: a spacing, and what lattices are off.
 const FACING: f64 = 1.25;
-/// Part of the spacing that surfaces may lie in each other.
-const OVERLAP: f64 = 1e-3;
+/// Part of the spacing that surfaces may lie in each other: of what touches by its outline, and by its particles, whose
+/// rows lie as their lattices do.
+const OVERLAP: [f64; 2] = [1e-3, 0.25];
 
 /// Copies of a shape.
 fn copies(shape: &Shape) -> Vec<Option<u32>> {
@@ -38,7 +39,7 @@ impl Toucher<'_> {
     }
 }
 
-/// Rigid bodies, and solids of which two touch, that lie in each other or in walls at the start: contact throws them
+/// Bodies, and solids of which two touch, that lie in each other or in walls at the start: contact throws them
 /// apart.
 pub(super) fn overlaps<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
     if scene.dimension != 2 || scene.solids.is_empty() {
@@ -76,8 +77,9 @@ pub(super) fn overlaps<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &
                 let named = !a.shape.body.is_empty() || !b.shape.body.is_empty();
                 named || a.copy == b.copy
             };
-            let touch = rigid(a.shape) || a.shape.solid.is_some_and(|k| scene.leaves_bodies_to_coupler(k));
-            touch && !one_body && !tied(scene, a.shape, b.shape)
+            let one_continuum =
+                a.shape.solid.is_some_and(|k| scene.solids[k].model.name() == SolidModelName::Hypoelastic);
+            !one_continuum && !one_body && !tied(scene, a.shape, b.shape)
         }
         (Some(_), None) => rigid(a.shape) && !tied(scene, a.shape, b.shape),
         (None, Some(_)) => rigid(b.shape) && !tied(scene, b.shape, a.shape),
@@ -86,8 +88,10 @@ pub(super) fn overlaps<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &
     for (k, a) in touchers.iter().enumerate() {
         for b in touchers[k + 1..].iter().filter(|b| contact(a, b)) {
             let depth = a.depth_in(b).max(b.depth_in(a));
-            let dx = scene.resolution;
-            if depth > OVERLAP * dx {
+            let by_outline = a.shape.solid != b.shape.solid
+                || rigid(a.shape)
+                || a.shape.solid.is_some_and(|k| scene.leaves_bodies_to_coupler(k));
+            if depth > OVERLAP[usize::from(!by_outline)] * scene.resolution {
                 let text = in_each_other(scene, a.shape, b.shape, depth);
                 if !all.contains(&text) {
                     all.push(text);

@@ -1,12 +1,25 @@
-//! Remarks on gaps too narrow for the fluid, and on gates that hold less water than stands beside them.
+//! Remarks on gaps too narrow for the fluid between shapes of any outline, and on gates that hold less water than is
+//! beside them.
 
-use super::shapes::length;
+use super::near;
+use super::reached::{Matter, Places, is_driven, reached};
+use super::shapes::{length, place};
 use super::water::{depths_below, falls, others, outermost};
-use halfstep_scene::geometry::{self, Layout};
+use halfstep_scene::geometry::{self, Cells, Layout, Surface, cell};
 use halfstep_scene::{Block, Geometry, Lattice, Phase, Scene, Shape};
+use std::collections::BTreeMap;
 
-/// Spacings of a gap, from which on it is none of rounding, and up to which one or two rows of fluid creep through it.
-const BELOW: [f64; 2] = [0.5, 3.25];
+/// Spacings of a gap between walls, from which on it is none of rounding: of shapes whose sides are fitted to a
+/// lattice, and of others, which lie on a wall to a quarter of a spacing.
+const ROUNDED: [f64; 2] = [0.5, 0.25];
+/// Spacings up to which one or two rows of fluid creep through a gap.
+const NARROW: f64 = 3.25;
+/// Cosine of the angle between faces of a gap: those of a corner open more.
+const FACING: f64 = -0.98;
+/// Rows of particles of a face that a gap goes along.
+const LONG: usize = 3;
+/// Spacings from a place before a gap up to where fluid comes into it.
+const BEFORE: i64 = 2;
 /// The same of a gap beside water: up to where it is no place of its own.
 const BESIDE: [f64; 2] = [0.75, 4.25];
 /// Part of a face that has the gap.
@@ -19,52 +32,140 @@ fn gap(depths: &[Option<f64>], row_to_row: f64, [least, most]: [f64; 2]) -> Opti
     (own().count() as f64 > MOSTLY * depths.len() as f64).then(|| own().reduce(f64::min)).flatten()
 }
 
-/// Wet gaps of few spacings between a wall and the one below it.
-pub(super) fn below<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
-    let Some((axis, down)) = falls::<D>(scene) else { return };
+/// A wall, or a solid that a clamp holds: its surface, and its particles by their places.
+struct Face<const D: usize> {
+    shape: usize,
+    surface: Surface,
+    particles: Cells<[f64; D], D>,
+}
+
+/// A gap between two shapes.
+struct Gap<const D: usize> {
+    width: f64,
+    at: [f64; D],
+    /// Places on its faces.
+    along: Vec<[f64; D]>,
+}
+
+/// Gaps of few spacings between two walls, or a wall and a solid that a clamp holds, to which fluid can come.
+pub(super) fn narrow<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
+    if layout.fluid.is_empty() {
+        return;
+    }
+    let found = gaps(scene, layout);
+    if found.is_empty() {
+        return;
+    }
     let dx = scene.resolution;
-    let row_to_row = if scene.numerics.lattice == Lattice::Nodal { 0.0 } else { dx };
-    for (index, shape) in scene.shapes.iter().enumerate() {
-        if shape.phase != Phase::Wall || !matches!(shape.geometry, Geometry::Box(_)) {
+    let level = reached(scene, layout, &Matter::of_walls(scene, layout), false);
+    let rises = is_driven(scene, layout, &level);
+    // What a plate keeps dry is not looked at, nor what may be wide when the fluid comes.
+    let with_solids = Matter::with_solids(scene, layout);
+    let low = reached(scene, layout, &with_solids, false);
+    let high = if rises { reached(scene, layout, &with_solids, true) } else { low.clone() };
+    let moves = |shape: usize| scene.shapes[shape].motion.is_some();
+    let is_wet = |at: &[f64; D], places: &Places<D>| {
+        let here = cell(at, dx);
+        let side = 2 * BEFORE + 1;
+        (0..side.pow(D as u32)).any(|code| {
+            let near = std::array::from_fn(|a| here[a] + code / side.pow(a as u32) % side - BEFORE);
+            places.contains(&near)
+        })
+    };
+    for ([one, other], gap) in found {
+        let places = if moves(one) || moves(other) { &low } else { &high };
+        if gap.along.len() < LONG || !gap.along.iter().any(|at| is_wet(at, places)) {
             continue;
         }
-        let own = |of: u32| of as usize == index;
-        let row =
-            outermost(layout.wall.iter().filter(|p| own(p.shape)).map(|p| p.position), (axis, down), dx);
-        let others = layout.wall.iter().filter(|p| !own(p.shape)).map(|p| &p.position);
-        let most = row_to_row + BELOW[1] * dx;
-        let depths = depths_below(&row, others, (axis, down), dx, most);
-        let Some(gap) = gap(&depths, row_to_row, BELOW.map(|rows| rows * dx)) else { continue };
-        if is_wet(scene, layout, &row, (axis, down), gap) {
-            all.push(format!(
-                "`{}` ends {} m, {:.1} spacings, above the wall below it: fluid neither stays behind so narrow a gap \
-                 nor flows through it as it should (from four spacings on it does)",
-                shape.name,
-                length(gap),
-                gap / dx
-            ));
-        }
+        let [one, other] = [one, other].map(|shape| &scene.shapes[shape].name);
+        all.push(format!(
+            "between `{one}` and `{other}` is a gap of {} m, {:.1} spacings, at {}: fluid neither stays behind so \
+             narrow a gap nor flows through it as it should (from four spacings on it does), and where it enters one \
+             it may be crushed",
+            length(gap.width),
+            gap.width / dx,
+            place(&gap.at)
+        ));
     }
 }
 
-/// Whether fluid is in the gap below a row, or beside it.
-fn is_wet<const D: usize>(
-    scene: &Scene,
-    layout: &Layout<D>,
-    row: &[[f64; D]],
-    (axis, down): (usize, f64),
-    gap: f64,
-) -> bool {
-    let (mut low, mut high) = ([f64::MAX; D], [f64::MIN; D]);
-    for x in row {
-        (0..D).for_each(|a| (low[a], high[a]) = (low[a].min(x[a]), high[a].max(x[a])));
+/// All gaps whose faces look at each other, by their two shapes.
+fn gaps<const D: usize>(scene: &Scene, layout: &Layout<D>) -> BTreeMap<[usize; 2], Gap<D>> {
+    let dx = scene.resolution;
+    let row = if scene.numerics.lattice == Lattice::Nodal { 0.0 } else { 0.5 * dx };
+    let mut faces: Vec<Face<D>> = Vec::new();
+    let held = layout.solid.iter().filter(|p| !scene.shapes[p.body as usize].clamp.is_empty());
+    let places = layout.wall.iter().map(|p| (p.shape, p.position)).chain(held.map(|p| (p.body, p.position)));
+    for (shape, position) in places {
+        let shape = shape as usize;
+        let face = faces.iter().position(|face| face.shape == shape).unwrap_or_else(|| {
+            let surface = Surface::new(&scene.shapes[shape].geometry, None);
+            faces.push(Face { shape, surface, particles: Cells::new(dx) });
+            faces.len() - 1
+        });
+        faces[face].particles.add(&position, position);
     }
-    let near = 2.0 * scene.resolution;
-    layout.fluid.iter().any(|p| {
-        let depth = (p.position[axis] - row[0][axis]) * down;
-        let beside = |a: usize| low[a] - near < p.position[a] && p.position[a] < high[a] + near;
-        0.0 < depth && depth < gap + scene.resolution && (0..D).all(|a| a == axis || beside(a))
-    })
+    let fitted =
+        |shape: usize| matches!(scene.shapes[shape].geometry, Geometry::Box(_) | Geometry::Tank { .. });
+    let mut all: BTreeMap<[usize; 2], Gap<D>> = BTreeMap::new();
+    for p in layout.wall.iter().filter(|p| !p.corner) {
+        let shape = p.shape as usize;
+        let before = |way: f64| -> [f64; D] { std::array::from_fn(|a| p.position[a] + way * p.normal[a]) };
+        let own = faces.iter().find(|face| face.shape == shape);
+        let next = before(dx);
+        if own.is_some_and(|own| own.particles.around(&next).any(|x| near(x, &next, 0.6 * dx))) {
+            continue;
+        }
+        let Some((width, other, normal)) = across(&faces, shape, dx, |way| before(row + way)) else {
+            continue;
+        };
+        let facing = (0..D).map(|a| normal[a] * p.normal[a]).sum::<f64>();
+        let rounded = ROUNDED[usize::from(!fitted(shape) || !fitted(other))];
+        if facing > FACING || width < rounded * dx {
+            continue;
+        }
+        let at = before(row);
+        let gap =
+            all.entry([shape.min(other), shape.max(other)]).or_insert(Gap { width, at, along: Vec::new() });
+        gap.along.push(at);
+        if width < gap.width {
+            (gap.width, gap.at) = (width, at);
+        }
+    }
+    all
+}
+
+/// How far before a face of a shape another one begins, m, with its index and normal there: `before` is the place so
+/// far from the face. `None` where it is further than a narrow gap, or touches.
+fn across<const D: usize>(
+    faces: &[Face<D>],
+    shape: usize,
+    dx: f64,
+    before: impl Fn(f64) -> [f64; D],
+) -> Option<(f64, usize, [f64; D])> {
+    let mut way = 0.0;
+    loop {
+        let at = before(way);
+        let mut least = (f64::INFINITY, shape, [0.0; D]);
+        for face in faces.iter().filter(|face| face.shape != shape) {
+            face.surface.nearest(at, &mut |distance, normal| {
+                if distance < least.0 {
+                    least = (distance, face.shape, normal);
+                }
+            });
+        }
+        let (distance, other, normal) = least;
+        if distance <= 1e-6 * dx {
+            let particles = &faces.iter().find(|face| face.shape == other)?.particles;
+            // A void may have taken what was there.
+            let is_there = particles.around(&at).any(|x| near(x, &at, dx));
+            return (way > 0.0 && is_there).then_some((way, other, normal));
+        }
+        way += distance;
+        if way > NARROW * dx {
+            return None;
+        }
+    }
 }
 
 /// Still water that ends a few spacings before what should hold it.
@@ -111,11 +212,12 @@ pub(super) fn over<const D: usize>(scene: &Scene, all: &mut Vec<String>) {
         false => [-block.max[down], -block.min[down]],
     };
     for gate in scene.shapes.iter().filter(|shape| shape.phase == Phase::Wall) {
-        let (Geometry::Box(block), Some(motion)) = (&gate.geometry, &gate.motion) else { continue };
-        if motion.makes().is_some() {
+        let upright = matches!(gate.geometry.unmoved(), Geometry::Box(_) | Geometry::Polygon(_));
+        if !upright || gate.motion.as_ref().is_none_or(|motion| motion.makes().is_some()) {
             continue;
         }
-        let [foot, top] = ends(block);
+        let block = geometry::bounding_box(gate, scene);
+        let [foot, top] = ends(&block);
         let touches = |other: &Block, axis: usize, low: bool| {
             let apart =
                 if low { block.min[axis] - other.max[axis] } else { other.min[axis] - block.max[axis] };

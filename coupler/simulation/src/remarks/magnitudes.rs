@@ -16,8 +16,11 @@ const WATER: [f64; 2] = [980.0, 1040.0];
 const VISCOUS: f64 = 0.1;
 /// Kinematic viscosities of water between 90 and 0 °C, m²/s: no liquid of its density has so few Pa s.
 const KINEMATIC: [f64; 2] = [3e-7, 2e-6];
-/// Smaller than a drop, larger than a harbour, m.
-const SIZE: [f64; 2] = [1e-3, 1e3];
+/// Smaller than a drop, larger than a tank, larger than a harbour, m.
+const SIZE: [f64; 3] = [1e-3, 20.0, 1e3];
+/// Part of the time in which a long wave crosses a basin as long as it is deep: no run of one beyond a tank's size is
+/// shorter.
+const GLIMPSE: f64 = 0.5;
 /// Of a way over the size of the scene.
 const FAR: f64 = 5.0;
 /// Of an axis' distance over the size of the scene: beyond the arm of a pendulum or a centrifuge.
@@ -213,8 +216,11 @@ pub(super) fn lengths(scene: &Scene, all: &mut Vec<String>) {
     let largest = boxes.map(extent).fold(0.0, f64::max);
     // A long wave needs sqrt(L / g) to cross a basin as long as it is deep: a run of a real one is longer.
     let gravity = scene.gravity_magnitude();
-    let short = gravity == 0.0 || scene.end_time < (largest / gravity).sqrt();
-    if largest > 0.0 && (largest < SIZE[0] || largest > SIZE[1] && short) {
+    let crossings = if gravity == 0.0 { 0.0 } else { scene.end_time / (largest / gravity).sqrt() };
+    let [drop, tank, harbour] = SIZE;
+    let large =
+        largest > harbour && crossings < 1.0 || largest > tank && gravity > 0.0 && crossings < GLIMPSE;
+    if largest > 0.0 && (largest < drop || large) {
         all.push(format!("the largest shape is {largest} m long: lengths are in metres"));
     }
 }

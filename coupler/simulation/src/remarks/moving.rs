@@ -7,6 +7,9 @@ use halfstep_scene::geometry::{self, Cells, Layout, SolidPoint};
 use halfstep_scene::{Block, Body, Geometry, Joint, JointKind, Motion, Phase, ProbeKind, Scene, Shape};
 use halfstep_wire::{narrow, wide};
 
+/// Part of the box around a polygon from which on it is no basin.
+const FILLS: f64 = 0.8;
+
 /// Walls that move, with the boxes around them.
 fn moving(scene: &Scene) -> Vec<(&Shape, Block)> {
     let walls = scene.shapes.iter().filter(|shape| shape.phase == Phase::Wall);
@@ -16,8 +19,19 @@ fn moving(scene: &Scene) -> Vec<(&Shape, Block)> {
 
 /// Those of them that are around fluid.
 pub(super) fn tanks(scene: &Scene) -> Vec<(&Shape, Block)> {
-    let hollow = |wall: &Shape| !matches!(wall.geometry.unmoved(), Geometry::Box(_) | Geometry::Disc { .. });
-    moving(scene).into_iter().filter(|(wall, around)| hollow(wall) && holds_fluid(scene, around)).collect()
+    // What has no inside of its own holds no fluid: a polygon that fills its box, for one.
+    let hollow = |wall: &Shape, around: &Block| match wall.geometry.unmoved() {
+        Geometry::Box(_) | Geometry::Disc { .. } => false,
+        Geometry::Polygon(polygon) => {
+            let sides = |block: &Block| (block.max[0] - block.min[0]) * (block.max[1] - block.min[1]);
+            polygon.area() < FILLS * sides(around)
+        }
+        _ => true,
+    };
+    moving(scene)
+        .into_iter()
+        .filter(|(wall, around)| hollow(wall, around) && holds_fluid(scene, around))
+        .collect()
 }
 
 /// Whether the middle of a shape of fluid lies in a box.
@@ -53,6 +67,29 @@ pub(super) fn forgotten(scene: &Scene, all: &mut Vec<String>) {
                     beside.name,
                     group.len() - 1,
                     if group.len() == 2 { "" } else { "s" }
+                ));
+            }
+        }
+    }
+}
+
+/// Walls that touch around the fluid and move otherwise than each other: sides of a tank of boxes.
+pub(super) fn apart(scene: &Scene, all: &mut Vec<String>) {
+    let moving = moving(scene);
+    for (k, (one, of_one)) in moving.iter().enumerate() {
+        for (other, of_other) in &moving[k + 1..] {
+            let both = geometry::around([*of_one, *of_other]);
+            let around_fluid = both.is_some_and(|both| holds_fluid(scene, &both));
+            let is_tank = |wall: &Shape| matches!(wall.geometry.unmoved(), Geometry::Tank { .. });
+            // What stands in a tank is another remark.
+            if is_tank(one) || is_tank(other) || one.motion == other.motion {
+                continue;
+            }
+            if around_fluid && meet(of_one, of_other, scene) {
+                all.push(format!(
+                    "`{}` and `{}` touch, and move otherwise than each other beside the fluid: it gets out between \
+                     them (one tank has the same `motion` at all its walls, the `pivot` included)",
+                    one.name, other.name
                 ));
             }
         }
@@ -232,6 +269,8 @@ pub(super) fn probes(scene: &Scene, all: &mut Vec<String>) {
                 ProbeKind::WaterLevel { x } => {
                     (&mut stay, x.iter().map(|&x| [x, middle(1), middle(2)]).collect::<Vec<_>>())
                 }
+                ProbeKind::Flux { from, to } => (&mut stay, vec![*from, *to]),
+                ProbeKind::Front => (&mut stay, vec![[middle(0), middle(1), middle(2)]]),
                 _ => continue,
             };
             let inside = |at: &&[f64; 3]| meet(&Block { min: **at, max: **at }, &around, scene);

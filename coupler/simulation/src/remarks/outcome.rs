@@ -15,6 +15,9 @@ const TENSION: f64 = 0.04;
 /// Energy that a contact may give to two solids, over its largest force times its largest penetration.
 const CREATED: f64 = 0.1;
 
+/// Penetration over the smallest side of two solids from which on neither is where it should be.
+pub(crate) const DEEP: f64 = 0.1;
+
 /// Energy that fracture may take over that of the area that it opened.
 const BESIDE_CRACKS: f64 = 3.0;
 
@@ -63,6 +66,7 @@ pub fn outcome(scene: &Scene, report: &RunReport) -> Vec<String> {
             ));
         }
     }
+    all.extend(report.contacts.iter().filter_map(|contact| deep(scene, contact)));
     all.extend(forces_with_contact(scene, report));
     all.extend(beside_cracks(scene, report));
     if let Some(energy) = &report.energy {
@@ -111,6 +115,21 @@ fn beside_cracks(scene: &Scene, report: &RunReport) -> Vec<String> {
     all
 }
 
+/// Solids that went far into each other, or into a wall.
+fn deep(scene: &Scene, contact: &ContactReport) -> Option<String> {
+    let index = |name: &String| scene.solids.iter().position(|solid| solid.name == *name);
+    let of: Vec<usize> = contact.solids.iter().filter_map(index).collect();
+    let smallest = scene.smallest_side([*of.first()?, *of.last()?]);
+    (contact.largest_penetration > DEEP * smallest).then(|| {
+        format!(
+            "{} went {:.2e} m into each other, and their smallest side is {smallest:.2e} m: contact is too soft for \
+             what met there (a larger `stiffness`, with shorter steps, holds it)",
+            parties(&contact.solids),
+            contact.largest_penetration
+        )
+    })
+}
+
 /// Two solids that touch, walls as one, or the bodies of one.
 fn parties(names: &[String]) -> String {
     match names {
@@ -123,7 +142,7 @@ fn parties(names: &[String]) -> String {
 fn forces_with_contact(scene: &Scene, report: &RunReport) -> Vec<String> {
     let of_fluid = |kind: &ProbeKind| match kind {
         ProbeKind::Force { .. } | ProbeKind::Moment { .. } => true,
-        ProbeKind::Body { quantity, .. } => matches!(quantity, BodyQuantity::Force | BodyQuantity::Moment),
+        ProbeKind::Body { quantity, .. } => *quantity == BodyQuantity::Moment,
         _ => false,
     };
     let touched = |probe: &Probe| {
@@ -184,6 +203,27 @@ mod tests {
         };
         assert_eq!(of(0.0), [""; 0], "they never met");
         assert_eq!(of(1.0), ["probe `push` holds the force of the contact of a and b, too"]);
+    }
+
+    #[test]
+    fn solids_that_went_far_into_each_other_are_named() {
+        let text = "resolution = 0.01\nend_time = 1.0\ngravity = [0.0, -10.0]\n[[solid]]\nname = \"a\"\n\
+                    model = \"rigid\"\ndensity = 500.0\n[[solid]]\nname = \"b\"\nmodel = \"rigid\"\n\
+                    density = 500.0\n[[shape]]\nname = \"x\"\nphase = \"solid\"\nsolid = \"a\"\n\
+                    box = { min = [0.0, 0.2], max = [0.1, 0.25] }\n[[shape]]\nname = \"y\"\nphase = \"solid\"\n\
+                    solid = \"b\"\nbox = { min = [0.0, 0.4], max = [0.1, 0.5] }\n";
+        let scene = halfstep_scene::parse(text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}"));
+        let of = |solids: [&str; 2], largest_penetration| {
+            let solids = solids.map(String::from).to_vec();
+            deep(&scene, &ContactReport { solids, largest_penetration, ..ContactReport::default() })
+        };
+        assert_eq!(of(["a", "b"], 0.0049), None, "a tenth of 50 mm");
+        let said = of(["a", "b"], 0.0051).unwrap_or_default();
+        assert!(
+            said.starts_with("a and b went 5.10e-3 m into each other, and their smallest side is 5.00e-2 m")
+        );
+        assert_eq!(of(["b", WALLS], 0.0099), None, "of the block alone: 100 mm");
+        assert!(of(["b", WALLS], 0.0101).is_some());
     }
 
     #[test]

@@ -333,6 +333,29 @@ pub(super) fn sizes(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
     }
 }
 
+/// Plates whose part beyond the clamp is longer or shorter than asked for: they have whole rows.
+pub(super) fn free_lengths(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
+    for (shape, of_scene) in placed.iter().zip(&scene.shapes) {
+        let Some(bends) = shape.bends.as_ref().filter(|_| shape.unit == "m") else { continue };
+        let long = |sizes: &[f64]| sizes.iter().copied().fold(0.0, f64::max);
+        let dx = scene.spacing(of_scene);
+        let asked = bends.way[1];
+        let computed = asked + long(&shape.computed) - long(&shape.asked);
+        let factor = computed / asked;
+        if (factor - 1.0).abs() >= NOTABLE {
+            all.push(format!(
+                "`{}` is free over {} m in the scene and over {} m of whole rows as computed: a force bends its tip \
+                 {:.2} times as far (its spacing is {})",
+                shape.name,
+                length(asked),
+                length(computed),
+                factor.powi(3),
+                length(dx)
+            ));
+        }
+    }
+}
+
 /// Poisson's ratio from which on few rows of the total-Lagrangian model lock, and rows that do not.
 const LOCKS: (f64, f64) = (0.45, 7.5);
 

@@ -263,4 +263,8 @@ fn a_wall_of_a_tank_of_boxes_that_does_not_go_along() {
         "`right` stays where it is, and `floor`, which it touches, moves with 1 more wall around the fluid";
     assert!(has(&of(motion, ""), said), "{:?}", of(motion, ""));
     assert!(!has(&of(motion, motion), "`right` stays"));
+    let other = "motion = { amplitude = [0.01, 0.0], period = 1.1 }";
+    let apart = "`floor` and `right` touch, and move otherwise than each other beside the fluid";
+    assert!(has(&of(motion, other), apart), "{:?}", of(motion, other));
+    assert!(!has(&of(motion, motion), "move otherwise"));
 }

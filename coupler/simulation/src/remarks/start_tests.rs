@@ -199,6 +199,16 @@ fn real_basins_and_foam_with_ballast() {
     };
     assert!(has(&basin(1.0), "the largest shape is 1700 m long: lengths are in metres"));
     assert!(!has(&basin(100.0), "lengths are in metres"), "{:?}", basin(100.0));
+    // A scene of 600 by 400 mm: a wave of that length in metres needs 7.8 s.
+    let in_mm = |end: f64| {
+        on(&format!(
+            "resolution = 10.0\nend_time = {end}\n[fluid]\ndensity = 1000.0\n{}{}",
+            shape("sea", "fluid", [0.0, 0.0], [600.0, 200.0], "pressure = \"hydrostatic\""),
+            TANK.replace("[0.4, 0.3]", "[600.0, 400.0]")
+        ))
+    };
+    assert!(has(&in_mm(3.9), "the largest shape is 600 m long: lengths are in metres"));
+    assert!(!has(&in_mm(4.0), "lengths are in metres"), "{:?}", in_mm(4.0));
     let foam = |lines: &str| {
         let hull = shape("hull", "solid", [0.15, 0.16], [0.25, 0.22], "body = \"ship\"");
         let keel = shape("keel", "solid", [0.15, 0.15], [0.25, 0.16], &format!("body = \"ship\"\n{lines}"));

@@ -62,6 +62,25 @@ fn a_wall_that_a_tank_leaves_behind() {
     assert!(!has(&plain(&[&with(weir, MOTION), TANK, WATER, PLATE]), "stands in"));
 }
 
+/// A paddle that is drawn as a polygon holds no water, and a beach drags on what a tank takes along.
+#[test]
+fn a_paddle_is_no_tank() {
+    let outline = "polygon = [[0.08, 0.0], [0.1, 0.0], [0.1, 0.2], [0.08, 0.2]]";
+    let paddle = format!("[[shape]]\nname = \"pad\"\nphase = \"wall\"\n{outline}\n{MOTION}");
+    let wide = WATER.replace("max = [0.1, 0.1]", "max = [0.18, 0.1]");
+    assert!(!has(&plain(&[&paddle, TANK, &wide, PLATE]), "stands in `pad`"));
+    let beach = |tank: &str| {
+        on(&format!(
+            "resolution = 0.005\nend_time = 1.0\n[fluid]\ndensity = 1000.0\n\
+             beach = {{ from = 0.2, to = 0.35 }}\n{tank}{}",
+            WATER.replace("max = [0.1, 0.1]", "max = [0.4, 0.1]")
+        ))
+    };
+    let said = "fluid.beach takes velocities in space toward zero, and `tank`, which holds the fluid, moves";
+    assert!(has(&beach(&with(TANK, MOTION)), said), "{:?}", beach(&with(TANK, MOTION)));
+    assert!(!has(&beach(TANK), "holds the fluid, moves"));
+}
+
 #[test]
 fn shapes_of_which_one_names_its_body() {
     let block =
@@ -78,6 +97,30 @@ fn shapes_of_which_one_names_its_body() {
 }
 
 /// A plate of four rows.
+/// Bodies of one solid that strains push each other by their particles.
+#[test]
+fn bodies_of_one_solid_that_begin_in_each_other() {
+    let of = |geometry: &str| {
+        let block = format!("[[shape]]\nname = \"block\"\nphase = \"solid\"\n{geometry}\n");
+        plain(&[TANK, WATER, PLATE, &block])
+    };
+    let said = "`plate` and `block` lie 0.01 m in each other at the start";
+    let lying = |x: f64| of(&format!("box = {{ min = [{x}, 0.03], max = [0.25, 0.06] }}"));
+    assert!(has(&lying(0.21), said), "{:?}", lying(0.21));
+    assert!(!has(&lying(0.22), "in each other"));
+}
+
+/// 92 mm of a plate of 102 mm are free: at a spacing of 5 mm 18 rows, 90 mm.
+#[test]
+fn a_free_length_that_is_rounded() {
+    let long = |top: f64| PLATE.replace("max = [0.22, 0.1]", &format!("max = [0.22, {top}]"));
+    let found = plain(&[TANK, WATER, &long(0.102)]);
+    let said = "`plate` is free over 0.092 m in the scene and over 0.09 m of whole rows as computed: a force bends its \
+                tip 0.94 times as far";
+    assert!(has(&found, said), "{found:?}");
+    assert!(!has(&plain(&[TANK, WATER, &long(0.101)]), "is free over"), "1.1 %");
+}
+
 #[test]
 fn a_plate_of_which_a_void_leaves_one_row() {
     let void = |from: f64| {
