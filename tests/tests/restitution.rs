@@ -135,3 +135,32 @@ fn a_cradle_swings_on_at_its_end() {
         assert!(turned[1..4].iter().all(|angle| *angle < 0.0075), "gap {gap} m: {turned:?}");
     }
 }
+
+/// A disc that rolls on the slab of another solid. Its points leave the slab with e² of the force with which they come
+/// in: with e = 1 it keeps its energy, with e = 0 it is braked. Bands: what is measured, 0.155 and 1e-3.
+#[test]
+fn a_disc_that_rolls_on_another_solid_is_braked_by_restitution() {
+    let lost = |restitution: &str| {
+        let text = format!(
+            "resolution = 0.01\nend_time = 0.6\n[[solid]]\nname = \"wheel\"\nmodel = \"rigid\"\ndensity = 2000.0\n\
+             bodies = [{{ name = \"disc\", angular_velocity = -20.0 }}]\n\
+             [[solid]]\nname = \"road\"\nmodel = \"rigid\"\ndensity = 2000.0\n\
+             joints = [{{ name = \"held\", kind = \"fixed\", body = \"slab\" }}]\n\
+             [[contact]]\nsolids = [\"wheel\", \"road\"]\nfriction = 0.5\nrestitution = {restitution}\n\
+             [[shape]]\nname = \"disc\"\nphase = \"solid\"\nsolid = \"wheel\"\n\
+             disc = {{ center = [0.0, 0.05], radius = 0.05 }}\nvelocity = [1.0, 0.0]\n\
+             [[shape]]\nname = \"slab\"\nphase = \"solid\"\nsolid = \"road\"\n\
+             box = {{ min = [-0.2, -0.05], max = [0.8, 0.0] }}\n\
+             [[probe]]\nname = \"disc\"\nkind = \"body-energy\"\nbody = \"disc\"\nsolid = \"wheel\"\n"
+        );
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("rolling.toml");
+        std::fs::write(&path, text).expect("a scene");
+        let energy = scene_at(&path).in_process().run().curve("disc.energy");
+        1.0 - energy.at(0.6) / energy.at(0.0)
+    };
+    let [soft, whole] = ["0.0", "1.0"].map(lost);
+    println!("e = 0: {soft:.4} lost, e = 1: {whole:.5}");
+    assert!((soft - 0.155).abs() < 0.005, "{soft}");
+    assert!(whole.abs() < 2e-3, "{whole}");
+}

@@ -3,7 +3,7 @@
 use super::convergence::{Convergence, richardson};
 use super::ladder::Setting;
 use super::measure::{self, Unmeasured};
-use super::pareto;
+use super::{pareto, sweep};
 use halfstep_output::run_json::{EffectReport, Roles, RunStatus};
 use halfstep_output::{RunReport, read_probes};
 use halfstep_scene::{Metric, MetricKind, Scene};
@@ -69,12 +69,15 @@ impl Row {
             _ => Err("the run did not finish".into()),
         };
         let of_curve = |metric: &Metric| measure::remark(metric, probes.as_ref()?);
-        let warnings = first.warnings.into_iter().chain(metrics.iter().filter_map(of_curve)).collect();
+        let choices = setting.choices();
+        let physical = physical_keys(&choices).map(sweep::warning);
+        let of_curves = metrics.iter().filter_map(of_curve);
+        let warnings = first.warnings.into_iter().chain(of_curves).chain(physical).collect();
         Self {
             warnings,
             label: setting.label() + if chosen { " (chosen)" } else { "" },
             changes: setting.changes.clone(),
-            choices: setting.choices(),
+            choices,
             overrides: setting.overrides.clone(),
             resolution: setting.scene.resolution,
             status: first.status,
@@ -275,10 +278,23 @@ fn groups(rows: &[Row], index: usize) -> Vec<Group> {
     groups.into_iter().map(group).collect()
 }
 
-/// Error against the limit of the row's own group; a group of one resolution is compared with the largest group.
+/// Keys among choices that make another scene.
+fn physical_keys(choices: &[String]) -> impl Iterator<Item = &str> {
+    let keys = choices.iter().filter_map(|choice| choice.split('=').next());
+    keys.filter(|key| sweep::is_physical(key))
+}
+
+/// Error against the limit of the row's own group; a group of one resolution is compared with the largest group, unless
+/// either computes something else.
 fn to_finest(metric: &Metric, groups: &[Group], row: &Row, index: usize) -> Option<f64> {
     let own = groups.iter().find(|g| g.choices == row.choices).filter(|g| g.resolutions.len() > 1);
     let group = own.or(largest(groups))?;
+    let differ = group.choices != row.choices;
+    if differ
+        && [&group.choices, &row.choices].into_iter().any(|choices| physical_keys(choices).next().is_some())
+    {
+        return None;
+    }
     let value = *row.values[index].as_ref().ok()?;
     let itself = group.choices == row.choices && row.resolution == group.resolutions[0];
     if itself && group.convergence.extrapolated().is_none() {
@@ -347,7 +363,7 @@ pub(crate) mod tests {
             row(1.0, &[], 1.0, 5.0),
             row(2.0, &[], 1.0, 7.0),
             row(4.0, &[], 1.0, 11.0),
-            row(1.0, &["kernel=w"], 1.0, 6.0),
+            row(1.0, &["numerics.kernel=w"], 1.0, 6.0),
         ];
         let groups = groups(&rows, 0);
         assert_eq!(groups.len(), 2);
@@ -355,6 +371,23 @@ pub(crate) mod tests {
         for (row, error) in rows.iter().zip([2.0 / 3.0, 4.0 / 3.0, 8.0 / 3.0, 1.0]) {
             assert!((of(row) - error).abs() < 1e-9, "{}", row.label);
         }
+    }
+
+    /// A gate of another stiffness has errors against its own limit, and none against another gate's.
+    #[test]
+    fn another_scene_is_no_error() {
+        let soft = &["solid.youngs_modulus=6e6"];
+        let rows = [
+            row(1.0, &[], 1.0, 5.0),
+            row(2.0, &[], 1.0, 7.0),
+            row(1.0, soft, 1.0, 9.0),
+            row(1.0, &["solid.youngs_modulus=3e6"], 1.0, 20.0),
+            row(2.0, soft, 1.0, 10.0),
+        ];
+        let groups = groups(&rows, 0);
+        let of = |row: &Row| to_finest(&metric(), &groups, row, 0);
+        assert_eq!(of(&rows[3]), None);
+        assert!((of(&rows[4]).unwrap() - 1.0 / 9.0).abs() < 1e-12);
     }
 
     #[test]
