@@ -7,7 +7,7 @@ use crate::error::RunError;
 use crate::external::ExternalSolid;
 use crate::recorder::Measured;
 pub use crate::solids::{ContactSummary, Done};
-use crate::solids::{Jump, Solids, Work};
+use crate::solids::{External, Jump, Solids, Work};
 use halfstep_link::{CouplerPort, Expect, StateMessage};
 use halfstep_output::run_json::{ForceKind, RoleSeconds};
 use halfstep_role::balance::Balance;
@@ -360,13 +360,14 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
             let values = &mut self.probes[place];
             values.clear();
             let measures = self.abilities[place] & ability::PROBES != 0;
-            if let Some((external, forces, contact)) = self.solids.external(place) {
+            if let Some(external) = self.solids.external(place) {
                 if tick.frame {
-                    external.write(self.frame - 1, tick.time, state.records())?;
+                    external.solid.write(self.frame - 1, tick.time, state.records())?;
                 }
                 if !measures {
                     if tick.row {
-                        values.extend_from_slice(external.measure(state.records(), forces, contact));
+                        let External { solid, forces, contact } = external;
+                        values.extend_from_slice(solid.measure(state.records(), forces, contact));
                     }
                     continue;
                 }

@@ -40,6 +40,14 @@ pub(crate) struct Jump {
     pub(crate) speed: f64,
 }
 
+/// What stands in for a solid of another program.
+pub(crate) struct External<'s> {
+    pub(crate) solid: &'s mut ExternalSolid,
+    pub(crate) forces: &'s [ForceRecord],
+    /// Those of contact among them, N (2D: N/m), where a probe asks for them.
+    pub(crate) contact: &'s [[f64; 2]],
+}
+
 /// What contact did to a pair of solids, or to a solid and the walls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactSummary {
@@ -251,14 +259,11 @@ impl<const D: usize> Solids<D> {
         place.checked_sub(self.first).is_some_and(|solid| self.solids[solid].external.is_some())
     }
 
-    /// What stands in for a participant that another program computes, the forces on it, and of these those of contact,
-    /// where a probe asks for them.
-    pub(crate) fn external(
-        &mut self,
-        place: usize,
-    ) -> Option<(&mut ExternalSolid, &[ForceRecord], &[[f64; 2]])> {
+    /// What stands in for a participant that another program computes, and the forces on it.
+    pub(crate) fn external(&mut self, place: usize) -> Option<External<'_>> {
         let side = &mut self.solids[place.checked_sub(self.first)?];
-        Some((side.external.as_mut()?, &side.forces, side.touched.as_ref().map_or(&[], Touched::now)))
+        let contact = side.touched.as_ref().map_or(&[][..], Touched::now);
+        Some(External { solid: side.external.as_mut()?, forces: &side.forces, contact })
     }
 
     /// Parts contact from the fluid's forces in what a participant measured on this state.
