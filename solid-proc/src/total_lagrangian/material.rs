@@ -80,6 +80,7 @@ impl Law {
     }
 
     /// J, with what happens across the plane.
+    #[inline(always)]
     pub(crate) fn volume_ratio<const D: usize>(&self, f: &Matrix<D>) -> f64 {
         let in_plane = tensor::determinant(f);
         match self.plane {
@@ -90,6 +91,7 @@ impl Law {
     }
 
     /// F_zz² of plane stress.
+    #[inline(never)]
     fn across<const D: usize>(&self, f: &Matrix<D>, in_plane: f64) -> f64 {
         match self.material {
             Material::StVenantKirchhoff => {

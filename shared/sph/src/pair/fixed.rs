@@ -147,14 +147,14 @@ impl<const D: usize, W: FixedLaw<D>> Work<D> for OverFixed<'_, W, D> {
     fn gather<A: Arch, L: Lanes>(self, chunk: usize, k: usize, slot: usize, sum: &mut W::Sum<L>) {
         let Self(law, pairs) = self;
         let (neighbours, first) = pairs.list.chunks()[chunk].range(k);
-        let target = std::hint::black_box(law.target::<L>(slot));
-        let xi = std::hint::black_box(pairs.at::<L>(slot));
+        let target = law.target::<L>(slot);
+        let xi = pairs.at::<L>(slot);
         let mut total = *sum;
         for (&j, slope) in neighbours.iter().zip(&pairs.slopes[chunk][first..]) {
             let dx = pairs.apart(&xi, j as usize);
             law.add::<A, L>(&target, j as usize, dx, L::of_fours(|_| *slope), &mut total);
         }
-        *sum = std::hint::black_box(total);
+        *sum = total;
     }
 }
 
