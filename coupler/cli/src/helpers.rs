@@ -32,6 +32,10 @@ pub(crate) enum Kind {
     Solid,
     /// A tank that rolls, with an elastic baffle
     Rolling,
+    /// A rigid box that floats
+    Floating,
+    /// Waves of a piston, and a beach
+    Waves,
 }
 
 impl Kind {
@@ -41,6 +45,8 @@ impl Kind {
             Self::Coupled => include_str!("../templates/coupled.toml"),
             Self::Solid => include_str!("../templates/solid.toml"),
             Self::Rolling => include_str!("../templates/rolling.toml"),
+            Self::Floating => include_str!("../templates/floating.toml"),
+            Self::Waves => include_str!("../templates/waves.toml"),
         }
     }
 }
