@@ -269,9 +269,9 @@ impl<const D: usize> Solids<D> {
     /// Parts contact from the fluid's forces in what a participant measured on this state.
     pub(crate) fn part_contact(&self, place: usize, records: &[StateRecord], values: &mut [f64]) {
         let side = place.checked_sub(self.first).map(|solid| &self.solids[solid]);
-        side.and_then(|side| side.touched.as_ref())
-            .iter()
-            .for_each(|touched| touched.correct(records, values));
+        if let Some(touched) = side.and_then(|side| side.touched.as_ref()) {
+            touched.correct(records, values);
+        }
     }
 
     /// Number of frames of an external solid that are on disk.

@@ -90,7 +90,7 @@ impl Law {
         }
     }
 
-    /// F_zz² of plane stress.
+    /// F_zz² of plane stress; on its own, so that J of plane strain stays short enough to inline.
     #[inline(never)]
     fn across<const D: usize>(&self, f: &Matrix<D>, in_plane: f64) -> f64 {
         match self.material {

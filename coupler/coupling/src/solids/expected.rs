@@ -22,8 +22,8 @@ pub(crate) struct Expected<const D: usize> {
     /// Their spacing, m.
     dx: f64,
     places: Vec<[f64; D]>,
-    /// Where each begins, m, as fast as this, m/s.
-    moving: Vec<([f64; D], [f64; D])>,
+    /// With what velocity each begins, m/s.
+    velocities: Vec<[f64; D]>,
     /// Centre of their mass, and of that of the outer ones, m.
     centres: [[f64; D]; 2],
     /// The solid's density, and the mean of its shapes', kg/m³.
@@ -96,15 +96,14 @@ impl<const D: usize> Expected<D> {
         // The table of particles has the solid's density everywhere: a record's mass is what water it displaces.
         let told = density * cell * own.len() as f64;
         let part = outer.iter().filter(|outer| **outer).count() as f64 / own.len().max(1) as f64;
-        let displaced = |k: &usize| (own[*k].position, 1.0);
-        let is_outer = |k: &usize| outer[*k];
+        let outer_ones = places.iter().zip(&outer).filter(|(_, outer)| **outer);
         Self {
             name: scene.solids[solid].name.clone(),
             dx,
-            moving: own.iter().map(|point| (point.position, point.velocity)).collect(),
+            velocities: own.iter().map(|point| point.velocity).collect(),
             centres: [
-                centre((0..own.len()).map(|k| displaced(&k))),
-                centre((0..own.len()).filter(is_outer).map(|k| displaced(&k))),
+                centre(places.iter().map(|place| (*place, 1.0))),
+                centre(outer_ones.map(|(place, _)| (*place, 1.0))),
             ],
             densities: [density, own.iter().map(own_density).sum::<f64>() / own.len().max(1) as f64],
             sound_speed: scene.fluid.as_ref().map_or(f64::MAX, |fluid| fluid.sound_speed),
@@ -133,7 +132,7 @@ impl<const D: usize> Expected<D> {
             || self.places.iter().zip(&self.outer).filter(|(_, outer)| **outer).map(|(place, _)| place);
         let empty: Vec<&[f64; D]> = outer().filter(|place| !is_near(&filled, place, reach)).collect();
         let mut moving = Cells::new(reach);
-        self.moving.iter().for_each(|(at, velocity)| moving.add(at, (*at, *velocity)));
+        self.places.iter().zip(&self.velocities).for_each(|(at, v)| moving.add(at, (*at, *v)));
         let apart = records.iter().filter_map(|record| {
             let [at, velocity] = [record.position, record.velocity].map(|x| std::array::from_fn(|d| x[d]));
             let near = moving.around(&at).filter(|(x, _)| squared(x, &at) <= reach * reach);

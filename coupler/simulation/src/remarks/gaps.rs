@@ -20,7 +20,8 @@ const FACING: f64 = -0.98;
 const LONG: usize = 3;
 /// Spacings from a place before a gap up to where fluid comes into it.
 const BEFORE: i64 = 2;
-/// The same of a gap beside water: up to where it is no place of its own.
+/// Spacings of a gap beside still water, from which on it is none of rounding, and up to where it is no place of its
+/// own.
 const BESIDE: [f64; 2] = [0.75, 4.25];
 /// Part of a face that has the gap.
 const MOSTLY: f64 = 0.5;

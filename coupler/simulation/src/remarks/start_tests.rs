@@ -190,23 +190,19 @@ fn swings_about_another_level_and_levels_that_are_met_at_once() {
 
 #[test]
 fn real_basins_and_foam_with_ballast() {
-    let basin = |end: f64| {
+    // Of a length, half filled up to a level.
+    let sea = |dx: f64, [long, level]: [f64; 2], end: f64| {
         on(&format!(
-            "resolution = 4.0\nend_time = {end}\n[fluid]\ndensity = 1000.0\n{}{}",
-            shape("sea", "fluid", [0.0, 0.0], [1700.0, 20.0], "pressure = \"hydrostatic\""),
-            TANK.replace("[0.4, 0.3]", "[1700.0, 40.0]")
+            "resolution = {dx}\nend_time = {end}\n[fluid]\ndensity = 1000.0\n{}{}",
+            shape("sea", "fluid", [0.0, 0.0], [long, level], "pressure = \"hydrostatic\""),
+            TANK.replace("[0.4, 0.3]", &format!("[{long:?}, {:?}]", 2.0 * level))
         ))
     };
+    let basin = |end: f64| sea(4.0, [1700.0, 20.0], end);
     assert!(has(&basin(1.0), "the largest shape is 1700 m long: lengths are in metres"));
     assert!(!has(&basin(100.0), "lengths are in metres"), "{:?}", basin(100.0));
     // A scene of 600 by 400 mm: a wave of that length in metres needs 7.8 s.
-    let in_mm = |end: f64| {
-        on(&format!(
-            "resolution = 10.0\nend_time = {end}\n[fluid]\ndensity = 1000.0\n{}{}",
-            shape("sea", "fluid", [0.0, 0.0], [600.0, 200.0], "pressure = \"hydrostatic\""),
-            TANK.replace("[0.4, 0.3]", "[600.0, 400.0]")
-        ))
-    };
+    let in_mm = |end: f64| sea(10.0, [600.0, 200.0], end);
     assert!(has(&in_mm(3.9), "the largest shape is 600 m long: lengths are in metres"));
     assert!(!has(&in_mm(4.0), "lengths are in metres"), "{:?}", in_mm(4.0));
     let foam = |lines: &str| {
