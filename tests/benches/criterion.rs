@@ -11,9 +11,9 @@ use support::{Patch, Running, tank};
 fn passes(c: &mut Criterion) {
     let mut group = c.benchmark_group("pass");
     group.throughput(Throughput::Elements(14_000));
-    let mut patch = Patch::new(Isa::detect());
+    let mut patch = Patch::new(Isa::preferred());
     group.bench_function("engine", |b| b.iter(|| Patch::effects().run(&mut patch)));
-    let patch = Patch::new(Isa::detect());
+    let patch = Patch::new(Isa::preferred());
     group.bench_function("naive", |b| b.iter(|| patch.pass.run(&patch.naive, &patch.grid)));
     group.finish();
 }
@@ -27,7 +27,7 @@ fn lists(c: &mut Criterion) {
     group.throughput(Throughput::Elements(n as u64));
     group.bench_function("sort and list", |b| {
         b.iter_batched(
-            || ([x.clone(), y.clone()], Rows::<2>::default(), ClusterList::new(Isa::detect())),
+            || ([x.clone(), y.clone()], Rows::<2>::default(), ClusterList::new(Isa::preferred())),
             |(mut x, mut rows, mut list)| {
                 rows.sort(&x, &id, 2.0, [-1.0; 2], [1e3; 2]);
                 x.iter_mut().for_each(|column| rows.permute(column));
@@ -44,7 +44,7 @@ fn steps(c: &mut Criterion) {
     let mut group = c.benchmark_group("step");
     group.sample_size(20);
     for (name, overrides) in [("lean", support::LEAN), ("defaults", &[])] {
-        let mut running = Running::fluid(&tank(14_000, overrides), Isa::detect());
+        let mut running = Running::fluid(&tank(14_000, overrides), Isa::preferred());
         group.throughput(Throughput::Elements(running.particles() as u64));
         group.bench_function(name, |b| b.iter(|| running.step()));
     }

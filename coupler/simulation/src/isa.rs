@@ -1,9 +1,10 @@
-//! Which instruction set a process computes with: the processor's best, unless the environment names a lower level.
+//! Which instruction set a process computes with: the one that passes are fastest with on this processor, unless the
+//! environment names another one that it has.
 
 use halfstep_sph::lane::Isa;
 
-/// Environment variable with the instruction set level: `baseline`, `avx2` or `avx512vl`. Without it the processor's
-/// best is taken. Roles that run as processes inherit it.
+/// Environment variable with the instruction set level: `baseline`, `avx2` or `avx512vl`. Without it
+/// [`Isa::preferred`] is taken. Roles that run as processes inherit it.
 pub const ISA_VARIABLE: &str = "HALFSTEP_ISA";
 
 /// The levels by name, lowest first.
@@ -35,17 +36,17 @@ pub fn name(isa: Isa) -> &'static str {
     }
 }
 
-/// The level that [`ISA_VARIABLE`] names in this process's environment, or else the processor's best.
+/// The level that [`ISA_VARIABLE`] names in this process's environment, or else [`Isa::preferred`].
 ///
 /// # Errors
 /// There is no such level, or the processor does not have it.
 pub fn of_environment() -> Result<Isa, IsaError> {
     let value = std::env::var_os(ISA_VARIABLE);
-    choose(value.map(|v| v.to_string_lossy().into_owned()).as_deref(), Isa::detect())
+    let value = value.map(|v| v.to_string_lossy().into_owned());
+    value.map_or_else(|| Ok(Isa::preferred()), |value| choose(&value, Isa::detect()))
 }
 
-fn choose(value: Option<&str>, best: Isa) -> Result<Isa, IsaError> {
-    let Some(value) = value else { return Ok(best) };
+fn choose(value: &str, best: Isa) -> Result<Isa, IsaError> {
     let level = LEVELS.iter().find(|(name, _)| *name == value);
     let (_, asked) = *level.ok_or_else(|| IsaError::Unknown(value.into()))?;
     if asked <= best { Ok(asked) } else { Err(IsaError::Absent { asked, best }) }
@@ -56,13 +57,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_environment_may_lower_the_level_and_not_raise_it() {
-        assert_eq!(choose(None, Isa::Avx2), Ok(Isa::Avx2));
-        assert_eq!(choose(Some("baseline"), Isa::Avx2), Ok(Isa::Baseline));
-        assert_eq!(choose(Some("avx2"), Isa::Avx2), Ok(Isa::Avx2));
-        let absent = choose(Some("avx512vl"), Isa::Avx2).unwrap_err();
+    fn the_environment_names_a_level_that_the_processor_has() {
+        assert_eq!(choose("avx512vl", Isa::Avx512vl), Ok(Isa::Avx512vl));
+        assert_eq!(choose("baseline", Isa::Avx2), Ok(Isa::Baseline));
+        assert_eq!(choose("avx2", Isa::Avx2), Ok(Isa::Avx2));
+        let absent = choose("avx512vl", Isa::Avx2).unwrap_err();
         assert_eq!(absent.to_string(), "HALFSTEP_ISA is `avx512vl`, but this processor's best level is avx2");
-        let unknown = choose(Some("AVX2"), Isa::Avx2).unwrap_err();
+        let unknown = choose("AVX2", Isa::Avx2).unwrap_err();
         assert_eq!(unknown.to_string(), "HALFSTEP_ISA is `AVX2`, but a level is baseline, avx2 or avx512vl");
         assert!(LEVELS.iter().all(|(text, level)| name(*level) == *text));
     }

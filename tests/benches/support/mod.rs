@@ -68,7 +68,7 @@ impl Running {
     }
 
     pub(crate) fn solid(scene: &Scene) -> Self {
-        Self { role: halfstep_solid::role(scene, 0, Isa::detect()).expect("a solid"), step: 0 }
+        Self { role: halfstep_solid::role(scene, 0, Isa::preferred()).expect("a solid"), step: 0 }
     }
 
     pub(crate) fn particles(&self) -> f64 {

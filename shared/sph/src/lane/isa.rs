@@ -53,6 +53,16 @@ impl Isa {
         Self::Baseline
     }
 
+    /// What a run computes with unless it is told: the best, but AVX2 on Intel's processors with AVX-512, for the same
+    /// bits. Roots and divisions, which bound the passes, take them as long for each of eight numbers as for each of
+    /// four, and a cluster of eight has more neighbours for each target.
+    pub fn preferred() -> Self {
+        match Self::detect() {
+            Self::Avx512vl if intel() => Self::Avx2,
+            best => best,
+        }
+    }
+
     /// Targets that the wide passes compute at once.
     pub fn targets(self, precision: Precision) -> usize {
         match (self, precision) {
@@ -68,5 +78,28 @@ impl Isa {
             Self::Baseline => "baseline",
             Self::Avx2 | Self::Avx512vl => "fma",
         }
+    }
+}
+
+/// Whether Intel made this processor.
+fn intel() -> bool {
+    #[cfg(target_arch = "x86_64")]
+    {
+        let id = std::arch::x86_64::__cpuid(0);
+        [id.ebx, id.edx, id.ecx].map(u32::to_le_bytes).as_flattened() == b"GenuineIntel"
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    false
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_compute_with_a_level_that_the_processor_has_for_the_bits_of_the_best() {
+        assert!(Isa::preferred() <= Isa::detect());
+        assert_eq!(Isa::preferred().bits_name(), Isa::detect().bits_name());
+        assert!(!intel() || Isa::preferred() <= Isa::Avx2);
     }
 }
