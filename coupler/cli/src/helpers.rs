@@ -36,6 +36,8 @@ pub(crate) enum Kind {
     Floating,
     /// Waves of a piston, and a beach
     Waves,
+    /// A brittle wall that water breaks
+    Breaking,
 }
 
 impl Kind {
@@ -47,6 +49,7 @@ impl Kind {
             Self::Rolling => include_str!("../templates/rolling.toml"),
             Self::Floating => include_str!("../templates/floating.toml"),
             Self::Waves => include_str!("../templates/waves.toml"),
+            Self::Breaking => include_str!("../templates/breaking.toml"),
         }
     }
 }

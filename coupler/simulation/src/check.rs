@@ -1,11 +1,12 @@
 //! What a scene asks for, before anything is run.
 
+mod limits;
+
 use crate::forecast::{self, Forecast, megabytes};
-use crate::remarks::{DEEP, Joined, Loaded, Massive, Placed, Probed};
+use crate::remarks::{Joined, Loaded, Massive, Placed, Probed};
 use crate::step_cost::step_cost;
 use crate::{effects, remarks};
-use halfstep_coupling::clock::times_above_limit;
-use halfstep_coupling::roles::{self, ContactAsks};
+use halfstep_coupling::roles;
 use halfstep_output::run_json::EffectReport;
 use halfstep_scene::geometry::{self, Counts};
 use halfstep_scene::{self as scene, Phase, Scene, TimeStep, dispatch};
@@ -14,6 +15,9 @@ use halfstep_sph::lane::Isa;
 use serde::Serialize;
 use std::fmt::{self, Display};
 use std::path::Path;
+
+/// s.
+const DAY: f64 = 86_400.0;
 
 /// Counts, time steps, memory and an estimate of the run time of a scene; `Display` is the text of `halfstep check`.
 #[derive(Clone, Debug, Serialize)]
@@ -159,9 +163,14 @@ fn check_in<const D: usize>(scene: &Scene, isa: Isa) -> Check {
     let solids = solids.collect();
     let Forecast { shared, disk, frames } = Forecast::of(scene, &layout, &[]);
     let fluid_role = built.iter().find(|role| role.phase() == Phase::Fluid);
+    let fluid_dt_limit = fluid_role.map(|role| role.dt_limit());
     let mut warnings = remarks::on(scene, &layout, &shapes);
-    warnings.extend(too_long(scene, &limits));
-    warnings.extend(too_soft(scene, &contact));
+    warnings.extend(limits::too_long(scene, &limits));
+    warnings.extend(limits::too_soft(scene, &contact));
+    let steps = (scene.end_time / time_step).ceil() as u64;
+    let expected_seconds = expected_seconds(built, time_step, scene.end_time);
+    warnings.extend(limits::too_much(scene, expected_seconds, steps, &limits));
+    warnings.extend(limits::too_many_frames(scene, frames, disk));
     Check {
         scene: scene.name.clone(),
         path: scene.path.display().to_string(),
@@ -181,18 +190,18 @@ fn check_in<const D: usize>(scene: &Scene, isa: Isa) -> Check {
             .fluid
             .as_ref()
             .map(|fluid| Speeds { sound: fluid.sound_speed, fastest: scene::expected_speed_of_fluid(scene) }),
-        fluid_dt_limit: fluid_role.map(|role| role.dt_limit()),
+        fluid_dt_limit,
         contact_dt_limit: contact.limit,
         pairs: pairs(scene),
         time_step,
-        steps: (scene.end_time / time_step).ceil() as u64,
+        steps,
         end_time: scene.end_time,
         memory_bytes: scene::memory_needed(&counts),
         shared_memory_bytes: shared,
         disk_bytes: disk,
         disk_free_bytes: forecast::free_disk(Path::new(".")),
         frames,
-        expected_seconds: expected_seconds(built, time_step, scene.end_time),
+        expected_seconds,
         instruction_set: isa.bits_name(),
         effects: effects::reports(scene, &counts),
         warnings,
@@ -203,58 +212,6 @@ fn check_in<const D: usize>(scene: &Scene, isa: Isa) -> Check {
 fn named(scene: &Scene, body: &scene::Body) -> Body {
     let shapes = body.shapes.iter().map(|&shape| scene.shapes[shape].name.clone()).collect();
     Body { shapes, particles: body.particles, clamped: body.clamped }
-}
-
-/// A fixed step above limits.
-fn too_long(scene: &Scene, limits: &[(String, f64)]) -> Vec<String> {
-    let TimeStep::Fixed(dt) = scene.time_step else { return Vec::new() };
-    let above = limits.iter().filter(|(_, limit)| dt > limit * (1.0 + 1e-9));
-    above.map(|(name, limit)| times_above_limit(dt, name, *limit)).collect()
-}
-
-/// Contacts that a weight presses far in: of what nothing holds, on what begins below it. A body rests on at most its
-/// longest side.
-fn too_soft(scene: &Scene, contact: &ContactAsks) -> Vec<String> {
-    let gravity = scene.gravity_magnitude();
-    let height = |shape: &scene::Shape| {
-        let around = scene::geometry::bounding_box(shape, scene);
-        -(0..scene.dimension).map(|a| scene.gravity[a] * (around.min[a] + around.max[a])).sum::<f64>()
-    };
-    let is_free = |shape: &scene::Shape| {
-        let keys = shape.solid.and_then(|solid| scene.solids[solid].rigid());
-        let tied = keys.is_some_and(|keys| keys.joints.iter().any(|joint| joint.body == shape.body()));
-        shape.clamp.is_empty() && shape.motion.is_none() && !tied
-    };
-    let soft = |(solids, stiffness): &([usize; 2], f64)| {
-        // What rests on the longer side is as high as the shorter one.
-        let pressure = |(shape, side): (&scene::Shape, f64)| {
-            let own = shape.solid.map_or(f64::INFINITY, |solid| scene.solids[solid].density);
-            shape.density.unwrap_or(own) * gravity * side
-        };
-        let shapes: Vec<(&scene::Shape, f64)> = scene.shorter_sides(*solids).collect();
-        let others = |shape: &scene::Shape| {
-            let other = |below: &scene::Shape| below.solid != shape.solid || below.body() != shape.body();
-            shapes.iter().any(|(below, _)| other(below) && height(shape) > height(below))
-        };
-        let above = shapes.iter().copied().filter(|(shape, _)| is_free(shape) && others(shape));
-        let (upper, weight) =
-            above.map(|one| (one.0, pressure(one))).max_by(|one, other| one.1.total_cmp(&other.1))?;
-        let smallest = scene.smallest_side(*solids);
-        let depth = weight / stiffness;
-        let [a, b] = solids.map(|k| &scene.solids[k].name);
-        let (who, of) = match a == b {
-            true => (format!("the bodies of `{a}`"), "stiffness, from the scene,"),
-            false => (format!("`{a}` and `{b}`"), "`stiffness` of their [[contact]]"),
-        };
-        (depth > DEEP * smallest).then(|| {
-            format!(
-                "contact of {who} is soft: the weight of `{}` presses it {depth:.2e} m into what it lies on, and the \
-                 smallest side is {smallest:.2e} m ({of} is {stiffness:.1e} Pa/m)",
-                upper.name
-            )
-        })
-    };
-    contact.stiffness.iter().filter_map(soft).collect()
 }
 
 /// Which solids touch, and which pass through each other; `None` where there are not two.
@@ -281,12 +238,12 @@ fn expected_seconds(roles: Vec<Box<dyn halfstep_role::role::Role>>, dt: f64, end
 
 /// A time in the unit in which it is a number of at most a few hundreds, s.
 fn duration(seconds: f64) -> String {
-    let (hour, day) = (3600.0, 86_400.0);
+    let hour = 3600.0;
     match seconds {
         s if s < 600.0 => format!("{s:.0} s"),
         s if s < 2.0 * hour => format!("{:.0} min", s / 60.0),
-        s if s < 10.0 * day => format!("{:.0} h", s / hour),
-        s => format!("{:.0} days", s / day),
+        s if s < 10.0 * DAY => format!("{:.0} h", s / hour),
+        s => format!("{:.0} days", s / DAY),
     }
 }
 

@@ -7,8 +7,10 @@ mod beams;
 mod bodies;
 mod clamp_faces;
 mod contacts;
+mod corners;
 mod cracks;
 mod curves;
+mod cuts;
 mod domain;
 mod dry;
 mod enclosed;
@@ -40,8 +42,10 @@ mod solid_keys;
 mod spills;
 mod tanks;
 mod thickness;
+mod turning;
 mod unheld;
 mod units;
+mod wall_faces;
 mod walls;
 mod water;
 
@@ -137,6 +141,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     clamp_faces::sections(scene, layout, &mut all);
     shapes::sizes(scene, placed, &mut all);
     shapes::free_lengths(scene, placed, &mut all);
+    cuts::cuts::<D>(scene, &mut all);
     nodal::mass(scene, placed, &mut all);
     nodal::touching(scene, layout, &bodies, &mut all);
     lost::overlaps::<D>(scene, placed, &mut all);
@@ -146,6 +151,8 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     lines::lines(scene, layout, &mut all);
     walls::thin(scene, layout, &mut all);
     walls::across(scene, layout, &mut all);
+    wall_faces::faces(scene, layout, &mut all);
+    corners::corners(scene, layout, &mut all);
     domain::domain(scene, layout, &mut all);
     spills::spills(scene, layout, &mut all);
     gaps::over::<D>(scene, &mut all);
@@ -168,6 +175,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     units::columns(scene, &mut all);
     magnitudes::axes(scene, &mut all);
     passages::passages(scene, &mut all);
+    turning::passages(scene, layout, &mut all);
     settings::motions(scene, &mut all);
     frame::twice(scene, &mut all);
     frame::frame(scene, &mut all);
@@ -222,6 +230,8 @@ mod motion_tests;
 mod probe_tests;
 #[cfg(test)]
 mod silence_tests;
+#[cfg(test)]
+mod size_tests;
 #[cfg(test)]
 mod start_tests;
 #[cfg(test)]

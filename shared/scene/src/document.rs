@@ -73,7 +73,12 @@ pub(super) fn parse(text: &str, source: usize) -> Result<Node, Vec<Syntax>> {
             let origin = Origin { source, start, end: start + 1 };
             return Err(vec![(origin, "this bracket is not closed".into())]);
         }
-        return Err(errors.iter().map(|e| syntax(e, text, source, 0)).collect());
+        // What comes after the first one may follow from it.
+        let first = errors.iter().map(|e| syntax(e, text, source, 0)).min_by_key(|(origin, _)| origin.start);
+        return Err(first
+            .map(|(origin, message)| (origin, explained(text, origin, message)))
+            .into_iter()
+            .collect());
     }
     let origin = Origin { source, start: 0, end: 0 };
     Ok(Node { value: table_value(table.get_ref(), source, 0), origin })
@@ -84,6 +89,21 @@ pub(super) fn parse_value(text: &str, source: usize, offset: usize) -> Result<No
     match DeValue::parse(text) {
         Ok(value) => Ok(node(&value, source, offset)),
         Err(error) => Err(syntax(&error, text, source, offset)),
+    }
+}
+
+/// Lists of tables.
+const LISTS: [&str; 4] = ["shape", "probe", "solid", "contact"];
+
+/// A message of the parser that says what is meant where it can be told.
+fn explained(text: &str, Origin { start, end, .. }: Origin, message: String) -> String {
+    let rest = text.get(start..).unwrap_or_default();
+    let is_head = text.get(..start).unwrap_or_default().ends_with('[');
+    let key = text.get(start..end).unwrap_or_default();
+    match rest.chars().next() {
+        Some(']' | '}') => "this bracket closes none".into(),
+        _ if is_head && LISTS.contains(&key) => format!("{message}: of several, each begins with [[{key}]]"),
+        _ => message,
     }
 }
 

@@ -279,10 +279,7 @@ pub(super) fn probes(scene: &Scene, all: &mut Vec<String>) {
                 kept.push((&probe.name, most));
             }
         }
-        if motion.pivot().is_some() {
-            // A frame that turns leaves forces out: there is no better place for them.
-            stay.clear();
-        }
+        let turns = motion.pivot().is_some();
         for (probes, rides) in [(ride, true), (stay, false)] {
             let Some(most) = probes.iter().map(|(_, way)| *way).reduce(f64::max) else { continue };
             let names: Vec<String> = probes.iter().map(|(name, _)| format!("`{name}`")).collect();
@@ -292,6 +289,7 @@ pub(super) fn probes(scene: &Scene, all: &mut Vec<String>) {
             };
             let remedy = match rides {
                 true => format!("`shape = \"{}\"` takes {them} along", tank.name),
+                false if turns => "levels, velocities and fluxes do not turn with a tank".to_owned(),
                 false => format!("seen from a `[frame]` with this motion the tank rests around {them}"),
             };
             all.push(format!(

@@ -98,6 +98,34 @@ fn two_solids_whose_own_bodies_rub_and_that_do_not() {
     assert!(found.len() == 1 && found[0].contains("`a` and `b` touch without friction"), "{found:?}");
     let said = rigid(["a", "b"], [0.2, 0.0], "[[contact]]\nsolids = [\"a\", \"b\"]\nfriction = 0.0\n");
     assert_eq!(said, [""; 0]);
+    // A third one fills what is between them.
+    let block = |name: &str, x: f64| {
+        format!(
+            "[[solid]]\nname = \"{name}\"\ndensity = 1000.0\nmodel = \"rigid\"\ncontact = {{ friction = 0.4 }}\n[[shape]]\n\
+             name = \"block-{name}\"\nphase = \"solid\"\nsolid = \"{name}\"\n\
+             box = {{ min = [{x}, 0.0], max = [{}, 0.1] }}\n",
+            x + 0.1
+        )
+    };
+    let pair = |solids: &str| format!("[[contact]]\nsolids = [{solids}]\nfriction = 0.4\n");
+    let row = |between: f64| {
+        let text = format!(
+            "resolution = 0.01\nend_time = 1.0\ngravity = [0.0, -9.81]\n{}{}{}{}{}[[shape]]\nname = \"floor\"\n\
+             phase = \"wall\"\nbox = {{ min = [-1.0, -0.1], max = [1.0, 0.0] }}\n",
+            block("a", 0.0),
+            block("b", between),
+            block("c", 0.2),
+            pair("\"a\", \"b\""),
+            pair("\"b\", \"c\""),
+        );
+        remarks(&parse(&text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}")))
+    };
+    assert_eq!(row(0.1), [""; 0]);
+    assert!(
+        row(0.4).iter().any(|text| text.contains("`a` and `c` touch without friction")),
+        "{:?}",
+        row(0.4)
+    );
 }
 
 #[test]

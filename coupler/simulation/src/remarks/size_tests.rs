@@ -1,0 +1,101 @@
+//! Faces of walls, what voids leave of plates, corners, and what turns: what is remarked on, and what is near it not.
+
+use super::tank_tests::{basin, of, wall, water};
+use super::trap_tests::has;
+
+/// A basin of 1 m with 0.3 m of water, 0.2 m deep, at a spacing of 10 mm.
+fn beside(shapes: &str) -> Vec<String> {
+    of(&format!("{shapes}{}{}", basin(), water([0.0, 0.3, 0.2])))
+}
+
+#[test]
+fn a_weir_of_part_of_a_row() {
+    let weir = |high: f64, to: f64| {
+        beside(&wall("weir", &format!("box = {{ min = [0.5, 0.0], max = [{to}, {high}] }}")))
+    };
+    let said = "the top of `weir` is at 0.104 m in the scene and at 0.1 m as computed, and fluid comes there: a wall \
+                has whole rows from its `min` on (the resolution is 0.01)";
+    assert!(has(&weir(0.104, 0.55), said), "{:?}", weir(0.104, 0.55));
+    assert!(has(&weir(0.1, 0.556), "the right side of `weir` is at 0.556 m"));
+    assert!(!has(&weir(0.1005, 0.55), "as computed"), "a twentieth of a spacing");
+    assert!(!has(&weir(0.304, 0.55), "the top of"), "higher than the water");
+}
+
+#[test]
+fn a_floor_below_its_water() {
+    let standing = |floor: f64, dry: f64| {
+        of(&format!(
+            "{}{}{}{}",
+            water([0.0, 0.3, 0.2]),
+            wall("floor", &format!("box = {{ min = [-0.05, {floor}], max = [0.35, 0.0] }}")),
+            wall("left", "box = { min = [-0.05, 0.0], max = [0.0, 0.3] }"),
+            wall("right", &format!("box = {{ min = [0.3, 0.0], max = [{dry}, 0.3] }}")),
+        ))
+    };
+    assert!(has(
+        &standing(-0.054, 0.35),
+        "the top of `floor` is at 0 m in the scene and at -0.004 m as computed"
+    ));
+    assert!(!has(&standing(-0.05, 0.354), "as computed"), "behind the wall is no fluid");
+}
+
+#[test]
+fn an_arm_of_part_of_a_row() {
+    let plate = |void: &str| {
+        let void = format!("[[shape]]\nname = \"cut\"\nphase = \"void\"\n{void}\n");
+        let solid = "[solid]\ndensity = 1100.0\nyoungs_modulus = 6e6\npoissons_ratio = 0.4\n[[shape]]\nname = \"plate\"\n\
+                     phase = \"solid\"\nbox = { min = [0.5, 0.0], max = [0.7, 0.2] }\n\
+                     clamp = { min = [0.5, 0.0], max = [0.7, 0.02] }\n";
+        of(&format!("{void}{solid}{}{}", basin(), water([0.0, 0.3, 0.2])))
+    };
+    let beside = |from: f64| plate(&format!("box = {{ min = [{from}, 0.05], max = [0.7, 0.2] }}"));
+    let said = "`plate` is 0.054 m thick at [0.527, 0.055] beside a void in the scene and 0.05 m of whole rows as \
+                computed: 0.79 times the bending stiffness (its spacing is 0.01)";
+    assert!(has(&beside(0.554), said), "{:?}", beside(0.554));
+    assert!(!has(&beside(0.55), "beside a void"));
+    let hole = |radius: f64| plate(&format!("disc = {{ center = [0.6, 0.1], radius = {radius} }}"));
+    assert!(has(&hole(0.066), "beside a void in the scene"), "{:?}", hole(0.066));
+    let repeated =
+        "box = { min = [0.522, 0.05], max = [0.56, 0.15] }\nrepeat = { count = 2, step = [0.09, 0.0] }";
+    assert!(has(&plate(repeated), "`plate` is 0.022 m thick"), "{:?}", plate(repeated));
+}
+
+#[test]
+fn a_sharp_corner() {
+    let pit = |half: f64, level: f64, more: &str| {
+        let [a, b] = [half * 0.4, half * 0.2];
+        of(&format!(
+            "{}[[shape]]\nname = \"water\"\nphase = \"fluid\"\npolygon = [[{}, {level}], [{b}, 0.2], [{a}, 0.4], \
+             [-{a}, 0.4], [-{b}, 0.2], [-{}, {level}]]\n{more}",
+            wall(
+                "pit",
+                &format!(
+                    "polygon = [[0.0, 0.0], [{0}, 0.5], [0.4, 0.5], [0.4, -0.2], [-0.4, -0.2], [-0.4, 0.5], [-{0}, 0.5]]",
+                    half * 0.5
+                )
+            ),
+            half * level,
+            half * level,
+        ))
+    };
+    // tan 10 degrees.
+    let said = "fluid comes into the corner of `pit` at [0, 0], whose sides meet at 20 degrees";
+    assert!(has(&pit(0.176_327, 0.19, ""), said), "{:?}", pit(0.176_327, 0.19, ""));
+    assert!(!has(&pit(0.176_327, 0.01, ""), "sides meet"), "it stands there");
+    assert!(!has(&pit(0.4, 0.19, ""), "sides meet"), "44 degrees");
+}
+
+#[test]
+fn a_paddle_that_turns_into_a_block() {
+    let turning = |angle: f64, foot: f64| {
+        let paddle = format!(
+            "box = {{ min = [0.2, {foot}], max = [0.24, 0.19] }}\n\
+             motion = {{ angle = {angle}, period = 2.0, pivot = [0.22, 0.1] }}"
+        );
+        beside(&(wall("paddle", &paddle) + &wall("block", "box = { min = [0.28, 0.0], max = [0.4, 0.2] }")))
+    };
+    let said = "`paddle` turns into `block` from about ";
+    assert!(has(&turning(-1.0, 0.05), said), "{:?}", turning(-1.0, 0.05));
+    assert!(has(&turning(-1.0, 0.05), "s on: walls do not stop each other"));
+    assert!(!has(&turning(-0.1, 0.05), "turns into"));
+}
