@@ -60,10 +60,11 @@ prices: setup
 	cargo build --release
 	sh docs/price-lists.sh $(BIN) $(SCENES)
 
-# Criterion's benchmarks, then the table of ratios (also in target/bench.json).
+# Criterion's benchmarks, then the table of ratios and that of the exchange (both also in target/bench.json).
 bench: setup
 	cargo bench -p halfstep-tests --bench criterion
 	cargo bench -p halfstep-tests --bench table
+	cargo bench -p halfstep-tests --bench exchange
 
 # The documentation of the crates, in target/doc.
 docs: setup

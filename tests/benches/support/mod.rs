@@ -1,8 +1,9 @@
-//! Fluids and solids to measure, and clocks that take medians.
-// Two benchmarks share this; each uses a part.
+//! Fluids and solids to measure, clocks that take medians, and the file of all figures.
+// The benchmarks share this; each uses a part.
 #![allow(dead_code)]
 
 pub(crate) mod naive;
+pub(crate) mod raw;
 
 use halfstep_fluid::composition::{Pass, Shares};
 use halfstep_fluid::effects::artificial_viscosity::ArtificialViscosity;
@@ -16,6 +17,7 @@ use halfstep_sph::neighbours::PADDING;
 use halfstep_sph::pair;
 use halfstep_tests::patch;
 use halfstep_wire::half_step::HalfStep;
+use serde_json::{Map, Value};
 use std::path::Path;
 use std::time::Instant;
 
@@ -208,7 +210,21 @@ fn cpu_seconds() -> f64 {
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
 }
 
-fn median(mut values: Vec<f64>) -> f64 {
+pub(crate) fn median(mut values: Vec<f64>) -> f64 {
     values.sort_unstable_by(f64::total_cmp);
     values[values.len() / 2]
+}
+
+/// Writes figures to `target/bench.json`, beside those of other benchmarks that are there.
+pub(crate) fn store(figures: Map<String, Value>) {
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../target/bench.json"));
+    let stored = std::fs::read(path).ok().and_then(|bytes| serde_json::from_slice(&bytes).ok());
+    let mut all: Map<String, Value> = stored.unwrap_or_default();
+    all.extend(figures);
+    let text = format!("{:#}\n", Value::Object(all));
+    let folder = path.parent().expect("a folder");
+    std::fs::create_dir_all(folder)
+        .and_then(|()| std::fs::write(path, text))
+        .expect("target/bench.json can be written");
+    println!("\nwritten to target/bench.json");
 }

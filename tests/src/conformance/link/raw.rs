@@ -36,14 +36,7 @@ impl<S: Transport> RawRole<S> {
 
     /// Enters the run as `role` with this schema in the channels' attributes.
     pub fn enter_with_schema(config: &LinkConfig, role: &str, schema: u64) -> Self {
-        let mut transport = Config::default();
-        transport.global.prefix = FileName::new(config.prefix.as_bytes()).unwrap();
-        transport.global.set_root_path(&Path::new(config.root.to_str().unwrap().as_bytes()).unwrap());
-        let node = NodeBuilder::new()
-            .signal_handling_mode(SignalHandlingMode::Disabled)
-            .config(&transport)
-            .create::<S>()
-            .unwrap();
+        let node = node::<S>(config);
         let mut attributes = AttributeVerifier::new();
         for (key, value) in [("halfstep.schema", schema), ("halfstep.protocol", PROTOCOL.into())] {
             attributes = attributes
@@ -213,8 +206,20 @@ pub fn identified_force(config: &LinkConfig, header: ForceHeader, count: usize) 
     ForceHeader { run_id: config.run_id, protocol: PROTOCOL, schema: SCHEMA, count: count as u32, ..header }
 }
 
+/// A node whose objects are those of the run.
+pub fn node<S: Transport>(config: &LinkConfig) -> Node<S> {
+    let mut transport = Config::default();
+    transport.global.prefix = FileName::new(config.prefix.as_bytes()).unwrap();
+    transport.global.set_root_path(&Path::new(config.root.to_str().unwrap().as_bytes()).unwrap());
+    NodeBuilder::new()
+        .signal_handling_mode(SignalHandlingMode::Disabled)
+        .config(&transport)
+        .create::<S>()
+        .unwrap()
+}
+
 /// Opening races with others who open the same service.
-fn persistently<T, E: Debug>(mut open: impl FnMut() -> Result<T, E>) -> T {
+pub fn persistently<T, E: Debug>(mut open: impl FnMut() -> Result<T, E>) -> T {
     let deadline = Instant::now() + Duration::from_secs(20);
     loop {
         match open() {
