@@ -92,47 +92,52 @@ impl Check<'_> {
         }
         for (k, solid) in self.scene.solids.iter().enumerate() {
             let Some(fracture) = solid.fracture() else { continue };
-            let band = Fracture::BAND * self.scene.solid_spacing(k);
-            let widest = fracture.widest_band(solid.strip_modulus(self.scene.dimension));
-            let narrowest = fracture.narrowest_band();
-            let key = format!("{}.fracture", self.solid_key(k));
-            // In single precision: without the last digits that a division leaves.
+            let of_solid = self.solid_key(k);
+            let key = format!("{of_solid}.fracture");
+            let wrong = |others: &[&str], reason: String| self.report.among(self.root, &key, others, reason);
             if solid.smoothing_ratio > Fracture::SMOOTHING {
                 let why = "farther neighbours see across a crack, and the width of its band is that of the nearest ones";
                 let reason = format!("needs a smoothing_ratio of at most {}: {why}", Fracture::SMOOTHING);
-                self.report.among(self.root, &key, &[], reason);
-                continue;
-            }
-            if self.scene.numerics.lattice == Lattice::Nodal {
+                wrong(&[&format!("{of_solid}.smoothing_ratio"), "preset"], reason);
+            } else if self.scene.numerics.lattice == Lattice::Nodal {
                 let why = "clamps at the middle of a row give the rows beside it 1.6 and 0.8 of the stress, and a crack \
                            there half of its energy";
-                self.report.among(
-                    self.root,
-                    &key,
-                    &["numerics.lattice", "preset"],
-                    format!("needs a centred lattice: {why}"),
-                );
-                continue;
+                wrong(&["numerics.lattice", "preset"], format!("needs a centred lattice: {why}"));
+            } else if let Some(reason) = self.unfit_band(k, solid, &fracture) {
+                let enters =
+                    ["fracture.strength", "fracture.energy", "youngs_modulus", "poissons_ratio", "plane"];
+                let mut others: Vec<String> = enters.iter().map(|of| format!("{of_solid}.{of}")).collect();
+                let own = |shape: &Shape| shape.solid == Some(k) && shape.spacing.is_some();
+                others.extend(self.scene.shapes.iter().position(own).map(|shape| self.spacing_key(shape)));
+                others.extend(["resolution", "dimension"].map(str::to_owned));
+                wrong(&others.iter().map(String::as_str).collect::<Vec<_>>(), reason);
             }
-            let [band_, widest_, narrowest_] = [band, widest, narrowest].map(|length| length as f32);
-            if band >= widest {
-                let why = "a wider band holds more energy than its fracture takes and snaps back";
-                let reason = format!(
-                    "smears a crack over a band of {band_} m, {} spacings, which must be below 2 E' G_f / f_t² = \
-                     {widest_} m: {why}",
-                    Fracture::BAND
-                );
-                self.report.among(self.root, &key, &["resolution"], reason);
-            } else if band < narrowest {
-                let why = "the opening at which a crack breaks would tear its band far apart";
-                let reason = format!(
-                    "smears a crack over a band of {band_} m, {} spacings, which must be at least G_f / ({} f_t) = \
-                     {narrowest_} m: {why}",
-                    Fracture::BAND,
-                    Fracture::WIDEST
-                );
-                self.report.among(self.root, &key, &["resolution"], reason);
-            }
+        }
+    }
+
+    /// What is wrong with the band of a crack, with the values in force: they may be a file's and overrides'.
+    fn unfit_band(&self, index: usize, solid: &Solid, fracture: &Fracture) -> Option<String> {
+        let band = Fracture::BAND * self.scene.solid_spacing(index);
+        let modulus = solid.strip_modulus(self.scene.dimension);
+        let (widest, narrowest) = (fracture.widest_band(modulus), fracture.narrowest_band());
+        // In single precision: without the last digits that a division leaves.
+        let [band_, widest_, narrowest_] = [band, widest, narrowest].map(|length| length as f32);
+        let [strength, energy, modulus] = [fracture.strength, fracture.energy, modulus].map(|x| x as f32);
+        let smears = format!("smears a crack over a band of {band_} m, {} spacings", Fracture::BAND);
+        let in_force = format!("f_t = {strength} Pa, G_f = {energy} J/m²");
+        if band >= widest {
+            let why = "a wider band holds more energy than its fracture takes and snaps back";
+            Some(format!(
+                "{smears}, which must be below 2 E' G_f / f_t² = {widest_} m with E' = {modulus} Pa, {in_force}: {why}"
+            ))
+        } else if band < narrowest {
+            let why = "the opening at which a crack breaks would tear its band far apart";
+            let widest = Fracture::WIDEST;
+            Some(format!(
+                "{smears}, which must be at least G_f / ({widest} f_t) = {narrowest_} m with {in_force}: {why}"
+            ))
+        } else {
+            None
         }
     }
 

@@ -151,6 +151,16 @@ impl Node {
         }
     }
 
+    /// Whether nothing in it was written in another source, such as an override.
+    pub(super) fn is_of_one_source(&self) -> bool {
+        let own = |node: &Node| node.origin.source == self.origin.source && node.is_of_one_source();
+        match &self.value {
+            Value::Table(table) => table.values().all(|entry| own(&entry.node)),
+            Value::Array(items) => items.iter().all(own),
+            _ => true,
+        }
+    }
+
     /// Where the value at a dotted path was written, or else the nearest table around it that was.
     pub(super) fn origin_of(&self, path: &str) -> Origin {
         let mut at = self;

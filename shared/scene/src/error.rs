@@ -1,6 +1,6 @@
 //! What is wrong with a scene: all of it at once, each with its place, key, value and reason.
 
-use super::document::{Node, Origin, SourceText};
+use super::document::{Entry, Node, Origin, SourceText, Value};
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -137,6 +137,12 @@ fn beginning(text: &str) -> String {
     }
 }
 
+/// The beginning of a value.
+fn short(line: &str) -> String {
+    let short: String = line.chars().take(60).collect();
+    if short.len() < line.len() { short + " ..." } else { short }
+}
+
 /// What is shown of a source for an error: its lines, the one before and the one after.
 fn around(text: &str, origin: Origin) -> Option<&str> {
     let (before, after) = (text.get(..origin.start)?, text.get(origin.end..)?);
@@ -190,14 +196,37 @@ impl Report {
         match last {
             Some((origin, other)) if origin.source > own.source => {
                 let inside = other.strip_prefix(key).is_some_and(|rest| rest.starts_with('.'));
-                let (key, shown) = if inside { (other, Some(origin)) } else { (key, written(key)) };
-                let shown = shown.and_then(|o| self.snippet(o));
-                self.note(key, origin, shown, reason);
+                let key = if inside { other } else { key };
+                self.note(key, origin, root.child_at(key).and_then(|node| self.in_force(node)), reason);
             }
             _ => {
-                self.note(key, own, written(key).and_then(|o| self.snippet(o)), reason);
+                self.note(key, own, root.child_at(key).and_then(|node| self.in_force(node)), reason);
             }
         }
+    }
+
+    /// A value in force: as it was written; where overrides changed a part of it, and below a [header], each part as
+    /// that was written.
+    fn in_force(&self, node: &Node) -> Option<String> {
+        let written = self.snippet(node.origin);
+        let is_header = node.table().is_some() && written.as_ref().is_some_and(|text| text.starts_with('['));
+        if node.is_of_one_source() && !is_header {
+            return written;
+        }
+        let whole = match &node.value {
+            Value::Table(table) => {
+                let part = |(key, entry): (&String, &Entry)| {
+                    self.in_force(&entry.node).map(|value| format!("{key} = {value}"))
+                };
+                format!("{{ {} }}", table.iter().filter_map(part).collect::<Vec<_>>().join(", "))
+            }
+            Value::Array(items) => {
+                let items: Vec<_> = items.iter().filter_map(|item| self.in_force(item)).collect();
+                format!("[{}]", items.join(", "))
+            }
+            _ => return written,
+        };
+        Some(short(&whole))
     }
 
     /// Notes an error at `origin` that is not about the value there.
@@ -244,8 +273,7 @@ impl Report {
     fn snippet(&self, origin: Origin) -> Option<String> {
         let text = self.sources[origin.source].0.text.get(origin.start..origin.end)?;
         let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
-        let short: String = line.chars().take(60).collect();
-        (!short.is_empty()).then(|| if short.len() < line.len() { short + " ..." } else { short })
+        (!line.is_empty()).then(|| short(&line))
     }
 
     /// Whether a key, a key under it or one around it has an error already: what follows from it says nothing new.

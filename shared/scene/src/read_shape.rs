@@ -313,7 +313,8 @@ fn load(section: &Section<'_>, dimension: usize) -> Option<Traction> {
         return None;
     }
     let within = table.section("within");
-    if !within.is_present() {
+    // Of what is no table this is said already.
+    if table.node("within").is_none() {
         table.missing("within");
     }
     let read = Traction {

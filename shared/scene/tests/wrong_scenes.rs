@@ -241,6 +241,7 @@ fn a_schema_refuses_what_it_can_say() {
         "with phase-blind",
         "solid.smoothing_ratio = 0.75",
         "linear theory has no steeper waves",
+        "smears a crack over a band",
         "one of `kinetic`",
         "one of `water`",
         "one of `gate`",
