@@ -106,6 +106,9 @@ pub(super) struct Fracture<const D: usize> {
     was_thick: Vec<bool>,
     /// What sees contacts once there are several bodies.
     dormant: Option<Contact<D>>,
+    /// Softens along a straight line.
+    #[cfg(test)]
+    linear: bool,
 }
 
 /// det M of a particle of a lattice of spacing `dx` with the neighbours in the direction of all axes (`side` = 0, a
@@ -170,6 +173,8 @@ impl<const D: usize> Fracture<D> {
             whole: Vec::new(),
             was_thick: Vec::new(),
             dormant,
+            #[cfg(test)]
+            linear: false,
         })
     }
 
@@ -200,7 +205,10 @@ impl<const D: usize> Fracture<D> {
 
     /// Softening of a slot from this strain on.
     fn law(&self, slot: usize, onset: f64) -> Softening {
-        Softening::new(onset, self.modulus, self.keys.energy / self.band[slot])
+        let law = Softening::new(onset, self.modulus, self.keys.energy / self.band[slot]);
+        #[cfg(test)]
+        let law = law.straight(self.linear);
+        law
     }
 }
 

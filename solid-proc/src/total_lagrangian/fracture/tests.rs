@@ -4,11 +4,13 @@ use halfstep_scene::{EnergyPart, Geometry, Scene};
 use halfstep_sph::lane::Isa;
 use halfstep_wire::half_step::{HalfStep, Stage};
 
+mod bar_tests;
 mod cantilever_tests;
 mod cut_tests;
 mod debris_tests;
 mod friction_tests;
 mod irregular_tests;
+mod law_tests;
 
 /// Runs a solid alone and keeps its ledger.
 struct Run<const D: usize> {
@@ -96,72 +98,6 @@ fn strength_and_energy(strength: f64, energy: f64) -> String {
     format!("fracture = {{ strength = {strength:e}, energy = {energy:e} }}")
 }
 
-/// A bar 100 mm x 20 mm between two clamps, the right of which pulls. Between the columns at 45 and 55 mm tractions
-/// add a twentieth of its strength: it breaks there, and nowhere else it comes near.
-fn bar(dx: f64, speed: f64) -> String {
-    let load = |from: f64, to: f64, traction: f64| {
-        format!(
-            "load = {{ within = {{ min = [{from}, 0.0], max = [{to}, 0.02] }}, traction = [{traction}, 0.0] }}\n"
-        )
-    };
-    solid(dx, 0.0, &strength_and_energy(1e6, 100.0))
-        + &format!(
-            "[[shape]]\nname = \"left\"\nbody = \"bar\"\nphase = \"solid\"\n\
-             box = {{ min = [-0.04, 0.0], max = [0.05, 0.02] }}\n\
-             clamp = {{ min = [-0.04, 0.0], max = [0.0, 0.02] }}\n{}\
-             [[shape]]\nname = \"right\"\nbody = \"bar\"\nphase = \"solid\"\n\
-             box = {{ min = [0.05, 0.0], max = [0.14, 0.02] }}\n\
-             clamp = {{ min = [0.1, 0.0], max = [0.14, 0.02] }}\n\
-             motion = {{ velocity = [{speed}, 0.0], start = 0.0, end = 1.0 }}\n{}",
-            load(0.045 - 0.5 * dx - 1e-6, 0.045 + 0.5 * dx - 2e-6, -5e4),
-            load(0.055 - 0.5 * dx + 2e-6, 0.055 + 0.5 * dx + 1e-6, 5e4),
-        )
-}
-
-/// Energy taken over G_f A, and the clamp's work at three openings, J/m; the ledger is closed.
-fn torn_bar(dx: f64) -> (f64, [f64; 3]) {
-    let mut run = Run::<2>::of(&bar(dx, 0.05));
-    let mut work = [0.0; 3];
-    for (k, opening) in [0.1e-3, 0.2e-3, 0.4e-3].into_iter().enumerate() {
-        run.until(opening / 0.05);
-        work[k] = run.given + run.model.summary().energy;
-    }
-    while run.model.summary().bodies == 1 {
-        run.step();
-    }
-    assert!(run.rest().abs() < 1e-3 * 2.0, "{dx}: {}", run.rest());
-    let taken = run.model.summary().energy / (100.0 * 0.02);
-    println!("{dx} m: {taken} of G_f A, work {work:?} J, rest {} J", run.rest());
-    (taken, work)
-}
-
-#[test]
-fn a_bar_that_is_torn_takes_its_fracture_energy_at_three_spacings() {
-    let [coarse, middle, fine] = [0.01, 0.005, 0.0025].map(torn_bar);
-    for (taken, work) in [coarse, middle, fine] {
-        assert!((taken - 1.0).abs() < 0.02, "{taken}");
-        for (work, finest) in work.iter().zip(fine.1) {
-            assert!((work / finest - 1.0).abs() < 0.02, "{work} {finest}");
-        }
-    }
-}
-
-/// In plane strain a strip that softens contracts less and less across, so the undamaged law's tension grows faster
-/// than its stretch, which is what opens: by (1 - nu)² / (1 - 2 nu), 3.0 at 0.45.
-#[test]
-fn the_fracture_energy_does_not_hang_on_poissons_ratio() {
-    for nu in [0.0, 0.2, 0.3, 0.4, 0.45] {
-        let text = bar(0.005, 0.05).replace("poissons_ratio = 0", &format!("poissons_ratio = {nu}"));
-        let mut run = Run::<2>::of(&text);
-        while run.model.summary().bodies == 1 {
-            run.step();
-        }
-        let taken = run.model.summary().energy / (100.0 * 0.02);
-        println!("nu {nu}: {taken} of G_f A, rest {} J", run.rest());
-        assert!((0.99..1.06).contains(&taken) && run.rest().abs() < 2e-4, "{nu}: {taken}, {}", run.rest());
-    }
-}
-
 /// The bar, notched at its middle by 4 mm, out of a lattice that is turned; its right clamp is on a wall that moves.
 fn bar_of_a_turned_lattice(dx: f64, angle: f64) -> String {
     let void = |name: &str, min: [f64; 2], max: [f64; 2]| {
@@ -186,16 +122,17 @@ fn bar_of_a_turned_lattice(dx: f64, angle: f64) -> String {
 #[test]
 #[ignore = "half a minute"]
 fn a_bar_of_a_turned_lattice() {
-    for dx in [0.005, 0.0025, 0.00125] {
-        for angle in [0.0, 30.0] {
+    for (dx, along, turned) in [(0.005, 1.16, 1.32), (0.0025, 1.18, 1.00), (0.00125, 1.06, 1.15)] {
+        for (angle, measured) in [(0.0, along), (30.0, turned)] {
             let mut run = Run::<2>::of(&bar_of_a_turned_lattice(dx, angle));
             while run.model.summary().bodies == 1 && run.time < 0.02 {
                 run.step();
             }
             // The ligament is 16 mm. Along a row of the turned lattice a crack is 1 / cos 30 degrees as long, and the
-            // notch softens what the crack does not reach.
+            // notch softens what the crack does not reach. 0.02: a row or a crumb more is 0.06 and more.
             let taken = run.model.summary().energy / (100.0 * 0.016);
-            assert!((0.9..1.4).contains(&taken), "{dx} {angle}: {taken}");
+            println!("{dx} m, {angle} degrees: {taken}");
+            assert!((taken - measured).abs() < 0.02, "{dx} {angle}: {taken}");
         }
     }
 }
@@ -276,7 +213,7 @@ fn a_block_in_space_breaks() {
 /// A bar of four by two rows in space, torn as the one in the plane: the band takes the same energy per area.
 #[test]
 fn a_bar_in_space_takes_its_fracture_energy() {
-    let mut scene = halfstep_scene::parse(&bar(0.005, 0.05), "test.toml".as_ref(), &[]).unwrap();
+    let mut scene = halfstep_scene::parse(&bar_tests::bar(0.005, 0.05), "test.toml".as_ref(), &[]).unwrap();
     scene.dimension = 3;
     for shape in &mut scene.shapes {
         let Geometry::Box(block) = &mut shape.geometry else { panic!("a box") };
@@ -293,9 +230,9 @@ fn a_bar_in_space_takes_its_fracture_energy() {
     let area = 0.02 * 0.01;
     let taken = run.model.summary().energy / (100.0 * area);
     println!("{taken} of G_f A, rest {:e} J", run.rest());
-    assert!((taken - 1.0).abs() < 0.02, "{taken}");
+    assert!((taken - 1.0051).abs() < 0.002, "{taken}");
     assert!((run.model.summary().area / area - 1.0).abs() < 1e-12);
-    assert!(run.rest().abs() < 1e-3 * 100.0 * area, "{}", run.rest());
+    assert!(run.rest().abs() < 2e-5 * 100.0 * area, "{}", run.rest());
 }
 
 /// Damaged, cut and whole particles alike, in the middle of a break.

@@ -20,6 +20,8 @@ struct Cantilever {
     irregular: bool,
     /// It begins with the velocity of a beam whose load grows, so it does not swing.
     glides: bool,
+    /// It softens along a straight line.
+    linear: bool,
 }
 
 const BEAM: Cantilever = Cantilever {
@@ -30,6 +32,7 @@ const BEAM: Cantilever = Cantilever {
     angle: 0.0,
     irregular: false,
     glides: false,
+    linear: false,
 };
 
 impl Cantilever {
@@ -111,6 +114,7 @@ impl Cantilever {
     /// The load at the first damage and at the cut through half of the thickness, over that of beam theory.
     fn broken(&self) -> [f64; 2] {
         let (mut run, rate) = self.begun();
+        run.model.fracture.as_mut().expect("a brittle beam").linear = self.linear;
         while run.model.summary().energy == 0.0 {
             run.step();
         }
@@ -120,21 +124,39 @@ impl Cantilever {
             run.step();
         }
         let both = [first, rate * run.time];
-        let Self { length, across, brittleness, ramp, angle, irregular, glides } = self;
+        let Self { length, across, brittleness, ramp, angle, irregular, glides, linear } = self;
         println!(
             "{length} m, {across} across, window {brittleness}, {ramp} s, {angle} degrees, irregular {irregular}, glides \
-             {glides}: first damage {:.4}, cut through half {:.4}",
+             {glides}, linear {linear}: first damage {:.4}, cut through half {:.4}",
             both[0], both[1]
         );
         both
     }
+
+    /// Both as measured, to 1 %.
+    fn breaks_at(&self, measured: [f64; 2]) {
+        for (found, measured) in self.broken().into_iter().zip(measured) {
+            assert!((found / measured - 1.0).abs() < 0.01, "{found} {measured}");
+        }
+    }
 }
 
+/// Asked for are 5 and 10 %; bands of 1 % about what is measured lie within, but for the swing of the short ramp.
 #[test]
 fn a_brittle_cantilever_breaks_where_beam_theory_says() {
-    let [first, broken] = BEAM.broken();
-    assert!((first - 1.0).abs() < 0.05, "{first}");
-    assert!((broken - 1.0).abs() < 0.1, "{broken}");
+    let short = Cantilever { length: 0.16, ramp: 0.06, ..BEAM };
+    let fine = Cantilever { across: 10.0, brittleness: 8.0, ..short };
+    for (beam, measured) in [
+        (BEAM, [0.969, 0.989]),
+        (Cantilever { ramp: 0.12, ..short }, [0.958, 0.977]),
+        (short, [0.946, 0.984]),
+        (fine, [0.941, 0.956]),
+        // A softening along a straight line bears more before it is cut, by 1 and 8 %.
+        (Cantilever { linear: true, ..short }, [0.946, 0.9935]),
+        (Cantilever { linear: true, ..fine }, [0.941, 1.030]),
+    ] {
+        beam.breaks_at(measured);
+    }
 }
 
 /// Without a swing. Plane elasticity has the outermost particle at the clamp reach f_t at 0.98 (10 across) and 0.97
@@ -145,18 +167,17 @@ fn a_brittle_cantilever_breaks_where_beam_theory_says() {
 #[ignore = "a quarter of an hour"]
 fn finer_cantilevers_break_where_beam_theory_says() {
     let cases = [
+        (5.0, 4.5, 0.0, [0.959, 0.979]),
         (10.0, 8.0, 0.0, [0.965, 0.971]),
         (20.0, 8.0, 0.0, [0.962, 1.040]),
         (10.0, 4.5, 0.0, [0.965, 1.091]),
         (10.0, 8.0, 30.0, [0.829, 0.830]),
         (10.0, 4.5, 30.0, [0.829, 0.835]),
+        (20.0, 8.0, 30.0, [0.795, 0.852]),
         (20.0, 4.5, 30.0, [0.795, 0.933]),
     ];
     for (across, brittleness, angle, measured) in cases {
-        let found = Cantilever { across, brittleness, angle, glides: true, ..BEAM }.broken();
-        for (found, measured) in found.into_iter().zip(measured) {
-            assert!((found / measured - 1.0).abs() < 0.01, "{across}, {brittleness}, {angle}: {found}");
-        }
+        Cantilever { across, brittleness, angle, glides: true, ..BEAM }.breaks_at(measured);
     }
 }
 
@@ -164,11 +185,9 @@ fn finer_cantilevers_break_where_beam_theory_says() {
 #[test]
 #[ignore = "a minute"]
 fn an_irregular_cantilever_breaks_where_beam_theory_says() {
-    for brittleness in [8.0, 4.5] {
-        let [first, broken] =
-            Cantilever { across: 10.0, brittleness, irregular: true, glides: true, ..BEAM }.broken();
-        assert!((first - 1.0).abs() < 0.05, "{brittleness}: {first}");
-        assert!((broken - 1.0).abs() < 0.1, "{brittleness}: {broken}");
+    for (brittleness, measured) in [(8.0, [0.959, 0.965]), (4.5, [0.959, 1.042])] {
+        let beam = Cantilever { across: 10.0, brittleness, irregular: true, glides: true, ..BEAM };
+        beam.breaks_at(measured);
     }
 }
 
@@ -215,7 +234,13 @@ fn a_ragged_face_is_a_row_of_notches() {
 #[test]
 fn walls_of_few_rows_hold_as_hinges() {
     let dx = 0.005;
-    for (rows, off, measured) in [(6.0, Some(0.0475), 1.67), (5.0, Some(0.080), 3.93), (4.0, None, 14.1)] {
+    for (rows, off, measured) in [
+        (6.0, Some(0.0475), 1.67),
+        (5.0, Some(0.080), 3.93),
+        (4.0, None, 14.1),
+        (3.0, None, 42.0),
+        (2.0, None, 70.0),
+    ] {
         let t = rows * dx;
         let text = format!(
             "resolution = {dx}\nend_time = 1.0\ngravity = [0.0, -9.81]\n[solid]\ndensity = 2400.0\n\
@@ -231,7 +256,7 @@ fn walls_of_few_rows_hold_as_hinges() {
         }
         let ratio = run.model.summary().energy / (0.1 * t);
         println!("{rows} rows: {ratio:.2} of G_f t at {:.4} s", run.time);
-        assert!((ratio / measured - 1.0).abs() < 0.1, "{rows}: {ratio}");
+        assert!((ratio / measured - 1.0).abs() < 0.03, "{rows}: {ratio}");
         assert!(off.is_none_or(|off: f64| (run.time / off - 1.0).abs() < 0.05), "{rows}: {} s", run.time);
     }
 }
@@ -239,7 +264,5 @@ fn walls_of_few_rows_hold_as_hinges() {
 /// A turned lattice has ragged faces and clamps: the first damage misses the 5 % of a straight one.
 #[test]
 fn a_cantilever_of_a_turned_lattice_breaks_earlier() {
-    let [first, broken] = Cantilever { angle: 30.0, ..BEAM }.broken();
-    assert!((0.9..1.0).contains(&first), "{first}");
-    assert!((broken - 1.0).abs() < 0.1, "{broken}");
+    Cantilever { angle: 30.0, ..BEAM }.breaks_at([0.923, 0.946]);
 }

@@ -103,7 +103,8 @@ fn a_crack_along_a_clamp_takes_its_fracture_energy() {
         run.step();
     }
     let taken = run.model.summary().energy / (100.0 * 0.04);
-    assert!((taken - 1.0).abs() < 0.02, "{taken}");
+    println!("along a clamp {taken}, rest {}", run.rest());
+    assert!((taken - 1.013).abs() < 0.003, "{taken}");
     assert_eq!(run.model.summary().area, 0.04);
     run_on(&mut run, 400);
     assert_eq!(run.model.summary().energy, taken * 100.0 * 0.04, "it only flies");
@@ -123,5 +124,5 @@ fn a_crack_along_a_clamp_that_cuts_a_row_takes_its_fracture_energy() {
     }
     let taken = run.model.summary().energy / (100.0 * 0.04);
     println!("{taken} of G_f A, at {} s", run.time);
-    assert!((taken - 1.0).abs() < 0.03, "{taken}");
+    assert!((taken - 1.018).abs() < 0.003, "{taken}");
 }

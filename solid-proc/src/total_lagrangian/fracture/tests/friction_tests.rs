@@ -62,34 +62,62 @@ fn an_impact_of_fragments_that_slide_takes_mu_times_its_impulse() {
         let mut run = fragments(friction);
         let taken = rub_on(&mut run, 0.02);
         let [_, v] = mean(&run, 200);
+        println!(
+            "mu {friction}: {taken} J/m taken, rest {:e} of {} J/m, momentum {:?}",
+            run.rest(),
+            run.start,
+            run.momentum()
+        );
         assert!(v[1] > -0.15 && v[0] > 1.7, "they have met, and slide: {v:?}");
         let p = run.momentum();
         assert!((p[0] - 10.0).abs() < 1e-13 && (p[1] + 2.5).abs() < 1e-13, "{p:?}");
-        assert!(run.rest().abs() < 1e-3 * run.start, "{} of {}", run.rest(), run.start);
-        assert!(friction == 0.0 && taken == 0.0 || taken > 1.5 * friction, "{taken}");
+        assert!(run.rest().abs() < 7e-4 * run.start, "{} of {}", run.rest(), run.start);
+        let takes = [(0.0, 0.0), (0.05, 0.180), (0.1, 0.346), (0.2, 0.633), (0.4, 1.087)];
+        let takes = takes.iter().find(|(of, _)| *of == friction).expect("a case").1;
+        assert!((taken - takes).abs() < 0.02, "{friction}: {taken}");
         (2.0 - v[0]) / (v[1] + 0.5)
     };
     let without = ratio(0.0);
     for friction in [0.05, 0.1, 0.2, 0.4] {
         let of = (ratio(friction) - without) / friction;
-        assert!((1.0..1.15).contains(&of), "{friction}: {of}");
+        println!("{friction}: {of}");
+        // 1.09 to 1.12 measured.
+        assert!((1.08..1.13).contains(&of), "{friction}: {of}");
     }
+}
+
+/// A block that begins to slide on a floor at 1 m/s.
+fn slid(friction: f64, until: f64) -> (Run<2>, f64) {
+    let text = tough([0.0, -9.81], friction) + FLOOR + &block("block", [0.0, 0.0], [0.1, 0.05], [1.0, 0.0]);
+    let mut run = Run::<2>::of(&text);
+    let taken = rub_on(&mut run, until);
+    (run, taken)
 }
 
 /// v² / (2 mu g) is 85 mm; the rows of particles of block and floor are rough, so it stops a little earlier.
 #[test]
 fn a_block_that_slides_on_a_floor_stops() {
-    let text = tough([0.0, -9.81], 0.6) + FLOOR + &block("block", [0.0, 0.0], [0.1, 0.05], [1.0, 0.0]);
-    let mut run = Run::<2>::of(&text);
-    let taken = rub_on(&mut run, 0.3);
-    let [x, v] = mean(&run, 200);
-    let way = (x[0] - 0.05) / (1.0 / (2.0 * 0.6 * 9.81));
-    assert!((0.85..1.0).contains(&way) && v[0].abs() < 0.05, "{way} {v:?}");
-    // Of the 2.5 J/m that it begins with.
-    assert!(taken > 0.7 * 2.5 && taken < 2.5, "{taken}");
-    // What lies still takes nothing: 5 kg/m are 24.5 mm above the floor in the end.
-    let rest = run.rest() + 5.0 * 9.81 * (x[1] - 0.025);
-    assert!(rest.abs() < 5e-3 * taken, "{rest} of {taken}");
+    for (friction, until, goes) in [(0.6, 0.3, 0.875), (0.3, 0.6, 0.662)] {
+        let (run, taken) = slid(friction, until);
+        let [x, v] = mean(&run, 200);
+        let way = (x[0] - 0.05) / (1.0 / (2.0 * friction * 9.81));
+        // What lies still takes nothing: 5 kg/m are 24.5 mm above the floor in the end.
+        let rest = run.rest() + 5.0 * 9.81 * (x[1] - 0.025);
+        println!("mu {friction}: way {way}, v {v:?}, taken {taken}, rest {rest}");
+        assert!((way - goes).abs() < 0.02 && v[0].abs() < 0.05, "{friction}: {way} {v:?}");
+        // Of the 2.5 J/m that it begins with.
+        assert!((taken - 2.03).abs() < 0.03 && rest.abs() < 4e-3, "{friction}: {taken} {rest}");
+    }
+}
+
+/// The rows of a floor of the block's own spacing brake it without friction, too.
+#[test]
+fn a_rough_floor_brakes_a_block_without_friction() {
+    let (run, taken) = slid(0.0, 0.3);
+    let [_, v] = mean(&run, 200);
+    let brakes = (1.0 - v[0]) / 0.3;
+    println!("{brakes} m/s²");
+    assert!(taken == 0.0 && (brakes - 0.75).abs() < 0.1, "{brakes} {taken}");
 }
 
 /// On a slope below mu it stays where it is, but for the time in which it leans on the floor's particles.
@@ -104,6 +132,7 @@ fn a_block_on_a_slope_below_the_angle_of_friction_stays() {
         mean(&run, 200)[0][0] - 0.05
     };
     let (held, free) = (way(0.6), way(0.0));
+    println!("{held} {free}");
     assert!(held < 2e-4 && free > 0.02, "{held} {free}");
 }
 

@@ -49,31 +49,33 @@ fn pulled(dx: f64, arrangement: &str) -> [f64; 3] {
     [strongest, then, all]
 }
 
-fn bars(dx: f64) {
-    let [of_lattice, ..] = pulled(dx, "");
-    for seed in 1..=3 {
-        let [strength, then, all] = pulled(dx, &irregular(seed));
-        assert!((0.9..1.03).contains(&(strength / of_lattice)), "{dx}, {seed}: {strength} {of_lattice}");
-        assert!((0.9..1.15).contains(&then), "{dx}, {seed}: {then}");
-        assert!((0.95..1.3).contains(&all), "{dx}, {seed}: {all}");
+/// Of the lattice and of three seeds, as measured: nothing here hangs on chance, and a crumb more takes 0.01 and more.
+fn bars(dx: f64, measured: [[f64; 3]; 4]) {
+    for (seed, measured) in measured.into_iter().enumerate() {
+        let arrangement = if seed == 0 { String::new() } else { irregular(seed as u32) };
+        for (found, is) in pulled(dx, &arrangement).into_iter().zip(measured) {
+            assert!((found - is).abs() < 0.01, "{dx}, {seed}: {found} {is}");
+        }
     }
 }
 
 /// Of a lattice the bar has 0.96 of its strength, which is what the clamps' corners leave, and takes 0.99 of G_f A.
 #[test]
 fn an_irregular_bar_has_its_strength_and_takes_its_energy() {
-    bars(0.005);
+    let seeds = [[0.948, 0.945, 1.055], [0.914, 1.036, 1.212], [0.891, 0.964, 1.059]];
+    bars(0.005, [[0.961, 0.989, 1.038], seeds[0], seeds[1], seeds[2]]);
 }
 
 #[test]
 #[ignore = "a minute"]
 fn a_finer_irregular_bar() {
-    bars(0.0025);
+    let seeds = [[0.945, 0.954, 1.042], [0.939, 0.981, 1.065], [0.944, 0.977, 1.130]];
+    bars(0.0025, [[0.952, 0.977, 1.034], seeds[0], seeds[1], seeds[2]]);
 }
 
 #[test]
 fn an_irregular_block_that_is_crushed_on_a_wall_stays_stable() {
-    crush(&irregular(1));
+    crush(&irregular(1), 0.3, [90.9, 144.0, 0.5]);
 }
 
 /// A block of 30 x 30 particles, cut along a line: the area of the cut over the line's length, and what has become
