@@ -68,7 +68,10 @@ impl Row {
             }
             _ => Err("the run did not finish".into()),
         };
-        let of_curve = |metric: &Metric| measure::remark(metric, probes.as_ref()?);
+        let of_curve = |metric: &Metric| {
+            let probes = probes.as_ref()?;
+            measure::left_out(&setting.scene, metric, probes).or_else(|| measure::remark(metric, probes))
+        };
         let choices = setting.choices();
         let physical = physical_keys(&choices).map(sweep::warning);
         let of_curves = metrics.iter().filter_map(of_curve);

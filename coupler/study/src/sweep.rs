@@ -114,8 +114,11 @@ impl Sweep {
         let repeated = study.repeated.iter().map(|[one, other]| {
             format!("{one} makes the scene of {other}, and is not run: no key that matters depends on it")
         });
+        // What a study says of physical keys asks for this.
+        let asks = |text: &String| keys.iter().any(|key| text.ends_with(&warning(key)));
+        let warned = study.warned().into_iter().filter(|text| !asks(text));
         Self {
-            notes: late.chain(repeated).chain(study.warned()).collect(),
+            notes: late.chain(repeated).chain(warned).collect(),
             scene: study.scene.clone(),
             rows: study.rows.iter().map(row).collect(),
             metrics: study.metrics.iter().map(measured).collect(),
