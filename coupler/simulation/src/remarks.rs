@@ -99,7 +99,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     moving::apart(scene, &mut all);
     moving::probes(scene, &mut all);
     let bodies = scene.bodies_of(layout);
-    moving::gauges_at_bodies(scene, layout, &bodies, &mut all);
+    moving::gauges_at_bodies(scene, layout, &bodies, placed, &mut all);
     unheld::sunk(scene, layout, &bodies, &mut all);
     bodies::free(scene, &bodies, &mut all);
     unheld::beside_walls(scene, &bodies, &mut all);
@@ -110,6 +110,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     joints::starts(scene, &mut all);
     joints::still(scene, &mut all);
     joints::far_hinges(scene, &mut all);
+    joints::left_behind(scene, &mut all);
     bodies::held_in_part(scene, &bodies, &mut all);
     bodies::parted(scene, &bodies, &mut all);
     bodies::voids::<D>(scene, &mut all);
@@ -152,6 +153,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     walls::thin(scene, layout, &mut all);
     walls::across(scene, layout, &mut all);
     wall_faces::faces(scene, layout, &mut all);
+    wall_faces::openings::<D>(scene, &mut all);
     corners::corners(scene, layout, &mut all);
     domain::domain(scene, layout, &mut all);
     spills::spills(scene, layout, &mut all);

@@ -4,13 +4,14 @@ use super::shapes::{NOTABLE, length, place};
 use halfstep_scene::{Block, Geometry, Phase, Scene, Shape};
 
 /// What is left of a solid beside a void along a line.
+#[derive(Clone, Copy)]
 struct Left {
     /// Thickness, asked and computed, m.
     thick: [f64; 2],
     at: [f64; 2],
 }
 
-/// Boxes of solids in the plane whose narrowest part beside a void has another thickness than asked for.
+/// Boxes of solids in the plane whose narrowest part beside a void, or an arm, has another thickness than asked for.
 pub(super) fn cuts<const D: usize>(scene: &Scene, all: &mut Vec<String>) {
     for (index, shape) in scene.shapes.iter().enumerate() {
         let rigid = shape.solid.is_some_and(|k| scene.solids[k].rigid().is_some());
@@ -20,7 +21,7 @@ pub(super) fn cuts<const D: usize>(scene: &Scene, all: &mut Vec<String>) {
         }
         let voids = scene.voids.iter().filter(|void| void.before <= index).map(|void| &void.geometry);
         let voids: Vec<&Geometry> = voids.collect();
-        let both = [(0, 1), (1, 0)].map(|axes| narrowest(scene, shape, block, &voids, axes));
+        let both = [(0, 1), (1, 0)].map(|axes| worst(scene, shape, block, &voids, axes));
         for Left { thick: [asked, computed], at } in both.into_iter().flatten() {
             let factor = computed / asked;
             if (factor - 1.0).abs() >= NOTABLE {
@@ -39,8 +40,12 @@ pub(super) fn cuts<const D: usize>(scene: &Scene, all: &mut Vec<String>) {
     }
 }
 
-/// The thinnest part that voids leave of a box along an axis, if it is thinner than half of the box.
-fn narrowest(
+/// Lines on which a part is as thick as on the others: an arm is straight.
+const STRAIGHT: usize = 3;
+
+/// Of the thinnest part that voids leave of a box along an axis and of straight ones, the one that differs most; none
+/// that is thicker than half of the box.
+fn worst(
     scene: &Scene,
     shape: &Shape,
     block: &Block,
@@ -50,36 +55,37 @@ fn narrowest(
     let dx = scene.spacing(shape);
     let count = |a: usize| ((block.max[a] - block.min[a]) / dx).round() as usize;
     let row = |a: usize, k: usize| block.min[a] + (k as f64 + 0.5) * dx;
-    let mut least: Option<Left> = None;
+    let mut all: Vec<Left> = Vec::new();
     for at in (0..count(across)).map(|k| row(across, k)) {
         let mut holes: Vec<[f64; 2]> =
             voids.iter().flat_map(|void| openings(void, along, across, at)).collect();
+        holes.retain(|hole| hole[1] > block.min[along] && hole[0] < block.max[along]);
         holes.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        let mut from = block.min[along];
-        let mut parts = Vec::new();
-        for hole in holes {
-            if hole[1] > block.min[along] && hole[0] < block.max[along] {
-                parts.push([from, hole[0]]);
-                from = from.max(hole[1]);
-            }
-        }
-        if parts.is_empty() {
-            continue;
-        }
-        parts.push([from, block.max[along]]);
-        for [a, b] in parts {
+        let ends = holes.iter().scan(block.min[along], |last, hole| {
+            let from = std::mem::replace(last, last.max(hole[1]));
+            Some([from, hole[0]])
+        });
+        let last = holes.iter().map(|hole| hole[1]).reduce(f64::max).map(|end| [end, block.max[along]]);
+        for [a, b] in ends.chain(last) {
             let asked = b - a;
             let inside = |k: &usize| a < row(along, *k) && row(along, *k) < b;
             let thick = [asked, (0..count(along)).filter(inside).count() as f64 * dx];
-            let is_least = least.as_ref().is_none_or(|least| asked < least.thick[0] * (1.0 - 1e-9));
-            if asked > 1e-6 * dx && asked < 0.5 * (block.max[along] - block.min[along]) && is_least {
+            if asked > 1e-6 * dx && asked < 0.5 * (block.max[along] - block.min[along]) {
                 let mut place = [at; 2];
                 place[along] = 0.5 * (a + b);
-                least = Some(Left { thick, at: place });
+                all.push(Left { thick, at: place });
             }
         }
     }
-    least
+    let alike = |one: &Left, other: &Left| (one.thick[0] - other.thick[0]).abs() < 1e-6 * dx;
+    let least = all.iter().map(|left| left.thick[0]).fold(f64::INFINITY, f64::min);
+    let counts = |left: &Left| {
+        left.thick[0] < least + 1e-6 * dx || all.iter().filter(|other| alike(left, other)).count() >= STRAIGHT
+    };
+    let off = |left: &Left| (left.thick[1] / left.thick[0] - 1.0).abs();
+    let most =
+        all.iter().filter(|left| counts(left)).reduce(|a, b| if off(b) > off(a) + 1e-9 { b } else { a });
+    most.copied()
 }
 
 /// Where a box or a disc that is not turned crosses a line along an axis, m.

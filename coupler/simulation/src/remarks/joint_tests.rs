@@ -141,6 +141,17 @@ fn joints_that_lock() {
 }
 
 #[test]
+fn a_hinge_that_a_turn_leaves_behind() {
+    let turned = |lines: &str| jointed(&[joint("pin", "hinge", FOOT)], lines);
+    let said = "the joint `pin` is where `flap` would be without `rotate` and `translate`, which do not take its `at` along: \
+                it is ";
+    let found = turned("rotate = { angle = 20.0, about = [0.5, 0.17] }");
+    assert!(has(&found, said), "{found:?}");
+    assert!(has(&turned("translate = [0.1, 0.0]"), "along: it is 0.08 m beside it"));
+    assert!(!has(&turned("rotate = { angle = 20.0, about = [0.5, 0.02] }"), "the joint `pin`"));
+}
+
+#[test]
 fn a_hinge_far_from_its_flap() {
     let found = hinged("at = [0.02, 0.5]");
     let said = "the hinge `pin` is 0.494 m away from `flap`, which is 0.3 m long";

@@ -207,6 +207,31 @@ pub(super) fn far_hinges(scene: &Scene, all: &mut Vec<String>) {
     }
 }
 
+/// Hinges and rails at a shape as it would be without what turns and shifts it: that does not take them along.
+pub(super) fn left_behind(scene: &Scene, all: &mut Vec<String>) {
+    for (solid, keys) in rigid(scene) {
+        for joint in &keys.joints {
+            let (JointKind::Hinge { at, .. } | JointKind::Rail { at, .. }) = joint.kind else { continue };
+            let reach = 0.5 * scene.resolution;
+            let near = |geometry: &Geometry| geometry::distance(geometry, &at) <= reach;
+            let own: Vec<&Shape> = shapes(scene, solid, &joint.body).collect();
+            let was = own.iter().find(|shape| match &shape.geometry {
+                Geometry::Moved(moved) => near(&moved.geometry),
+                _ => false,
+            });
+            if let (Some(shape), false) = (was, own.iter().any(|shape| near(&shape.geometry))) {
+                all.push(format!(
+                    "the joint `{}` is where `{}` would be without `rotate` and `translate`, which do not take its \
+                     `at` along: it is {} m beside it",
+                    joint.name,
+                    shape.name,
+                    length(own.iter().map(|s| geometry::distance(&s.geometry, &at)).fold(f64::INFINITY, f64::min))
+                ));
+            }
+        }
+    }
+}
+
 /// The shortest and the longest side of a box.
 fn sides(block: &Block, dimension: usize) -> [f64; 2] {
     let sides = (0..dimension).map(|d| block.max[d] - block.min[d]);

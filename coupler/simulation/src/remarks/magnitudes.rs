@@ -155,6 +155,16 @@ pub(super) fn pivots(scene: &Scene, all: &mut Vec<String>) {
 /// Motions that swing further than a quarter of a turn, or lead far away: their units are hardly those meant.
 pub(super) fn motions(scene: &Scene, all: &mut Vec<String>) {
     let Some((_, extent)) = extent(scene) else { return };
+    if let Some(frame) = &scene.frame {
+        let angle = frame.motion.swings_by();
+        if angle > SWING[1] && !units::has_degrees(&frame.motion) {
+            all.push(format!(
+                "the `[frame]` swings by {} rad, {:.0} degrees: angles are in radians",
+                angle as f32,
+                angle.to_degrees()
+            ));
+        }
+    }
     let tanks = moving::tanks(scene);
     for shape in &scene.shapes {
         let Some(motion) = &shape.motion else { continue };

@@ -26,6 +26,18 @@ fn a_tank_that_rolls_by_degrees() {
         |angle: f64| moved(&format!("{{ angle = {angle}, period = 9.0, pivot = [0.2, 0.0], ramp = 0.5 }}"));
     assert!(has(&rolls(1.5), "the motion of `tank` swings by 1.5 rad, 86 degrees: angles are in radians"));
     assert!(!has(&rolls(0.7), "radians"));
+    let frame = |angle: f64| {
+        let keys = format!(
+            "[frame]\nmotion = {{ angle = {angle}, period = 9.0, pivot = [0.2, 0.0], ramp = 0.5 }}\n"
+        );
+        wet(&[TANK, WATER, &keys])
+    };
+    assert!(
+        has(&frame(4.0), "the `[frame]` swings by 4 rad, 229 degrees: angles are in radians"),
+        "{:?}",
+        frame(4.0)
+    );
+    assert!(!has(&frame(0.1), "radians"));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Remarks on tanks that move: clamps, joints and walls in them that do not go along.
 
-use super::shapes::{length, place};
+use super::shapes::{Placed, length, place};
 use super::water::INSTANTS;
 use super::{meet, near, overlap};
 use halfstep_scene::geometry::{self, Cells, Layout, SolidPoint};
@@ -222,29 +222,55 @@ pub(super) fn walls(scene: &Scene, all: &mut Vec<String>) {
     }
 }
 
-/// Gauges of pressure that are fixed in space at a body which nothing holds.
+/// Gauges of pressure that are fixed in space beside what moves: bodies, walls that are no tanks, plates that bend.
 pub(super) fn gauges_at_bodies<const D: usize>(
     scene: &Scene,
     layout: &Layout<D>,
     bodies: &[Body],
+    placed: &[Placed],
     all: &mut Vec<String>,
 ) {
     let reach = 1.5 * scene.resolution;
-    let mut free = Cells::new(reach);
-    let is_free = |shape: usize| bodies.iter().any(|body| !body.held && body.shapes.contains(&shape));
-    let own = layout.solid.iter().filter(|p| is_free(p.body as usize));
-    own.for_each(|p| free.add(&p.position, (p.position, p.body as usize)));
+    let ways: Vec<Option<String>> =
+        (0..scene.shapes.len()).map(|k| way_of(scene, bodies, placed, k)).collect();
+    let mut moving = Cells::new(reach);
+    let solids = layout.solid.iter().filter(|p| !p.clamped).map(|p| (p.position, p.body as usize));
+    let walls = layout.wall.iter().map(|p| (p.position, p.shape as usize));
+    let own = solids.chain(walls).filter(|(_, shape)| ways[*shape].is_some());
+    own.for_each(|(x, shape)| moving.add(&x, (x, shape)));
     for probe in &scene.probes {
         let ProbeKind::Pressure { at, shape: None, .. } = &probe.kind else { continue };
         let here: [f64; D] = narrow(*at);
-        let Some((_, body)) = free.around(&here).find(|(x, _)| near(x, &here, reach)) else { continue };
-        let name = &scene.shapes[*body].name;
+        let Some((_, shape)) = moving.around(&here).find(|(x, _)| near(x, &here, reach)) else { continue };
+        let name = &scene.shapes[*shape].name;
         all.push(format!(
-            "the probe `{}` at {} is fixed in space beside `{name}`, which moves freely (`shape = \"{name}\"` takes it \
-             along)",
+            "the probe `{}` at {} is fixed in space beside `{name}`, which {} (`shape = \"{name}\"` takes it along)",
             probe.name,
-            place(&at[..D])
+            place(&at[..D]),
+            ways[*shape].as_deref().unwrap_or_default()
         ));
+    }
+}
+
+/// How a shape moves away from a place beside it; `None` where it stays.
+fn way_of(scene: &Scene, bodies: &[Body], placed: &[Placed], index: usize) -> Option<String> {
+    let shape = &scene.shapes[index];
+    let is_free = || bodies.iter().any(|body| !body.held && body.shapes.contains(&index));
+    let rigid = shape.solid.and_then(|solid| scene.solids[solid].rigid());
+    let fixed = |joint: &Joint| joint.body == shape.body() && matches!(joint.kind, JointKind::Fixed);
+    match (shape.phase, rigid) {
+        (Phase::Fluid, _) => None,
+        (Phase::Wall, _) => {
+            let is_tank = || tanks(scene).iter().any(|(tank, _)| tank.name == shape.name);
+            (shape.motion.is_some() && !is_tank()).then(|| "moves".to_owned())
+        }
+        (Phase::Solid, _) if is_free() => Some("moves freely".to_owned()),
+        (Phase::Solid, Some(keys)) if keys.joints.iter().any(fixed) => None,
+        (Phase::Solid, Some(_)) => Some("moves".to_owned()),
+        (Phase::Solid, None) => {
+            let bends = placed[index].bends.as_ref().filter(|bends| bends.way[0] > 0.5 * scene.resolution)?;
+            Some(format!("bends by about {} m under {}", length(bends.way[0]), bends.under))
+        }
     }
 }
 

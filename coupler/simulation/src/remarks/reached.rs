@@ -106,14 +106,20 @@ pub(super) fn reached<const D: usize>(
 /// Whether the fluid can come above the level that it begins with: something pushes it, or it falls. `level` are the
 /// places that it reaches without rising.
 pub(super) fn is_driven<const D: usize>(scene: &Scene, layout: &Layout<D>, level: &Places<D>) -> bool {
+    is_pushed(scene, layout) || falls(scene, layout, level)
+}
+
+/// Whether something moves the fluid, or it begins with a velocity.
+pub(super) fn is_pushed<const D: usize>(scene: &Scene, layout: &Layout<D>) -> bool {
     let pushes = |phase: Phase| scene.shapes.iter().any(|s| s.phase == phase && s.motion.is_some());
     let moves = |v: &[f64; D]| v.iter().any(|v| *v != 0.0);
     if scene.frame.is_some() || pushes(Phase::Wall) || pushes(Phase::Solid) {
         return true;
     }
-    if layout.fluid.iter().any(|p| moves(&p.velocity)) || layout.solid.iter().any(|p| moves(&p.velocity)) {
-        return true;
-    }
+    layout.fluid.iter().any(|p| moves(&p.velocity)) || layout.solid.iter().any(|p| moves(&p.velocity))
+}
+
+fn falls<const D: usize>(scene: &Scene, layout: &Layout<D>, level: &Places<D>) -> bool {
     // Solids may keep fluid from falling, and stand where none can come.
     let dx = scene.resolution;
     let own: Places<D> = layout.fluid.iter().map(|p| cell(&p.position, dx)).collect();

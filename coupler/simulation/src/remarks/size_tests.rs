@@ -18,7 +18,44 @@ fn a_weir_of_part_of_a_row() {
     assert!(has(&weir(0.104, 0.55), said), "{:?}", weir(0.104, 0.55));
     assert!(has(&weir(0.1, 0.556), "the right side of `weir` is at 0.556 m"));
     assert!(!has(&weir(0.1005, 0.55), "as computed"), "a twentieth of a spacing");
-    assert!(!has(&weir(0.304, 0.55), "the top of"), "higher than the water");
+    assert!(!has(&weir(0.304, 0.55), "the top of"), "higher than the water that falls");
+    let wave = "box = { min = [-0.04, 0.0], max = [0.0, 0.4] }\nmotion = { amplitude = [0.05, 0.0], period = 2.0, ramp = 0.5 }";
+    let crest = wall("weir", "box = { min = [0.3, 0.0], max = [0.35, 0.304] }");
+    let driven = beside(&(wall("piston", wave) + &crest));
+    let said =
+        "the top of `weir` is at 0.304 m in the scene and at 0.3 m as computed, and fluid may come there";
+    assert!(has(&driven, said), "{driven:?}");
+    let repeated = wall(
+        "bars",
+        "box = { min = [0.5, 0.0], max = [0.536, 0.1] }\nrepeat = { count = 3, step = [0.1, 0.0] }",
+    );
+    let found = beside(&repeated);
+    assert!(
+        has(&found, "the right side of `bars` is at 0.536 m in the scene and at 0.54 m as computed"),
+        "{found:?}"
+    );
+    assert_eq!(found.iter().filter(|text| text.contains("as computed")).count(), 1, "{found:?}");
+}
+
+#[test]
+fn a_top_that_still_water_does_not_come_to() {
+    let weir = wall("weir", "box = { min = [0.5, 0.0], max = [0.55, 0.304] }");
+    let still = of(&format!("{weir}{}{}", basin(), water([0.0, 0.5, 0.2])));
+    assert!(!has(&still, "the top of"), "{still:?}");
+}
+
+#[test]
+fn an_orifice_of_part_of_a_row() {
+    let with = |from: f64, to: f64| {
+        let void = format!(
+            "[[shape]]\nname = \"orifice\"\nphase = \"void\"\nbox = {{ min = [0.2, {from}], max = [0.6, {to}] }}\n"
+        );
+        beside(&(void + &wall("curtain", "box = { min = [0.3, 0.0], max = [0.36, 0.3] }")))
+    };
+    let said = "the opening that `orifice` cuts into `curtain` at [0.4, 0.07] is 0.036 m high in the scene and 0.04 m of \
+                whole rows as computed (the resolution is 0.01)";
+    assert!(has(&with(0.052, 0.088), said), "{:?}", with(0.052, 0.088));
+    assert!(!has(&with(0.05, 0.09), "the opening that"));
 }
 
 #[test]
@@ -53,6 +90,9 @@ fn an_arm_of_part_of_a_row() {
                 computed: 0.79 times the bending stiffness (its spacing is 0.01)";
     assert!(has(&beside(0.554), said), "{:?}", beside(0.554));
     assert!(!has(&beside(0.55), "beside a void"));
+    // The narrower arm has whole rows, the wider one not.
+    let two = plate("box = { min = [0.55, 0.05], max = [0.627, 0.2] }");
+    assert!(has(&two, "`plate` is 0.073 m thick at [0.6635, 0.055] beside a void"), "{two:?}");
     let hole = |radius: f64| plate(&format!("disc = {{ center = [0.6, 0.1], radius = {radius} }}"));
     assert!(has(&hole(0.066), "beside a void in the scene"), "{:?}", hole(0.066));
     let repeated =
@@ -98,4 +138,36 @@ fn a_paddle_that_turns_into_a_block() {
     assert!(has(&turning(-1.0, 0.05), said), "{:?}", turning(-1.0, 0.05));
     assert!(has(&turning(-1.0, 0.05), "s on: walls do not stop each other"));
     assert!(!has(&turning(-0.1, 0.05), "turns into"));
+}
+
+#[test]
+fn gauges_beside_what_moves() {
+    let gauge = |x: f64, keys: &str| {
+        format!("[[probe]]\nname = \"p\"\nkind = \"pressure\"\nat = [{x}, 0.05]\n{keys}")
+    };
+    let piston = |probe: String| {
+        let motion = "motion = { amplitude = [0.05, 0.0], period = 2.0, ramp = 0.5 }";
+        beside(
+            &(wall("piston", &format!("box = {{ min = [0.3, 0.0], max = [0.34, 0.3] }}\n{motion}")) + &probe),
+        )
+    };
+    let said = "the probe `p` at [0.295, 0.05] is fixed in space beside `piston`, which moves (`shape = \"piston\"` takes \
+                it along)";
+    assert!(has(&piston(gauge(0.295, "")), said), "{:?}", piston(gauge(0.295, "")));
+    assert!(!has(&piston(gauge(0.1, "")), "fixed in space"));
+    assert!(!has(&piston(gauge(0.295, "shape = \"piston\"\n")), "fixed in space"));
+    let plate = |modulus: f64| {
+        beside(&format!(
+            "[solid]\ndensity = 1100.0\nyoungs_modulus = {modulus}\npoissons_ratio = 0.4\n[[shape]]\nname = \"plate\"\n\
+             phase = \"solid\"\nbox = {{ min = [0.3, -0.03], max = [0.34, 0.25] }}\n\
+             clamp = {{ min = [0.3, -0.03], max = [0.34, 0.0] }}\n{}",
+            gauge(0.295, "")
+        ))
+    };
+    let bends = plate(1e6);
+    assert!(
+        has(&bends, "the probe `p` at [0.295, 0.05] is fixed in space beside `plate`, which bends by about "),
+        "{bends:?}"
+    );
+    assert!(!has(&plate(1e10), "fixed in space"), "{:?}", plate(1e10));
 }
