@@ -1,6 +1,7 @@
 //! The tables of docs/protocol.md say what the program does.
 
 use halfstep_link::{LinkConfig, Participant, ProcessLink, Processes, Slot};
+use halfstep_tests::conformance::link::raw::node;
 use halfstep_tests::conformance::link::{Run, eventually};
 use halfstep_tests::python::python;
 use halfstep_wire::Name;
@@ -241,18 +242,6 @@ fn places(heading: &str, service: &str) -> Vec<usize> {
     row[1..].iter().map(|cell| cell.split(" + ").map(number).sum()).collect()
 }
 
-/// Enters a run by the settings that the page tells.
-fn node(config: &LinkConfig) -> Node<Processes> {
-    let mut transport = Config::default();
-    transport.global.prefix = FileName::new(config.prefix.as_bytes()).unwrap();
-    transport.global.set_root_path(&Path::new(config.root.to_str().unwrap().as_bytes()).unwrap());
-    NodeBuilder::new()
-        .signal_handling_mode(SignalHandlingMode::Disabled)
-        .config(&transport)
-        .create::<Processes>()
-        .unwrap()
-}
-
 /// The attributes that the page tells, with this run's values.
 fn attributes(config: &LinkConfig) -> AttributeVerifier {
     let variables = config.to_env();
@@ -310,7 +299,7 @@ fn services() {
         threads.spawn(|| ProcessLink::<Processes>::open(&run, Name::SOLID, flag).map(drop).unwrap_err());
         eventually(20.0, "the solids' ports", || run.leftovers().iter().any(|name| name.ends_with(".data")));
         {
-            let (node, attributes) = (node(&run), attributes(&run));
+            let (node, attributes) = (node::<Processes>(&run), attributes(&run));
             let state = check_channel::<StateRecord, StateHeader>;
             state(&node, &attributes, "halfstep/fluid/state", "halfstep/fluid/state");
             state(&node, &attributes, "halfstep/SOLID/state", "halfstep/a/state");

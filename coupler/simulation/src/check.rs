@@ -169,7 +169,7 @@ fn check_in<const D: usize>(scene: &Scene, isa: Isa) -> Check {
     warnings.extend(limits::too_soft(scene, &contact));
     let steps = (scene.end_time / time_step).ceil() as u64;
     let expected_seconds = expected_seconds(built, time_step, scene.end_time);
-    warnings.extend(limits::too_much(scene, expected_seconds, steps, &limits));
+    warnings.extend(limits::takes_days(scene, expected_seconds, steps, &limits));
     warnings.extend(limits::too_many_frames(scene, frames, disk));
     Check {
         scene: scene.name.clone(),

@@ -14,6 +14,7 @@ pub mod ladder;
 pub mod measure;
 pub mod pareto;
 pub mod pictures;
+pub mod reference;
 pub mod report;
 pub mod result;
 pub mod runs;

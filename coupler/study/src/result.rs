@@ -3,6 +3,7 @@
 use super::convergence::{Convergence, richardson};
 use super::ladder::Setting;
 use super::measure::{self, Unmeasured};
+use super::reference;
 use super::{pareto, sweep};
 use halfstep_output::run_json::{EffectReport, Roles, RunStatus};
 use halfstep_output::{RunReport, read_probes};
@@ -70,7 +71,7 @@ impl Row {
         };
         let of_curve = |metric: &Metric| {
             let probes = probes.as_ref()?;
-            measure::left_out(&setting.scene, metric, probes).or_else(|| measure::remark(metric, probes))
+            reference::left_out(&setting.scene, metric, probes).or_else(|| measure::remark(metric, probes))
         };
         let choices = setting.choices();
         let physical = physical_keys(&choices).map(sweep::warning);
@@ -201,7 +202,7 @@ impl MetricResult {
         against: Option<Against>,
     ) -> Self {
         let metric = &metrics[index];
-        let target = measure::target(scene, metric);
+        let target = reference::target(scene, metric);
         let probe = metric.probe.split('.').next().unwrap_or_default();
         let of_curve = scene.probes.iter().find(|p| p.name == probe);
         let of_curve = of_curve.map_or("", |p| p.kind.components(scene.dimension).1);

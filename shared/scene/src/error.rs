@@ -193,16 +193,14 @@ impl Report {
             changed.filter(|(o, _)| self.sources[o.source].0.is_override).max_by_key(|(o, _)| o.source);
         let own = root.origin_of(key);
         let reason = reason.into();
-        match last {
+        let (key, origin) = match last {
             Some((origin, other)) if origin.source > own.source => {
                 let inside = other.strip_prefix(key).is_some_and(|rest| rest.starts_with('.'));
-                let key = if inside { other } else { key };
-                self.note(key, origin, root.child_at(key).and_then(|node| self.in_force(node)), reason);
+                (if inside { other } else { key }, origin)
             }
-            _ => {
-                self.note(key, own, root.child_at(key).and_then(|node| self.in_force(node)), reason);
-            }
-        }
+            _ => (key, own),
+        };
+        self.note(key, origin, root.child_at(key).and_then(|node| self.in_force(node)), reason);
     }
 
     /// A value in force: as it was written; where overrides changed a part of it, and below a [header], each part as

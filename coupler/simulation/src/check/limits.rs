@@ -20,7 +20,7 @@ pub(super) fn too_long(scene: &Scene, limits: &[(String, f64)]) -> Vec<String> {
 }
 
 /// A run of more than a day.
-pub(super) fn too_much(
+pub(super) fn takes_days(
     scene: &Scene,
     seconds: Option<f64>,
     steps: u64,

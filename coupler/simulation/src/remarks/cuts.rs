@@ -77,14 +77,11 @@ fn worst(
             }
         }
     }
-    let alike = |one: &Left, other: &Left| (one.thick[0] - other.thick[0]).abs() < 1e-6 * dx;
-    let least = all.iter().map(|left| left.thick[0]).fold(f64::INFINITY, f64::min);
-    let counts = |left: &Left| {
-        left.thick[0] < least + 1e-6 * dx || all.iter().filter(|other| alike(left, other)).count() >= STRAIGHT
-    };
+    all.sort_by(|a, b| a.thick[0].total_cmp(&b.thick[0]));
+    let alike = all.chunk_by(|one, other| other.thick[0] - one.thick[0] < 1e-6 * dx);
+    let counts = alike.enumerate().filter(|(k, lines)| *k == 0 || lines.len() >= STRAIGHT);
     let off = |left: &Left| (left.thick[1] / left.thick[0] - 1.0).abs();
-    let most =
-        all.iter().filter(|left| counts(left)).reduce(|a, b| if off(b) > off(a) + 1e-9 { b } else { a });
+    let most = counts.flat_map(|(_, lines)| lines).reduce(|a, b| if off(b) > off(a) + 1e-9 { b } else { a });
     most.copied()
 }
 

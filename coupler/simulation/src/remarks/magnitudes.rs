@@ -152,33 +152,29 @@ pub(super) fn pivots(scene: &Scene, all: &mut Vec<String>) {
     }
 }
 
+/// An angle beyond a limit, rad. Of a column in degrees more is said.
+fn swings(what: &str, motion: &Motion, limit: f64, all: &mut Vec<String>) {
+    let angle = motion.swings_by();
+    if angle > limit && !units::has_degrees(motion) {
+        all.push(format!(
+            "{what} swings by {} rad, {:.0} degrees: angles are in radians",
+            angle as f32,
+            angle.to_degrees()
+        ));
+    }
+}
+
 /// Motions that swing further than a quarter of a turn, or lead far away: their units are hardly those meant.
 pub(super) fn motions(scene: &Scene, all: &mut Vec<String>) {
     let Some((_, extent)) = extent(scene) else { return };
     if let Some(frame) = &scene.frame {
-        let angle = frame.motion.swings_by();
-        if angle > SWING[1] && !units::has_degrees(&frame.motion) {
-            all.push(format!(
-                "the `[frame]` swings by {} rad, {:.0} degrees: angles are in radians",
-                angle as f32,
-                angle.to_degrees()
-            ));
-        }
+        swings("the `[frame]`", &frame.motion, SWING[1], all);
     }
     let tanks = moving::tanks(scene);
     for shape in &scene.shapes {
         let Some(motion) = &shape.motion else { continue };
-        let angle = motion.swings_by();
         let is_tank = tanks.iter().any(|(tank, _)| tank.name == shape.name);
-        // Of a column in degrees more is said.
-        if angle > SWING[usize::from(is_tank)] && !units::has_degrees(motion) {
-            all.push(format!(
-                "the motion of `{}` swings by {} rad, {:.0} degrees: angles are in radians",
-                shape.name,
-                angle as f32,
-                angle.to_degrees()
-            ));
-        }
+        swings(&format!("the motion of `{}`", shape.name), motion, SWING[usize::from(is_tank)], all);
         // What goes on at a rate goes away: a gate for instance.
         if motion.is_steady() {
             continue;

@@ -230,22 +230,31 @@ pub(super) fn gauges_at_bodies<const D: usize>(
     placed: &[Placed],
     all: &mut Vec<String>,
 ) {
+    let gauges = scene.probes.iter().filter_map(|probe| match &probe.kind {
+        ProbeKind::Pressure { at, shape: None, .. } => Some((&probe.name, at)),
+        _ => None,
+    });
+    let gauges: Vec<_> = gauges.collect();
+    if gauges.is_empty() {
+        return;
+    }
     let reach = 1.5 * scene.resolution;
-    let ways: Vec<Option<String>> =
-        (0..scene.shapes.len()).map(|k| way_of(scene, bodies, placed, k)).collect();
+    let tanks = tanks(scene);
+    let is_tank = |shape: &Shape| tanks.iter().any(|(tank, _)| tank.name == shape.name);
+    let ways: Vec<Option<String>> = (0..scene.shapes.len())
+        .map(|k| if is_tank(&scene.shapes[k]) { None } else { way_of(scene, bodies, placed, k) })
+        .collect();
     let mut moving = Cells::new(reach);
     let solids = layout.solid.iter().filter(|p| !p.clamped).map(|p| (p.position, p.body as usize));
     let walls = layout.wall.iter().map(|p| (p.position, p.shape as usize));
     let own = solids.chain(walls).filter(|(_, shape)| ways[*shape].is_some());
     own.for_each(|(x, shape)| moving.add(&x, (x, shape)));
-    for probe in &scene.probes {
-        let ProbeKind::Pressure { at, shape: None, .. } = &probe.kind else { continue };
+    for (gauge, at) in gauges {
         let here: [f64; D] = narrow(*at);
         let Some((_, shape)) = moving.around(&here).find(|(x, _)| near(x, &here, reach)) else { continue };
         let name = &scene.shapes[*shape].name;
         all.push(format!(
-            "the probe `{}` at {} is fixed in space beside `{name}`, which {} (`shape = \"{name}\"` takes it along)",
-            probe.name,
+            "the probe `{gauge}` at {} is fixed in space beside `{name}`, which {} (`shape = \"{name}\"` takes it along)",
             place(&at[..D]),
             ways[*shape].as_deref().unwrap_or_default()
         ));
@@ -260,10 +269,7 @@ fn way_of(scene: &Scene, bodies: &[Body], placed: &[Placed], index: usize) -> Op
     let fixed = |joint: &Joint| joint.body == shape.body() && matches!(joint.kind, JointKind::Fixed);
     match (shape.phase, rigid) {
         (Phase::Fluid, _) => None,
-        (Phase::Wall, _) => {
-            let is_tank = || tanks(scene).iter().any(|(tank, _)| tank.name == shape.name);
-            (shape.motion.is_some() && !is_tank()).then(|| "moves".to_owned())
-        }
+        (Phase::Wall, _) => shape.motion.as_ref().map(|_| "moves".to_owned()),
         (Phase::Solid, _) if is_free() => Some("moves freely".to_owned()),
         (Phase::Solid, Some(keys)) if keys.joints.iter().any(fixed) => None,
         (Phase::Solid, Some(_)) => Some("moves".to_owned()),

@@ -19,7 +19,8 @@ fn a_weir_of_part_of_a_row() {
     assert!(has(&weir(0.1, 0.556), "the right side of `weir` is at 0.556 m"));
     assert!(!has(&weir(0.1005, 0.55), "as computed"), "a twentieth of a spacing");
     assert!(!has(&weir(0.304, 0.55), "the top of"), "higher than the water that falls");
-    let wave = "box = { min = [-0.04, 0.0], max = [0.0, 0.4] }\nmotion = { amplitude = [0.05, 0.0], period = 2.0, ramp = 0.5 }";
+    let wave = "box = { min = [-0.04, 0.0], max = [0.0, 0.4] }\nmotion = { amplitude = [0.05, 0.0], period = 2.0, \
+                ramp = 0.5 }";
     let crest = wall("weir", "box = { min = [0.3, 0.0], max = [0.35, 0.304] }");
     let driven = beside(&(wall("piston", wave) + &crest));
     let said =
@@ -52,7 +53,8 @@ fn an_orifice_of_part_of_a_row() {
         );
         beside(&(void + &wall("curtain", "box = { min = [0.3, 0.0], max = [0.36, 0.3] }")))
     };
-    let said = "the opening that `orifice` cuts into `curtain` at [0.4, 0.07] is 0.036 m high in the scene and 0.04 m of \
+    let said = "the opening that `orifice` cuts into `curtain` at [0.4, 0.07] is 0.036 m high in the scene and 0.04 \
+                m of \
                 whole rows as computed (the resolution is 0.01)";
     assert!(has(&with(0.052, 0.088), said), "{:?}", with(0.052, 0.088));
     assert!(!has(&with(0.05, 0.09), "the opening that"));
@@ -80,7 +82,8 @@ fn a_floor_below_its_water() {
 fn an_arm_of_part_of_a_row() {
     let plate = |void: &str| {
         let void = format!("[[shape]]\nname = \"cut\"\nphase = \"void\"\n{void}\n");
-        let solid = "[solid]\ndensity = 1100.0\nyoungs_modulus = 6e6\npoissons_ratio = 0.4\n[[shape]]\nname = \"plate\"\n\
+        let solid = "[solid]\ndensity = 1100.0\nyoungs_modulus = 6e6\npoissons_ratio = 0.4\n[[shape]]\nname = \
+                     \"plate\"\n\
                      phase = \"solid\"\nbox = { min = [0.5, 0.0], max = [0.7, 0.2] }\n\
                      clamp = { min = [0.5, 0.0], max = [0.7, 0.02] }\n";
         of(&format!("{void}{solid}{}{}", basin(), water([0.0, 0.3, 0.2])))
@@ -110,7 +113,8 @@ fn a_sharp_corner() {
             wall(
                 "pit",
                 &format!(
-                    "polygon = [[0.0, 0.0], [{0}, 0.5], [0.4, 0.5], [0.4, -0.2], [-0.4, -0.2], [-0.4, 0.5], [-{0}, 0.5]]",
+                    "polygon = [[0.0, 0.0], [{0}, 0.5], [0.4, 0.5], [0.4, -0.2], [-0.4, -0.2], [-0.4, 0.5], [-{0}, \
+                     0.5]]",
                     half * 0.5
                 )
             ),
@@ -151,7 +155,8 @@ fn gauges_beside_what_moves() {
             &(wall("piston", &format!("box = {{ min = [0.3, 0.0], max = [0.34, 0.3] }}\n{motion}")) + &probe),
         )
     };
-    let said = "the probe `p` at [0.295, 0.05] is fixed in space beside `piston`, which moves (`shape = \"piston\"` takes \
+    let said = "the probe `p` at [0.295, 0.05] is fixed in space beside `piston`, which moves (`shape = \"piston\"` \
+                takes \
                 it along)";
     assert!(has(&piston(gauge(0.295, "")), said), "{:?}", piston(gauge(0.295, "")));
     assert!(!has(&piston(gauge(0.1, "")), "fixed in space"));

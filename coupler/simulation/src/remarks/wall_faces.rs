@@ -4,6 +4,7 @@ use super::reached::{Matter, Places, is_pushed, reached};
 use super::shapes::{around_copy, length, place};
 use halfstep_scene::geometry::{Layout, cell};
 use halfstep_scene::{Block, Geometry, Lattice, Phase, Scene, Shape};
+use std::cell::LazyCell;
 
 /// Distance of a face from where it is asked for that is remarked, in spacings.
 const NOTABLE: f64 = 0.1;
@@ -55,15 +56,17 @@ pub(super) fn faces<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut
     }
     let walls = Matter::of_walls(scene, layout);
     let level = reached(scene, layout, &walls, false);
-    let above = is_pushed(scene, layout).then(|| reached(scene, layout, &walls, true));
+    let above = LazyCell::new(|| is_pushed(scene, layout).then(|| reached(scene, layout, &walls, true)));
     let mut told: Vec<(usize, usize)> = Vec::new();
     for face in off {
-        let upper =
-            -scene.gravity[face.axis] > 0.5 * scene.gravity_magnitude() && scene.gravity_magnitude() > 0.0;
+        if told.contains(&(face.shape, face.axis)) {
+            continue;
+        }
+        let upper = -scene.gravity[face.axis] > 0.5 * scene.gravity_magnitude();
         let still = is_wet(scene, layout, &walls, &face, &level);
         let later =
             || upper && above.as_ref().is_some_and(|above| is_wet(scene, layout, &walls, &face, above));
-        if told.contains(&(face.shape, face.axis)) || !(still || later()) {
+        if !(still || later()) {
             continue;
         }
         told.push((face.shape, face.axis));
