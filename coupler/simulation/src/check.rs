@@ -240,6 +240,7 @@ fn expected_seconds(roles: Vec<Box<dyn halfstep_role::role::Role>>, dt: f64, end
 fn duration(seconds: f64) -> String {
     let hour = 3600.0;
     match seconds {
+        s if s < 10.0 => format!("{s:.1} s"),
         s if s < 600.0 => format!("{s:.0} s"),
         s if s < 2.0 * hour => format!("{:.0} min", s / 60.0),
         s if s < 10.0 * DAY => format!("{:.0} h", s / hour),

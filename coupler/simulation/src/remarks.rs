@@ -98,6 +98,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     moving::forgotten(scene, &mut all);
     moving::apart(scene, &mut all);
     moving::probes(scene, &mut all);
+    moving::displacements(scene, &mut all);
     let bodies = scene.bodies_of(layout);
     moving::gauges_at_bodies(scene, layout, &bodies, placed, &mut all);
     unheld::sunk(scene, layout, &bodies, &mut all);
@@ -142,7 +143,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     clamp_faces::sections(scene, layout, &mut all);
     shapes::sizes(scene, placed, &mut all);
     shapes::free_lengths(scene, placed, &mut all);
-    cuts::cuts::<D>(scene, &mut all);
+    cuts::cuts(scene, placed, &mut all);
     nodal::mass(scene, placed, &mut all);
     nodal::touching(scene, layout, &bodies, &mut all);
     lost::overlaps::<D>(scene, placed, &mut all);
@@ -167,10 +168,12 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     water::outside(scene, layout, &mut all);
     water::stacked(scene, layout, &mut all);
     enclosed::enclosed(scene, layout, &mut all);
+    enclosed::in_walls(scene, layout, &mut all);
     settings::background_pressure(scene, layout, &mut all);
     water::expected_speed(scene, &mut all);
     water::wave_makers(scene, &mut all);
     makers::makers(scene, &mut all);
+    makers::windows(scene, &mut all);
     fields::fields(scene, layout, &mut all);
     fields::steps(scene, layout, &mut all);
     fields::unpressed(scene, layout, &mut all);
@@ -212,6 +215,8 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     all
 }
 
+#[cfg(test)]
+mod angle_tests;
 #[cfg(test)]
 mod beam_tests;
 #[cfg(test)]

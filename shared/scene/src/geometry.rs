@@ -27,6 +27,7 @@ mod plate;
 mod points;
 mod polygon;
 mod region;
+mod sections;
 mod surface;
 #[cfg(test)]
 mod tests;
@@ -55,6 +56,7 @@ pub use polygon::twice_area;
 pub use polygon::{MAX_CORNERS, Polygon};
 use region::{Region, voids_before};
 pub use region::{Regions, void_meets};
+pub use sections::{Section, left_by_voids, sections};
 pub use surface::Surface;
 
 /// Relative tolerance of every comparison of lengths, in spacings.

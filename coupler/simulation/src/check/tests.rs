@@ -73,7 +73,7 @@ fn a_fixed_step_above_a_limit() {
 fn a_time_has_a_unit_that_suits_it() {
     assert_eq!(
         [2.4, 599.0, 900.0, 306_695.0, 2e6].map(duration),
-        ["2 s", "599 s", "15 min", "85 h", "23 days"]
+        ["2.4 s", "599 s", "15 min", "85 h", "23 days"]
     );
     let said = two_blocks("").to_string();
     assert!(said.contains(" steps, one thread a role ("), "{said}");

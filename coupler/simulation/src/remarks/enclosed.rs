@@ -1,9 +1,10 @@
-//! Remarks on fluid inside of solids: a hull that an author thinks dry begins full, because a box of fluid leaves out
-//! only the places that the solid itself has.
+//! Remarks on fluid inside of solids and walls: a hull that an author thinks dry begins full, because a box of fluid
+//! leaves out only the places that the hull itself has.
 
 use super::{meet, near};
-use halfstep_scene::geometry::{self, Cells, FluidPoint, Layout, SolidPoint};
-use halfstep_scene::{Phase, Scene};
+use halfstep_scene::geometry::{self, Cells, FluidPoint, Layout, Moved, Polygon, SolidPoint};
+use halfstep_scene::{Geometry, Phase, Scene, Shape};
+use halfstep_wire::wide;
 use std::collections::BTreeSet;
 
 /// Fluid of a shape that solids part from the rest of it, where it touches no wall.
@@ -62,6 +63,45 @@ pub(super) fn enclosed<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &
                 shape.name
             ));
         }
+    }
+}
+
+/// Fluid in the hollow of a wall, a ring or a polygon with a hole, that is of a shape which is outside of it, too.
+pub(super) fn in_walls<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
+    let hollow = |shape: &&Shape| match shape.geometry.unmoved() {
+        Geometry::Ring { .. } => true,
+        Geometry::Polygon(polygon) => !polygon.holes.is_empty(),
+        _ => false,
+    };
+    for wall in scene.shapes.iter().filter(|s| s.phase == Phase::Wall).filter(hollow) {
+        let filled = without_holes(&wall.geometry);
+        let inside = |p: &FluidPoint<D>| geometry::distance(&filled, &wide(p.position)) == 0.0;
+        for (index, fluid) in scene.shapes.iter().enumerate().filter(|(_, s)| s.phase == Phase::Fluid) {
+            let own = layout.fluid.iter().filter(|p| p.shape as usize == index);
+            let (count, within) =
+                own.fold((0, 0), |(all, within), p| (all + 1, within + u32::from(inside(p))));
+            if 0 < within && within < count {
+                all.push(format!(
+                    "{within} of the particles of `{}` begin in the hollow of `{}`, and what they do to it is in its \
+                     forces (a void listed before `{}` leaves them out)",
+                    fluid.name, wall.name, fluid.name
+                ));
+            }
+        }
+    }
+}
+
+/// What fills the hollows, too.
+fn without_holes(geometry: &Geometry) -> Geometry {
+    match geometry {
+        Geometry::Ring { center, outer, .. } => Geometry::Disc { center: *center, radius: *outer },
+        Geometry::Polygon(polygon) => {
+            Geometry::Polygon(Polygon { outline: polygon.outline.clone(), holes: Vec::new() })
+        }
+        Geometry::Moved(moved) => {
+            Geometry::Moved(Moved { geometry: Box::new(without_holes(&moved.geometry)), ..moved.clone() })
+        }
+        other => other.clone(),
     }
 }
 

@@ -37,24 +37,23 @@ const STEPPED: f64 = 0.1;
 
 /// Water that begins under the pressure of a surface above its own: one shape with steps or a slope, or a turned one.
 pub(super) fn steps<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
-    let (Some((axis, way)), Some(fluid)) = (falls::<D>(scene), &scene.fluid) else { return };
-    let aligned = (0..D).all(|a| a == axis || scene.gravity[a] == 0.0);
-    if !aligned || !scene.shapes.iter().any(|shape| shape.hydrostatic) {
+    let (Some(fluid), size) = (&scene.fluid, scene.gravity_magnitude()) else { return };
+    if size == 0.0 || !scene.shapes.iter().any(|shape| shape.hydrostatic) {
         return;
     }
+    let up: [f64; D] = std::array::from_fn(|a| -scene.gravity[a] / size);
     let (dx, matter) = (scene.resolution, Matter::with_solids(scene, layout));
     let water = by_place(dx, layout.fluid.iter().map(|p| p.position));
     for (index, shape) in scene.shapes.iter().enumerate().filter(|(_, shape)| shape.hydrostatic) {
         let (mut surface, mut low, mut deepest) = (0, 0, 0.0_f64);
         for p in layout.fluid.iter().filter(|p| p.shape as usize == index) {
-            let above = |k: i32| -> [f64; D] {
-                std::array::from_fn(|a| p.position[a] - if a == axis { way * f64::from(k) * dx } else { 0.0 })
-            };
+            let above =
+                |k: i32| -> [f64; D] { std::array::from_fn(|a| p.position[a] + f64::from(k) * dx * up[a]) };
             let covered = |x: &[f64; D]| matter.fill(x) || water.around(x).any(|at| near(at, x, 0.7 * dx));
             if (1..=3).any(|k| covered(&above(k))) {
                 continue;
             }
-            let depth = p.pressure / (fluid.density * scene.gravity[axis].abs());
+            let depth = p.pressure / (fluid.density * size);
             surface += 1;
             low += usize::from(depth > BELOW * dx);
             deepest = deepest.max(depth);

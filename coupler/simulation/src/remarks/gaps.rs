@@ -16,6 +16,8 @@ const ROUNDED: [f64; 2] = [0.5, 0.25];
 const NARROW: f64 = 3.25;
 /// Cosine of the angle between faces of a gap: those of a corner open more.
 const FACING: f64 = -0.98;
+/// The same where one of two walls leans over the other without touching it.
+const LEANING: f64 = -0.3;
 /// Rows of particles of a face that a gap goes along.
 const LONG: usize = 3;
 /// Spacings from a place before a gap up to where fluid comes into it.
@@ -46,6 +48,8 @@ struct Gap<const D: usize> {
     at: [f64; D],
     /// Places on its faces.
     along: Vec<[f64; D]>,
+    /// Rows of particles that it goes along at least.
+    rows: usize,
 }
 
 /// Gaps of few spacings between two walls, or a wall and a solid that a clamp holds, to which fluid can come.
@@ -75,7 +79,7 @@ pub(super) fn narrow<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mu
     };
     for ([one, other], gap) in found {
         let places = if moves(one) || moves(other) { &low } else { &high };
-        if gap.along.len() < LONG || !gap.along.iter().any(|at| is_wet(at, places)) {
+        if gap.along.len() < gap.rows || !gap.along.iter().any(|at| is_wet(at, places)) {
             continue;
         }
         let [one, other] = [one, other].map(|shape| &scene.shapes[shape].name);
@@ -90,7 +94,7 @@ pub(super) fn narrow<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mu
     }
 }
 
-/// All gaps whose faces look at each other, by their two shapes.
+/// All gaps whose faces look at each other, or of which one leans over the other, by their two shapes.
 fn gaps<const D: usize>(scene: &Scene, layout: &Layout<D>) -> BTreeMap<[usize; 2], Gap<D>> {
     let dx = scene.resolution;
     let row = if scene.numerics.lattice == Lattice::Nodal { 0.0 } else { 0.5 * dx };
@@ -108,7 +112,8 @@ fn gaps<const D: usize>(scene: &Scene, layout: &Layout<D>) -> BTreeMap<[usize; 2
     }
     let fitted =
         |shape: usize| matches!(scene.shapes[shape].geometry, Geometry::Box(_) | Geometry::Tank { .. });
-    let mut all: BTreeMap<[usize; 2], Gap<D>> = BTreeMap::new();
+    let rounded = |pair: &[usize; 2]| ROUNDED[usize::from(!pair.iter().all(|&shape| fitted(shape)))] * dx;
+    let [mut all, mut leaning] = [const { BTreeMap::<[usize; 2], Gap<D>>::new() }; 2];
     for p in layout.wall.iter().filter(|p| !p.corner) {
         let shape = p.shape as usize;
         let before = |way: f64| -> [f64; D] { std::array::from_fn(|a| p.position[a] + way * p.normal[a]) };
@@ -121,19 +126,38 @@ fn gaps<const D: usize>(scene: &Scene, layout: &Layout<D>) -> BTreeMap<[usize; 2
             continue;
         };
         let facing = (0..D).map(|a| normal[a] * p.normal[a]).sum::<f64>();
-        let rounded = ROUNDED[usize::from(!fitted(shape) || !fitted(other))];
-        if facing > FACING || width < rounded * dx {
+        let pair = [shape.min(other), shape.max(other)];
+        let (kind, rows) = if facing <= FACING { (&mut all, LONG) } else { (&mut leaning, 1) };
+        if facing > LEANING || width < rounded(&pair) {
             continue;
         }
         let at = before(row);
-        let gap =
-            all.entry([shape.min(other), shape.max(other)]).or_insert(Gap { width, at, along: Vec::new() });
+        let gap = kind.entry(pair).or_insert(Gap { width, at, along: Vec::new(), rows });
         gap.along.push(at);
         if width < gap.width {
             (gap.width, gap.at) = (width, at);
         }
     }
+    for (pair, gap) in leaning {
+        // Those that touch make a corner.
+        let least = || apart(pair.map(|shape| &scene.shapes[shape].geometry), dx);
+        if !all.contains_key(&pair) && rounded(&pair) < least() {
+            all.insert(pair, gap);
+        }
+    }
     all
+}
+
+/// Least distance of two geometries, m: from points on the outline of either.
+fn apart(pair: [&Geometry; 2], dx: f64) -> f64 {
+    let [one, other] = pair.map(|geometry| Surface::new(geometry, None));
+    let mut least = f64::INFINITY;
+    for (from, to) in [(&one, &other), (&other, &one)] {
+        from.outline(0.25 * dx, &mut |_, ends| {
+            to.nearest(ends[0], &mut |distance, _| least = least.min(distance));
+        });
+    }
+    least
 }
 
 /// How far before a face of a shape another one begins, m, with its index and normal there: `before` is the place so

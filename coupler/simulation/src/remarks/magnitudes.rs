@@ -12,6 +12,8 @@ pub(super) const DENSITY: [f64; 2] = [50.0, 25_000.0];
 const GRAVITY: [f64; 2] = [0.1, 50.0];
 /// Of fresh and salt water, kg/m³.
 const WATER: [f64; 2] = [980.0, 1040.0];
+/// Viscosity of water in mPa s (cP), from cold to warm.
+const CENTIPOISE: [f64; 2] = [0.8, 1.4];
 /// A hundred times that of water, Pa s.
 const VISCOUS: f64 = 0.1;
 /// Kinematic viscosities of water between 90 and 0 °C, m²/s: no liquid of its density has so few Pa s.
@@ -76,7 +78,9 @@ pub(super) fn viscosity(scene: &Scene, all: &mut Vec<String>) {
             fluid.viscosity
         ));
     }
-    if fluid.viscosity > VISCOUS && !scene.solids.is_empty() {
+    let is_centipoise =
+        scene.gravity_magnitude() > 0.0 && (CENTIPOISE[0]..=CENTIPOISE[1]).contains(&fluid.viscosity);
+    if is_centipoise || fluid.viscosity > VISCOUS && !scene.solids.is_empty() {
         all.push(format!(
             "fluid.viscosity = {} Pa s in a fluid of the density of water, which has 0.001 Pa s: is the unit right?",
             fluid.viscosity

@@ -161,16 +161,11 @@ fn too_late(
         // That is remarked on as such.
         return None;
     }
-    let start = swings(motion).map(|(_, start)| start).fold(f64::INFINITY, f64::min);
-    let start = if start.is_finite() { start } else { 0.0 };
-    let apart = |[low, high]: [f64; 2]| (low - around.max[0]).max(around.min[0] - high).max(0.0);
     let (name, way) = targets(scene)
         .into_iter()
-        .map(|(name, places)| (name, apart(places)))
+        .map(|(name, places)| (name, apart(around, places)))
         .min_by(|a, b| a.1.total_cmp(&b.1))?;
-    // Nothing on water is faster than its longest waves.
-    let speed = (scene.gravity[1].abs() * (makes.depth + makes.height)).sqrt();
-    let arrival = start + way / speed;
+    let arrival = start(motion) + way / longest(scene, makes);
     (arrival > scene.end_time).then(|| {
         format!(
             "the waves of `{}` come to no probe and no solid: the nearest, `{name}`, is {} m away, where the longest \
@@ -183,23 +178,70 @@ fn too_late(
     })
 }
 
-/// What waves are to come to, with its extent along x, m.
-fn targets(scene: &Scene) -> Vec<(&str, [f64; 2])> {
-    let of_shape = |shape: &Shape| {
-        let around = geometry::bounding_box(shape, scene);
-        [around.min[0], around.max[0]]
-    };
-    let of_probe = |kind: &ProbeKind| match kind {
+/// Metrics whose window ends before any wave can have come to their probe, in water that nothing else moves.
+pub(super) fn windows(scene: &Scene, all: &mut Vec<String>) {
+    let moves = scene.shapes.iter().filter_map(|shape| Some((shape, shape.motion.as_ref()?)));
+    if scene.frame.is_some() || !moves.clone().all(|(_, motion)| motion.makes().is_some()) {
+        return;
+    }
+    for metric in &scene.metrics {
+        let Some((to, (name, _))) = metric.to.zip(metric.probe.rsplit_once('.')) else { continue };
+        let Some(probe) = scene.probes.iter().find(|probe| probe.name == name) else { continue };
+        let arrival = |(shape, motion): (&Shape, &Motion)| {
+            let around = geometry::bounding_box(shape, scene);
+            let nearest = of_probe(scene, &probe.kind).into_iter().map(|places| apart(&around, places));
+            Some(start(motion) + nearest.reduce(f64::min)? / longest(scene, motion.makes()?))
+        };
+        let Some(arrival) = moves.clone().filter_map(arrival).reduce(f64::min) else { continue };
+        if to < arrival {
+            all.push(format!(
+                "the metric `{}` looks until {to} s, and no wave comes to `{name}` before {} s, when the longest ones \
+                 do",
+                metric.name,
+                length(arrival)
+            ));
+        }
+    }
+}
+
+/// When a wave maker begins, s.
+fn start(motion: &Motion) -> f64 {
+    let start = swings(motion).map(|(_, start)| start).fold(f64::INFINITY, f64::min);
+    if start.is_finite() { start } else { 0.0 }
+}
+
+/// Speed of the longest waves, m/s: nothing on water is faster.
+fn longest(scene: &Scene, makes: &WaveMaker) -> f64 {
+    (scene.gravity[1].abs() * (makes.depth + makes.height)).sqrt()
+}
+
+/// How far an extent along x lies beside a box, m.
+fn apart(around: &Block, [low, high]: [f64; 2]) -> f64 {
+    (low - around.max[0]).max(around.min[0] - high).max(0.0)
+}
+
+/// Extents along x of what a probe measures, m.
+fn of_probe(scene: &Scene, kind: &ProbeKind) -> Vec<[f64; 2]> {
+    match kind {
         ProbeKind::WaterLevel { x } => x.iter().map(|&x| [x, x]).collect(),
         ProbeKind::Pressure { at, .. } | ProbeKind::Velocity { at } => vec![[at[0], at[0]]],
         ProbeKind::Flux { from, to } => vec![[from[0].min(to[0]), from[0].max(to[0])]],
-        ProbeKind::Force { shape: Some(index), .. } => vec![of_shape(&scene.shapes[*index])],
+        ProbeKind::Force { shape: Some(index), .. } => vec![of_shape(scene, &scene.shapes[*index])],
         _ => Vec::new(),
-    };
+    }
+}
+
+fn of_shape(scene: &Scene, shape: &Shape) -> [f64; 2] {
+    let around = geometry::bounding_box(shape, scene);
+    [around.min[0], around.max[0]]
+}
+
+/// What waves are to come to, with its extent along x, m.
+fn targets(scene: &Scene) -> Vec<(&str, [f64; 2])> {
     let probes = scene
         .probes
         .iter()
-        .flat_map(|probe| of_probe(&probe.kind).into_iter().map(|x| (probe.name.as_str(), x)));
+        .flat_map(|probe| of_probe(scene, &probe.kind).into_iter().map(|x| (probe.name.as_str(), x)));
     let solids = scene.shapes.iter().filter(|shape| shape.phase == Phase::Solid);
-    probes.chain(solids.map(|shape| (shape.name.as_str(), of_shape(shape)))).collect()
+    probes.chain(solids.map(|shape| (shape.name.as_str(), of_shape(scene, shape)))).collect()
 }

@@ -1,7 +1,7 @@
 //! Motions that are valid and hardly meant: what is remarked on each, and on what is near it not.
 
 use super::meaning_tests::recorded;
-use super::tests::{TANK, WATER};
+use super::tests::{PLATE, TANK, WATER};
 use super::trap_tests::{has, on, with};
 
 fn moved(motion: &str) -> Vec<String> {
@@ -38,6 +38,26 @@ fn a_tank_that_rolls_by_degrees() {
         frame(4.0)
     );
     assert!(!has(&frame(0.1), "radians"));
+}
+
+#[test]
+fn a_displacement_with_its_clamps_way() {
+    let solid = "[solid]\ndensity = 1100.0\nyoungs_modulus = 12e6\npoissons_ratio = 0.4\n";
+    let with = |wall: &str, probes: &[[f64; 2]]| {
+        let plate = PLATE.replace("0.01] }", &format!("0.01]{wall} }}"));
+        let probe = |(k, [x, y]): (usize, &[f64; 2])| {
+            format!("[[probe]]\nname = \"p{k}\"\nkind = \"displacement\"\nat = [{x}, {y}]\n")
+        };
+        let probes: String = probes.iter().enumerate().map(probe).collect();
+        let motion = "motion = { amplitude = [0.02, 0.0], period = 1.0, ramp = 0.5 }\n";
+        wet(&[&super::trap_tests::with(TANK, motion), WATER, solid, &plate, &probes])
+    };
+    let said =
+        "`p0` measures displacements in space, and the clamp of `plate` moves with `tank`: that way is in it";
+    let along = ", with = \"tank\"";
+    assert!(has(&with(along, &[[0.21, 0.1]]), said), "{:?}", with(along, &[[0.21, 0.1]]));
+    assert!(!has(&with(along, &[[0.21, 0.1], [0.21, 0.0]]), "that way is in it"));
+    assert!(!has(&with("", &[[0.21, 0.1]]), "that way is in it"));
 }
 
 #[test]

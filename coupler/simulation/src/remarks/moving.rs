@@ -165,6 +165,37 @@ pub(super) fn clamps_that_leave<const D: usize>(scene: &Scene, layout: &Layout<D
     }
 }
 
+/// Displacements of what is clamped in a wall that moves, with none of the clamp to take off.
+pub(super) fn displacements(scene: &Scene, all: &mut Vec<String>) {
+    for (index, shape) in scene.shapes.iter().enumerate().filter(|(_, s)| s.phase == Phase::Solid) {
+        let moving = |wall: &&Shape| {
+            wall.motion.is_some() && shape.clamp_with.iter().flatten().any(|w| *w == wall.name)
+        };
+        let Some(wall) = scene.shapes.iter().find(moving) else { continue };
+        let places = scene.probes.iter().filter_map(|probe| match probe.kind {
+            ProbeKind::Displacement { at } if probe.solid == shape.solid => Some((probe.name.as_str(), at)),
+            _ => None,
+        });
+        let own: Vec<_> = places.filter(|(_, at)| nearest_solid(scene, at) == Some(index)).collect();
+        let reach = scene.spacing(shape);
+        let in_clamp = |at: &[f64; 3]| shape.clamp.iter().any(|clamp| geometry::holds(clamp, at, reach));
+        if let Some((first, _)) = own.first().filter(|_| !own.iter().any(|(_, at)| in_clamp(at))) {
+            all.push(format!(
+                "`{first}` measures displacements in space, and the clamp of `{}` moves with `{}`: that way is in it \
+                 (one at the clamp measures it)",
+                shape.name, wall.name
+            ));
+        }
+    }
+}
+
+/// The shape of solid that is nearest to a place.
+fn nearest_solid(scene: &Scene, at: &[f64; 3]) -> Option<usize> {
+    let solids = scene.shapes.iter().enumerate().filter(|(_, s)| s.phase == Phase::Solid);
+    let distance = |shape: &Shape| geometry::distance(&shape.geometry, at);
+    solids.min_by(|a, b| distance(a.1).total_cmp(&distance(b.1))).map(|(index, _)| index)
+}
+
 /// Joints in tanks that move, tied to what does not go along.
 pub(super) fn joints(scene: &Scene, all: &mut Vec<String>) {
     let tanks = tanks(scene);

@@ -75,6 +75,37 @@ pub(super) fn passages(scene: &Scene, all: &mut Vec<String>) {
         through_solids(scene, &mover, all);
         through_walls(scene, &mover, all);
     }
+    into_each_other(scene, all);
+}
+
+/// Boxes that both move, and come into each other where fluid is.
+fn into_each_other(scene: &Scene, all: &mut Vec<String>) {
+    let boxes: Vec<Mover<'_>> =
+        movers(scene).filter(|mover| matches!(mover.shape.geometry, Geometry::Box(_))).collect();
+    let fluid = geometry::fluid_boxes(scene);
+    for (k, one) in boxes.iter().enumerate() {
+        for other in &boxes[k + 1..] {
+            let at = |k: usize| (&one.way[k], &other.way[k]);
+            let is_in = |k: &usize| {
+                let (one, other) = at(*k);
+                overlap(one, other, scene) && !in_a_slot(one, other, scene)
+            };
+            let Some(meets) = (0..=INSTANTS).find(is_in).filter(|meets| *meets > 0) else { continue };
+            let wet = |k: usize| {
+                let (one, other) = at(k);
+                fluid.iter().any(|f| meet(one, f, scene) && meet(other, f, scene))
+            };
+            if (0..=meets).any(wet) {
+                all.push(format!(
+                    "`{}` and `{}` move into each other from about {:.3} s on: nothing stops what `motion` moves, and \
+                     fluid between them is crushed",
+                    one.shape.name,
+                    other.shape.name,
+                    instant(scene, meets)
+                ));
+            }
+        }
+    }
 }
 
 /// Walls that do not touch solids, through which they go.

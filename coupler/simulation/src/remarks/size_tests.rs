@@ -104,6 +104,51 @@ fn an_arm_of_part_of_a_row() {
 }
 
 #[test]
+fn a_thin_part_of_a_polygon() {
+    let wall = |thick: f64, hole: &str| {
+        of(&format!(
+            "{hole}[solid]\ndensity = 2400.0\nyoungs_modulus = 1e8\npoissons_ratio = 0.2\n[[shape]]\nname = \
+             \"sea-wall\"\nphase = \"solid\"\npolygon = [[0.5, 0.0], [0.7, 0.0], [0.7, 0.1], [{0}, 0.1], [{0}, 0.3], \
+             [0.5, 0.3]]\nclamp = {{ min = [0.5, 0.0], max = [0.7, 0.02] }}\n{1}{2}",
+            0.5 + thick,
+            basin(),
+            water([0.0, 0.3, 0.2])
+        ))
+    };
+    let said = "`sea-wall` is 0.054 m thick at [0.527, 0.295] in the scene and 0.05 m of whole rows as computed: 0.79 \
+                times the bending stiffness (its spacing is 0.01)";
+    let found = wall(0.054, "");
+    assert!(has(&found, said), "{found:?}");
+    assert!(!has(&wall(0.05, ""), "thick at"), "{:?}", wall(0.05, ""));
+    let cut = "[[shape]]\nname = \"cut\"\nphase = \"void\"\npolygon = [[0.533, 0.15], [0.6, 0.15], [0.6, 0.31], \
+               [0.533, 0.31]]\n";
+    let found = wall(0.06, cut);
+    assert!(has(&found, "`sea-wall` is 0.033 m thick at"), "{found:?}");
+    assert!(has(&found, "beside a void in the scene and 0.03 m of whole rows"), "{found:?}");
+}
+
+#[test]
+fn a_hull_of_other_plates() {
+    let hull = |hole: &str, keys: &str| {
+        of(&format!(
+            "[[shape]]\nname = \"inside\"\nphase = \"void\"\nbox = {hole}\n[solid]\nmodel = \"rigid\"\ndensity = \
+             800.0\n{keys}[[shape]]\nname = \"hull\"\nphase = \"solid\"\nbox = {{ min = [0.4, 0.1], max = [0.8, 0.3] }}\n\
+             {}{}",
+            basin(),
+            water([0.0, 0.3, 0.2])
+        ))
+    };
+    let off = "{ min = [0.424, 0.124], max = [0.776, 0.276] }";
+    // 0.08 - 0.0535 m², on lines 0.01 / 16 m apart, and 800 - 36 x 16 cells.
+    let said = "of `hull` in the scene and 0.0224 m² as computed: 0.85 times the mass (its spacing is 0.01; `mass` at";
+    let found = hull(off, "");
+    assert!(has(&found, said), "{found:?}");
+    assert!(!has(&hull("{ min = [0.42, 0.12], max = [0.78, 0.28] }", ""), "voids leave"));
+    let given = "[[solid.bodies]]\nname = \"hull\"\nmass = 20.0\n";
+    assert!(!has(&hull(off, given), "voids leave"), "its mass is said");
+}
+
+#[test]
 fn a_sharp_corner() {
     let pit = |half: f64, level: f64, more: &str| {
         let [a, b] = [half * 0.4, half * 0.2];

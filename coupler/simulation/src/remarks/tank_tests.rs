@@ -257,7 +257,9 @@ fn a_kinematic_viscosity() {
     let said =
         "fluid.viscosity = 1e-6 Pa s in a fluid of the density of water is the kinematic viscosity of water";
     assert!(has(&viscosity("1e-6"), said), "{:?}", viscosity("1e-6"));
-    for fine in ["1e-3", "1e-5", "0.0"] {
+    let said = "fluid.viscosity = 1.002 Pa s in a fluid of the density of water, which has 0.001 Pa s";
+    assert!(has(&viscosity("1.002"), said), "{:?}", viscosity("1.002"));
+    for fine in ["1e-3", "1e-5", "0.0", "2.0"] {
         assert_eq!(viscosity(fine), [""; 0], "{fine}");
     }
 }
@@ -275,7 +277,7 @@ fn what_has_nothing_to_act_on() {
     let said =
         "`tank` has slip = \"none\", and the fluid has no viscosity: what drags there is the artificial one";
     assert!(has(&of(&sticks), said), "{:?}", of(&sticks));
-    assert_eq!(with_keys("", "viscosity = 1.0", &sticks), [""; 0]);
+    assert_eq!(with_keys("", "viscosity = 2.0", &sticks), [""; 0]);
 }
 
 #[test]
@@ -286,7 +288,7 @@ fn a_belt_that_nothing_feels() {
             &format!("box = {{ min = [0.0, -0.04], max = [1.0, 0.0] }}\nvelocity = [1.0, 0.0]\n{lines}"),
         );
         let sides = wall("left", "box = { min = [-0.04, -0.04], max = [0.0, 0.4] }");
-        with_keys("", "viscosity = 1.0", &format!("{sides}{floor}{}", water([0.0, 0.3, 0.2])))
+        with_keys("", "viscosity = 2.0", &format!("{sides}{floor}{}", water([0.0, 0.3, 0.2])))
     };
     let said = "the `velocity` of `belt` is that of a belt, and nothing feels it: fluid slips along it";
     assert!(has(&belt(""), said), "{:?}", belt(""));

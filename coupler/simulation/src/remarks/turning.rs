@@ -1,4 +1,4 @@
-//! Remarks on what turns as prescribed into walls and solids that do not stop it.
+//! Remarks on what turns as prescribed into walls and solids that do not stop it, whether these move or not.
 
 use super::water::INSTANTS;
 use super::{meet, near};
@@ -29,7 +29,7 @@ pub(super) fn passages<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &
         let instant = |k: usize| scene.end_time * k as f64 / INSTANTS as f64;
         for (other, fixed) in scene.shapes.iter().enumerate() {
             let why = match fixed.phase {
-                _ if other == index || fixed.motion.is_some() || goes_along(fixed, shape) => continue,
+                _ if other == index || goes_along(fixed, shape) || is_told(fixed, other, index) => continue,
                 Phase::Wall if shape.phase == Phase::Wall => "walls do not stop each other",
                 Phase::Wall => "nothing stops what `motion` moves",
                 Phase::Solid if shape.phase == Phase::Wall && !shape.contact => {
@@ -38,14 +38,23 @@ pub(super) fn passages<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &
                 _ => continue,
             };
             let region = Regions::of(scene, |s| std::ptr::eq(s, fixed));
+            let own = |k: usize| fixed.motion.as_ref().map(|motion| motion.at(instant(k)));
             let places = |k: usize| {
                 let placement = motion.at(instant(k));
                 some.iter().map(move |x| placement.position_of(*x))
             };
-            let is_in = |k: &usize| places(*k).any(|x| region.hold(&x, -DEEP * scene.resolution));
+            let is_in = |k: usize, x: &[f64; D]| {
+                let point = own(k).map_or(*x, |placement| placement.point_at(*x));
+                region.hold(&point, -DEEP * scene.resolution)
+            };
             // What begins in another shape is another remark.
-            let Some(meets) = (0..=INSTANTS).find(is_in).filter(|meets| *meets > 0) else { continue };
-            if fixed.phase == Phase::Solid || is_wet(scene, layout, fixed, places(meets)) {
+            let meets = (0..=INSTANTS).find(|&k| places(k).any(|x| is_in(k, &x)));
+            let Some(meets) = meets.filter(|meets| *meets > 0) else { continue };
+            let wet = match &fixed.motion {
+                None => is_wet(scene, layout, places(meets).filter(|x| is_beside(scene, fixed, x))),
+                Some(_) => is_wet(scene, layout, places(meets).filter(|x| is_in(meets, x))),
+            };
+            if fixed.phase == Phase::Solid || wet {
                 all.push(format!(
                     "`{}` turns into `{}` from about {:.3} s on: {why}",
                     shape.name,
@@ -66,16 +75,19 @@ fn goes_along(solid: &Shape, wall: &Shape) -> bool {
     solid.clamp_with.iter().flatten().any(|with| *with == wall.name)
 }
 
-/// Whether fluid stands where one comes into the other: within the kernel's support, or between both.
-fn is_wet<const D: usize>(
-    scene: &Scene,
-    layout: &Layout<D>,
-    fixed: &Shape,
-    places: impl Iterator<Item = [f64; D]>,
-) -> bool {
-    let reach = super::walls::kernel_support(scene);
+/// Whether a pair of two that turn is looked at from the other one.
+fn is_told(fixed: &Shape, other: usize, index: usize) -> bool {
+    fixed.motion.as_ref().is_some_and(|motion| motion.pivot().is_some() && other < index)
+}
+
+fn is_beside<const D: usize>(scene: &Scene, fixed: &Shape, x: &[f64; D]) -> bool {
     let block = geometry::bounding_box(fixed, scene);
-    let meeting = |x: &[f64; D]| meet(&Block { min: wide(*x), max: wide(*x) }, &block, scene);
-    let met: Vec<[f64; D]> = places.filter(meeting).collect();
+    meet(&Block { min: wide(*x), max: wide(*x) }, &block, scene)
+}
+
+/// Whether fluid stands at one of the places at the start: within the kernel's support.
+fn is_wet<const D: usize>(scene: &Scene, layout: &Layout<D>, places: impl Iterator<Item = [f64; D]>) -> bool {
+    let reach = super::walls::kernel_support(scene);
+    let met: Vec<[f64; D]> = places.collect();
     layout.fluid.iter().any(|p| met.iter().any(|x| near(x, &p.position, reach)))
 }

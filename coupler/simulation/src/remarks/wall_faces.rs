@@ -2,7 +2,7 @@
 
 use super::reached::{Matter, Places, is_pushed, reached};
 use super::shapes::{around_copy, length, place};
-use halfstep_scene::geometry::{Layout, cell};
+use halfstep_scene::geometry::{Layout, Moved, cell};
 use halfstep_scene::{Block, Geometry, Lattice, Phase, Scene, Shape};
 use std::cell::LazyCell;
 
@@ -13,14 +13,37 @@ const SIDES: [&str; 3] = ["right side", "top", "front"];
 /// Sizes along each axis.
 const SIZES: [&str; 3] = ["wide", "high", "deep"];
 
-/// A side of a wall, asked and computed, m.
-struct Face {
+/// A side of a wall, asked and computed, m: where the box is turned, before that.
+struct Face<'s> {
     shape: usize,
     axis: usize,
     asked: f64,
     computed: f64,
     /// The box that it ends.
     of: Block,
+    turned: Option<Copy<'s>>,
+}
+
+/// A copy of what is turned.
+type Copy<'s> = (&'s Moved, u32);
+
+impl Face<'_> {
+    /// The point of the box, before it is turned, that is at a place.
+    fn back<const D: usize>(&self, x: [f64; D]) -> [f64; D] {
+        self.turned.map_or(x, |(moved, copy)| moved.back(copy, x))
+    }
+
+    fn place<const D: usize>(&self, x: [f64; D]) -> [f64; D] {
+        self.turned.map_or(x, |(moved, copy)| moved.place(copy, x))
+    }
+
+    /// Whether it looks against gravity.
+    fn is_upper(&self, scene: &Scene) -> bool {
+        let axis: [f64; 3] = std::array::from_fn(|a| f64::from(u8::from(a == self.axis)));
+        let normal = self.turned.map_or(axis, |(moved, _)| moved.turned(axis));
+        let against: f64 = (0..3).map(|a| -scene.gravity[a] * normal[a]).sum();
+        against > 0.5 * scene.gravity_magnitude()
+    }
 }
 
 /// The boxes of a shape that lie along its lattice, one of each copy.
@@ -34,17 +57,29 @@ fn boxes(scene: &Scene, shape: &Shape) -> Vec<Block> {
     }
 }
 
-fn off(scene: &Scene, dimension: usize) -> Vec<Face> {
+/// The boxes of a shape, one of each copy, those that are turned as before.
+fn turned(shape: &Shape) -> Vec<(Block, Option<Copy<'_>>)> {
+    match &shape.geometry {
+        Geometry::Moved(moved) if moved.angle != 0.0 => match *moved.geometry {
+            Geometry::Box(block) => moved.copies().map(|copy| (block, Some((moved, copy)))).collect(),
+            _ => Vec::new(),
+        },
+        _ => Vec::new(),
+    }
+}
+
+fn off<'s>(scene: &'s Scene, dimension: usize) -> Vec<Face<'s>> {
     let dx = scene.resolution;
     let walls = scene.shapes.iter().enumerate().filter(|(_, s)| s.phase == Phase::Wall);
-    let of_box = |(shape, of): (usize, Block)| {
+    let of_box = |(shape, (of, turned)): (usize, (Block, Option<Copy<'s>>))| {
         let face = move |axis: usize| {
             let rows = ((of.max[axis] - of.min[axis]) / dx).round();
-            Face { shape, axis, asked: of.max[axis], computed: of.min[axis] + rows * dx, of }
+            Face { shape, axis, asked: of.max[axis], computed: of.min[axis] + rows * dx, of, turned }
         };
-        (0..dimension).map(face).filter(|face| (face.computed - face.asked).abs() > NOTABLE * dx)
+        (0..dimension).map(face).filter(move |face| (face.computed - face.asked).abs() > NOTABLE * dx)
     };
-    walls.flat_map(|(k, s)| boxes(scene, s).into_iter().map(move |b| (k, b))).flat_map(of_box).collect()
+    let all = |shape| boxes(scene, shape).into_iter().map(|block| (block, None)).chain(turned(shape));
+    walls.flat_map(|(k, s)| all(s).map(move |b| (k, b))).flat_map(of_box).collect()
 }
 
 /// Boxes of walls whose rows end before or beyond a face that the fluid comes to; upper faces, too, that it comes to as
@@ -62,7 +97,7 @@ pub(super) fn faces<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut
         if told.contains(&(face.shape, face.axis)) {
             continue;
         }
-        let upper = -scene.gravity[face.axis] > 0.5 * scene.gravity_magnitude();
+        let upper = face.is_upper(scene);
         let still = is_wet(scene, layout, &walls, &face, &level);
         let later =
             || upper && above.as_ref().is_some_and(|above| is_wet(scene, layout, &walls, &face, above));
@@ -71,10 +106,11 @@ pub(super) fn faces<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut
         }
         told.push((face.shape, face.axis));
         all.push(format!(
-            "the {} of `{}` is at {} m in the scene and at {} m as computed, and fluid {}: a wall has whole rows from \
-             its `min` on (the resolution is {})",
+            "the {} of `{}`{} is at {} m in the scene and at {} m as computed, and fluid {}: a wall has whole rows \
+             from its `min` on (the resolution is {})",
             SIDES[face.axis],
             scene.shapes[face.shape].name,
+            if face.turned.is_some() { ", before `rotate`," } else { "" },
             length(face.asked),
             length(face.computed),
             if still { "comes there" } else { "may come there" },
@@ -88,18 +124,19 @@ fn is_wet<const D: usize>(
     scene: &Scene,
     layout: &Layout<D>,
     walls: &Matter<D>,
-    face: &Face,
+    face: &Face<'_>,
     places: &Places<D>,
 ) -> bool {
     let (dx, axis) = (scene.resolution, face.axis);
     let last = |p: &[f64; D]| (p[axis] + 0.5 * dx - face.computed).abs() < 1e-3 * dx;
     let beside =
         |p: &[f64; D]| (0..D).all(|a| a == axis || face.of.min[a] - dx < p[a] && p[a] < face.of.max[a] + dx);
-    let own = layout.wall.iter().filter(|p| p.shape as usize == face.shape).map(|p| p.position);
+    let own = layout.wall.iter().filter(|p| p.shape as usize == face.shape).map(|p| face.back(p.position));
     own.filter(|p| last(p) && beside(p)).any(|p| {
         [1.0, 1.5].iter().any(|way| {
             let mut before = p;
             before[axis] += way * dx;
+            let before = face.place(before);
             !walls.fill(&before) && places.contains(&cell(&before, dx))
         })
     })

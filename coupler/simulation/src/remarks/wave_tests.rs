@@ -57,6 +57,22 @@ fn waves_that_do_not_arrive() {
 }
 
 #[test]
+fn a_window_before_the_waves() {
+    let with = |to: f64, more: &str| {
+        let metric =
+            format!("[[metric]]\nname = \"crest\"\nprobe = \"level.level\"\nkind = \"peak\"\nto = {to}\n");
+        flume(5.0, "", PADDLE, REGULAR, &(gauge(3.0) + &metric + more))
+    };
+    let said = "the metric `crest` looks until 2 s, and no wave comes to `level` before 2.042 s, when the longest \
+                ones do";
+    assert!(has(&with(2.0, ""), said), "{:?}", with(2.0, ""));
+    assert_eq!(with(2.1, ""), [""; 0]);
+    let gate = "[[shape]]\nname = \"gate\"\nphase = \"wall\"\nbox = { min = [3.5, 0.0], max = [3.6, 0.4] }\nmotion = { \
+                amplitude = [0.0, 0.2], period = 2.0 }\n";
+    assert!(!has(&with(2.0, gate), "no wave comes"), "another thing moves the water");
+}
+
+#[test]
 fn waves_of_less_than_a_spacing() {
     let high =
         |height: f64| flume(5.0, "", PADDLE, &REGULAR.replace("0.02", &height.to_string()), &gauge(2.0));

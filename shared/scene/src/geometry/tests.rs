@@ -3,9 +3,9 @@ use crate::*;
 use approx::assert_relative_eq;
 use std::collections::BTreeMap;
 
-const DX: f64 = 0.1;
+pub(super) const DX: f64 = 0.1;
 
-fn scene(shapes: Vec<Shape>) -> Scene {
+pub(super) fn scene(shapes: Vec<Shape>) -> Scene {
     Scene {
         name: "test".into(),
         path: "test.toml".into(),
@@ -74,7 +74,7 @@ fn scene(shapes: Vec<Shape>) -> Scene {
     }
 }
 
-fn shape(phase: Phase, geometry: Geometry) -> Shape {
+pub(super) fn shape(phase: Phase, geometry: Geometry) -> Shape {
     Shape {
         spacing: None,
         lattice_angle: 0.0,
@@ -98,11 +98,11 @@ fn shape(phase: Phase, geometry: Geometry) -> Shape {
     }
 }
 
-fn block(min: [f64; 2], max: [f64; 2]) -> Block {
+pub(super) fn block(min: [f64; 2], max: [f64; 2]) -> Block {
     Block { min: [min[0], min[1], 0.0], max: [max[0], max[1], 0.0] }
 }
 
-fn a_box(phase: Phase, min: [f64; 2], max: [f64; 2]) -> Shape {
+pub(super) fn a_box(phase: Phase, min: [f64; 2], max: [f64; 2]) -> Shape {
     shape(phase, Geometry::Box(block(min, max)))
 }
 

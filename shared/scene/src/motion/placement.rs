@@ -72,6 +72,16 @@ impl Placement {
         }
     }
 
+    /// The point of the scene that is at a place now, m.
+    pub fn point_at<const D: usize>(&self, position: [f64; D]) -> [f64; D] {
+        let shifted: [f64; D] = std::array::from_fn(|d| position[d] - self.displacement[d]);
+        let Some(Turn { pivot, sin, cos, .. }) = &self.turn else { return shifted };
+        let [x, y] = [0, 1].map(|d| shifted[d] - pivot[d]);
+        let mut point = shifted;
+        (point[0], point[1]) = (pivot[0] + cos * x + sin * y, pivot[1] + cos * y - sin * x);
+        point
+    }
+
     /// Velocity of a point of the scene, m/s: u' + omega x r.
     pub fn velocity_of<const D: usize>(&self, place: [f64; D]) -> [f64; D] {
         let mut velocity = std::array::from_fn(|d| self.velocity[d]);
@@ -113,6 +123,20 @@ impl Placement {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_point_is_found_again() {
+        let turn = Turn { pivot: [1.0, 2.0, 0.0], sin: 0.6, cos: 0.8, rate: 0.0, acceleration: 0.0 };
+        let placement =
+            Placement { displacement: [0.5, -0.25, 0.0], turn: Some(turn), ..Placement::default() };
+        // One beside the pivot: by 0.8 and 0.6, and shifted.
+        let now = placement.position_of([2.0, 2.0]);
+        assert!((now[0] - 2.3).abs() < 1e-15 && (now[1] - 2.35).abs() < 1e-15, "{now:?}");
+        let back = placement.point_at(now);
+        assert!((back[0] - 2.0).abs() < 1e-15 && (back[1] - 2.0).abs() < 1e-15, "{back:?}");
+        let shifted = Placement { displacement: [0.5, -0.25, 0.0], ..Placement::default() };
+        assert_eq!(shifted.point_at([1.0, 1.0]), [0.5, 1.25]);
+    }
 
     #[test]
     fn angles_go_on_beyond_a_turn() {
