@@ -223,7 +223,7 @@ impl Parameters<'_> {
                 let text = text.clone();
                 // What is wrong with it has been said; NaN would be an error of its own.
                 let value = self.formula(&text, path, node.origin, &mut Vec::new());
-                let value = value.unwrap_or(1.0);
+                let value = value.map_or(1.0, meant);
                 self.report.computed(node.origin, value);
                 // A whole number can be one of particles, too.
                 let whole = value.fract() == 0.0 && value.abs() < 1e15;
@@ -232,6 +232,15 @@ impl Parameters<'_> {
             _ => {}
         }
     }
+}
+
+/// Digits of a number as people write it: one more would not tell all floats apart.
+const DIGITS: usize = 15;
+
+/// The number of few digits that a result is but for rounding: 0.3 of 3 * 0.1.
+fn meant(value: f64) -> f64 {
+    let rounded: f64 = format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value);
+    if (rounded - value).abs() <= 2.0 * f64::EPSILON * value.abs() { rounded } else { value }
 }
 
 /// The formula ends in an arc, and nothing in it turns that into degrees.

@@ -59,11 +59,22 @@ fn formulas_are_computed() {
 #[test]
 fn an_override_of_a_parameter_changes_all_that_follows_from_it() {
     let found = scene(&["parameters.L=0.8"]);
-    assert_eq!((size(&found), found.resolution), ([0.8, 0.30000000000000004], 0.015000000000000003));
+    assert_eq!((size(&found), found.resolution), ([0.8, 0.3], 0.015));
     let found = scene(&["parameters.L==rows * 0.03", "parameters.rows=10"]);
     assert_eq!(size(&found)[0], 0.3);
     let found = scene(&["resolution==L / 40"]);
     assert_eq!(found.resolution, 0.01);
+}
+
+#[test]
+fn rounding_is_none_of_what_a_formula_means() {
+    let end = |formula: &str| scene(&[&format!("end_time=={formula}")]).end_time;
+    assert_ne!(3.0 * 0.1, 0.3);
+    assert_eq!([end("3 * 0.1"), end("0.1 + 0.2"), end("1.1 * 1.1")], [0.3, 0.3, 1.21]);
+    // A number with more digits stays as it is.
+    assert_eq!(end("1 / 3"), 1.0 / 3.0);
+    assert_eq!(end("sqrt(2)").to_bits(), 2.0_f64.sqrt().to_bits());
+    assert_eq!(end("0.300000000000001"), 0.300000000000001);
 }
 
 #[test]
