@@ -64,6 +64,27 @@ pub struct Sweep {
     pub notes: Vec<String>,
 }
 
+/// Keys that change none of the numbers.
+fn idle(keys: &[String], rows: &[SweepRow]) -> Vec<String> {
+    let measured: Vec<&SweepRow> =
+        rows.iter().filter(|row| row.numbers.iter().any(Option::is_some)).collect();
+    let bits = |row: &SweepRow| row.numbers.iter().map(|n| n.map(f64::to_bits)).collect::<Vec<_>>();
+    let is_idle = |key: &usize| {
+        let differ = |one: &SweepRow, other: &SweepRow| {
+            (0..keys.len()).all(|k| (one.values[k] == other.values[k]) != (k == *key))
+        };
+        let pairs = measured
+            .iter()
+            .enumerate()
+            .flat_map(|(k, one)| measured[k + 1..].iter().map(move |o| (*one, *o)));
+        let mut pairs = pairs.filter(|(one, other)| differ(one, other)).peekable();
+        pairs.peek().is_some() && pairs.all(|(one, other)| bits(one) == bits(other))
+    };
+    let said =
+        |key: usize| format!("{} changes none of these numbers: they agree to the last bit", keys[key]);
+    (0..keys.len()).filter(is_idle).map(said).collect()
+}
+
 /// A number that was taken from each run.
 #[derive(Clone, Debug, Serialize)]
 pub struct Measured {
@@ -117,10 +138,12 @@ impl Sweep {
         // What a study says of physical keys asks for this.
         let asks = |text: &String| keys.iter().any(|key| text.ends_with(&warning(key)));
         let warned = study.warned().into_iter().filter(|text| !asks(text));
+        let rows: Vec<SweepRow> = study.rows.iter().map(row).collect();
+        let idle = idle(&keys, &rows);
         Self {
-            notes: late.chain(repeated).chain(warned).collect(),
+            notes: late.chain(repeated).chain(warned).chain(idle).collect(),
             scene: study.scene.clone(),
-            rows: study.rows.iter().map(row).collect(),
+            rows,
             metrics: study.metrics.iter().map(measured).collect(),
             keys,
         }
@@ -350,5 +373,23 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         sweep().write(folder.path()).unwrap();
         assert!(folder.path().join("sweep.png").exists());
+    }
+
+    #[test]
+    fn a_key_that_changes_nothing_is_named() {
+        let Sweep { keys, rows, .. } = sweep();
+        assert_eq!(idle(&keys, &rows), [""; 0]);
+        let with = |numbers: [f64; 4]| -> Vec<SweepRow> {
+            let row =
+                |(row, number): (&SweepRow, f64)| SweepRow { numbers: vec![Some(number)], ..row.clone() };
+            rows.iter().zip(numbers).map(row).collect()
+        };
+        // The first two have one density, as the last two.
+        assert_eq!(
+            idle(&keys, &with([0.25, 0.25, 0.5, 0.5])),
+            ["solid.youngs_modulus changes none of these numbers: they agree to the last bit"]
+        );
+        assert_eq!(idle(&keys, &with([0.25, 0.25, 0.5, 0.5_f64.next_up()])), [""; 0]);
+        assert_eq!(idle(&keys, &rows[..1]), [""; 0], "one run shows nothing");
     }
 }
