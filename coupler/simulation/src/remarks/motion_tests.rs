@@ -52,12 +52,12 @@ fn a_displacement_with_its_clamps_way() {
         let motion = "motion = { amplitude = [0.02, 0.0], period = 1.0, ramp = 0.5 }\n";
         wet(&[&super::trap_tests::with(TANK, motion), WATER, solid, &plate, &probes])
     };
-    let said =
-        "`p0` measures displacements in space, and the clamp of `plate` moves with `tank`: that way is in it";
+    let said = "`p0` measures displacements in space, and the clamp of `plate` moves with `tank`: its way is in \
+                it, up to 0.0";
     let along = ", with = \"tank\"";
     assert!(has(&with(along, &[[0.21, 0.1]]), said), "{:?}", with(along, &[[0.21, 0.1]]));
-    assert!(!has(&with(along, &[[0.21, 0.1], [0.21, 0.0]]), "that way is in it"));
-    assert!(!has(&with("", &[[0.21, 0.1]]), "that way is in it"));
+    assert!(!has(&with(along, &[[0.21, 0.1], [0.21, 0.0]]), "its way is in it"));
+    assert!(!has(&with("", &[[0.21, 0.1]]), "its way is in it"));
 }
 
 #[test]

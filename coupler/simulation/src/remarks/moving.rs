@@ -179,14 +179,25 @@ pub(super) fn displacements(scene: &Scene, all: &mut Vec<String>) {
         let own: Vec<_> = places.filter(|(_, at)| nearest_solid(scene, at) == Some(index)).collect();
         let reach = scene.spacing(shape);
         let in_clamp = |at: &[f64; 3]| shape.clamp.iter().any(|clamp| geometry::holds(clamp, at, reach));
-        if let Some((first, _)) = own.first().filter(|_| !own.iter().any(|(_, at)| in_clamp(at))) {
+        if let Some((first, at)) = own.first().filter(|_| !own.iter().any(|(_, at)| in_clamp(at))) {
+            let way = way(scene, wall, *at);
             all.push(format!(
-                "`{first}` measures displacements in space, and the clamp of `{}` moves with `{}`: that way is in it \
-                 (one at the clamp measures it)",
-                shape.name, wall.name
+                "`{first}` measures displacements in space, and the clamp of `{}` moves with `{}`: its way is in \
+                 it, up to {} m at that place (one at the clamp shows how much)",
+                shape.name,
+                wall.name,
+                length(way)
             ));
         }
     }
+}
+
+/// How far a wall takes a place along at the most, m.
+fn way(scene: &Scene, wall: &Shape, at: [f64; 3]) -> f64 {
+    let Some(motion) = &wall.motion else { return 0.0 };
+    let places = (0..=INSTANTS).map(|k| motion.at(scene.end_time * k as f64 / INSTANTS as f64));
+    let ways = places.map(|place| place.displacement_of(at).map(|x| x * x).iter().sum::<f64>());
+    ways.fold(0.0, f64::max).sqrt()
 }
 
 /// The shape of solid that is nearest to a place.
@@ -315,11 +326,6 @@ fn way_of(scene: &Scene, bodies: &[Body], placed: &[Placed], index: usize) -> Op
 pub(super) fn probes(scene: &Scene, all: &mut Vec<String>) {
     for (tank, around) in tanks(scene) {
         let Some(motion) = &tank.motion else { continue };
-        let way = |at: [f64; 3]| {
-            let places = (0..=INSTANTS).map(|k| motion.at(scene.end_time * k as f64 / INSTANTS as f64));
-            let ways = places.map(|place| place.displacement_of(at).map(|x| x * x).iter().sum::<f64>());
-            ways.fold(0.0, f64::max).sqrt()
-        };
         let middle = |axis: usize| 0.5 * (around.min[axis] + around.max[axis]);
         let mut ride: Vec<(&str, f64)> = Vec::new();
         let mut stay = ride.clone();
@@ -337,7 +343,7 @@ pub(super) fn probes(scene: &Scene, all: &mut Vec<String>) {
                 _ => continue,
             };
             let inside = |at: &&[f64; 3]| meet(&Block { min: **at, max: **at }, &around, scene);
-            let most = places.iter().filter(inside).map(|at| way(*at)).fold(0.0, f64::max);
+            let most = places.iter().filter(inside).map(|at| way(scene, tank, *at)).fold(0.0, f64::max);
             if most > 0.5 * scene.resolution {
                 kept.push((&probe.name, most));
             }

@@ -8,8 +8,8 @@ use crate::{Geometry, Phase, Scene};
 
 /// Parts of the outline of what is round, in a spacing.
 const FINE: f64 = 8.0;
-/// Lines in a spacing by which an area is found.
-const LINES: usize = 16;
+/// Lines in a spacing, beside those at the ends of sides, between which an area is found: sides may cross.
+const LINES: f64 = 4.0;
 /// Relative tolerance of lengths, in spacings.
 const ALIKE: f64 = 1e-6;
 
@@ -222,17 +222,19 @@ impl Frame<'_> {
         ended
     }
 
-    /// Area of the shape less the voids, m².
+    /// Area of the shape less the voids, m²: between two ends of sides a line's length is that in the middle.
     fn area(&self) -> f64 {
         let [low, high] = self.extent(1);
-        let step = self.dx / LINES as f64;
-        let lines = ((high - low) / step).ceil().max(1.0);
-        let step = (high - low) / lines;
-        let length = |k: usize| {
-            let spans = self.spans(0, low + (k as f64 + 0.5) * step);
-            spans.iter().map(|span| span.ends[1] - span.ends[0]).sum::<f64>()
-        };
-        (0..lines as usize).map(length).sum::<f64>() * step
+        let lines = ((high - low) / self.dx * LINES).ceil().max(1.0);
+        let even = (0..=lines as usize).map(|k| low + (high - low) * k as f64 / lines);
+        let ends = self.shape.iter().chain(self.voids.iter().flatten()).map(|side| side[0][1]);
+        let mut levels: Vec<f64> = even.chain(ends).filter(|y| low <= *y && *y <= high).collect();
+        levels.sort_by(f64::total_cmp);
+        let between = levels.windows(2).map(|ends| {
+            let spans = self.spans(0, 0.5 * (ends[0] + ends[1]));
+            (ends[1] - ends[0]) * spans.iter().map(|span| span.ends[1] - span.ends[0]).sum::<f64>()
+        });
+        between.sum()
     }
 }
 
