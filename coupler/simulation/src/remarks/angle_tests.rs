@@ -69,6 +69,16 @@ fn two_that_move_into_each_other() {
     assert!(has(&both(0.24), "`one` turns into `other` from about "), "{:?}", both(0.24));
     assert!(!has(&both(0.24), "`other` turns into `one`"), "once");
     assert!(!has(&both(0.36), "turns into"), "{:?}", both(0.36));
+    // A tank is looked at from what turns in it, wherever it stands in the file.
+    let keys = "motion = { angle = 0.05, period = 1.0, pivot = [0.5, 0.0] }";
+    let rolls =
+        wall("tank", &format!("tank = {{ min = [0.0, 0.0], max = [1.0, 0.4], open = [\"top\"] }}\n{keys}"));
+    let blade = wall(
+        "blade",
+        "box = { min = [0.1, 0.04], max = [0.26, 0.08] }\nmotion = { angular_velocity = 6.28, pivot = [0.18, 0.06] }",
+    );
+    let found = of(&format!("{rolls}{blade}{}", water([0.0, 0.3, 0.2])));
+    assert!(has(&found, "`blade` turns into `tank` from about "), "{found:?}");
     let plunger = |name: &str, x: f64, way: f64| {
         let block = format!("box = {{ min = [{x}, 0.0], max = [{}, 0.3] }}", x + 0.05);
         wall(name, &format!("{block}\nmotion = {{ amplitude = [{way}, 0.0], period = 2.0 }}"))

@@ -12,24 +12,20 @@ const DEEP: f64 = 0.25;
 /// Most particles of what turns that are followed.
 const FOLLOWED: usize = 400;
 
-/// Walls and rigid bodies that turn, and are no tanks: what they come into.
+/// What turns: what it comes into.
 pub(super) fn passages<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
     for (index, shape) in scene.shapes.iter().enumerate() {
-        let Some(motion) = shape.motion.as_ref().filter(|motion| motion.pivot().is_some()) else { continue };
-        let own: Vec<[f64; D]> = match shape.phase {
-            Phase::Wall if !matches!(shape.geometry, Geometry::Tank { .. }) => {
-                layout.wall.iter().filter(|p| p.shape as usize == index).map(|p| p.position).collect()
-            }
-            Phase::Solid if is_rigid(scene, shape) => {
-                layout.solid.iter().filter(|p| p.body as usize == index).map(|p| p.position).collect()
-            }
-            _ => continue,
-        };
+        let Some(motion) = shape.motion.as_ref().filter(|_| turns(scene, shape)) else { continue };
+        let of_walls = layout.wall.iter().filter(|p| p.shape as usize == index).map(|p| p.position);
+        let of_solids = layout.solid.iter().filter(|p| p.body as usize == index).map(|p| p.position);
+        let own: Vec<[f64; D]> = of_walls.chain(of_solids).collect();
         let some: Vec<[f64; D]> = own.iter().step_by(own.len().div_ceil(FOLLOWED).max(1)).copied().collect();
         let instant = |k: usize| scene.end_time * k as f64 / INSTANTS as f64;
         for (other, fixed) in scene.shapes.iter().enumerate() {
             let why = match fixed.phase {
-                _ if other == index || goes_along(fixed, shape) || is_told(fixed, other, index) => continue,
+                _ if other == index || goes_along(fixed, shape) => continue,
+                // Of two that turn the first one is followed.
+                _ if other < index && turns(scene, fixed) => continue,
                 Phase::Wall if shape.phase == Phase::Wall => "walls do not stop each other",
                 Phase::Wall => "nothing stops what `motion` moves",
                 Phase::Solid if shape.phase == Phase::Wall && !shape.contact => {
@@ -66,18 +62,20 @@ pub(super) fn passages<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &
     }
 }
 
-fn is_rigid(scene: &Scene, shape: &Shape) -> bool {
-    shape.solid.is_some_and(|k| scene.solids[k].rigid().is_some())
+/// Whether it is a wall or a rigid body that turns, and no tank.
+fn turns(scene: &Scene, shape: &Shape) -> bool {
+    let rigid = || shape.solid.is_some_and(|k| scene.solids[k].rigid().is_some());
+    let followed = match shape.phase {
+        Phase::Wall => !matches!(shape.geometry, Geometry::Tank { .. }),
+        Phase::Solid => rigid(),
+        Phase::Fluid => false,
+    };
+    followed && shape.motion.as_ref().is_some_and(|motion| motion.pivot().is_some())
 }
 
 /// Whether clamps of a solid move with a wall.
 fn goes_along(solid: &Shape, wall: &Shape) -> bool {
     solid.clamp_with.iter().flatten().any(|with| *with == wall.name)
-}
-
-/// Whether a pair of two that turn is looked at from the other one.
-fn is_told(fixed: &Shape, other: usize, index: usize) -> bool {
-    fixed.motion.as_ref().is_some_and(|motion| motion.pivot().is_some() && other < index)
 }
 
 fn is_beside<const D: usize>(scene: &Scene, fixed: &Shape, x: &[f64; D]) -> bool {

@@ -21,11 +21,11 @@ struct Face<'s> {
     computed: f64,
     /// The box that it ends.
     of: Block,
-    turned: Option<Copy<'s>>,
+    turned: Option<Turned<'s>>,
 }
 
 /// A copy of what is turned.
-type Copy<'s> = (&'s Moved, u32);
+type Turned<'s> = (&'s Moved, u32);
 
 impl Face<'_> {
     /// The point of the box, before it is turned, that is at a place.
@@ -58,7 +58,7 @@ fn boxes(scene: &Scene, shape: &Shape) -> Vec<Block> {
 }
 
 /// The boxes of a shape, one of each copy, those that are turned as before.
-fn turned(shape: &Shape) -> Vec<(Block, Option<Copy<'_>>)> {
+fn turned(shape: &Shape) -> Vec<(Block, Option<Turned<'_>>)> {
     match &shape.geometry {
         Geometry::Moved(moved) if moved.angle != 0.0 => match *moved.geometry {
             Geometry::Box(block) => moved.copies().map(|copy| (block, Some((moved, copy)))).collect(),
@@ -71,7 +71,7 @@ fn turned(shape: &Shape) -> Vec<(Block, Option<Copy<'_>>)> {
 fn off<'s>(scene: &'s Scene, dimension: usize) -> Vec<Face<'s>> {
     let dx = scene.resolution;
     let walls = scene.shapes.iter().enumerate().filter(|(_, s)| s.phase == Phase::Wall);
-    let of_box = |(shape, (of, turned)): (usize, (Block, Option<Copy<'s>>))| {
+    let of_box = |(shape, (of, turned)): (usize, (Block, Option<Turned<'s>>))| {
         let face = move |axis: usize| {
             let rows = ((of.max[axis] - of.min[axis]) / dx).round();
             Face { shape, axis, asked: of.max[axis], computed: of.min[axis] + rows * dx, of, turned }
