@@ -207,8 +207,7 @@ impl<const D: usize> Walls<D> {
         solid: Touching<'w, D>,
         slot: usize,
     ) -> impl Iterator<Item = (usize, f64)> + use<'w, D> {
-        self.neighbours.of(slot).iter().filter_map(move |&j| {
-            let j = j as usize;
+        self.neighbours.of(slot).filter_map(move |j| {
             let apart = |d: usize| solid.position[d][slot] - self.position[d][j];
             let square = (0..D).map(|d| apart(d).powi(2)).sum::<f64>();
             (square < solid.spacing * solid.spacing).then_some((j, square))

@@ -25,16 +25,16 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         for slot in (0..self.columns.slots()).step_by(LANES) {
             let target = law.target(slot);
             let real: [bool; LANES] = std::array::from_fn(|k| self.columns.id[slot + k] != PADDING);
-            for &j in self.wall_list.of(slot) {
-                let wall = law.source_position(j as usize);
+            for j in self.wall_list.of(slot) {
+                let wall = law.source_position(j);
                 let dx: [Lane; D] = std::array::from_fn(|d| {
                     Lane(std::array::from_fn(|k| fluid.position[d][slot + k] - wall[d]))
                 });
                 let r2 = dx.iter().fold(Lane::ZERO, |sum, &dx| sum + dx * dx);
                 let mut rates = RateSum::default();
-                law.add::<Unfused, Lane>(&target, j as usize, dx, r2, &mut rates);
+                law.add::<Unfused, Lane>(&target, j, dx, r2, &mut rates);
                 for k in (0..LANES).filter(|&k| real[k]) {
-                    (0..D).for_each(|d| loads[j as usize][d] -= mass * rates.acceleration[d].0[k]);
+                    (0..D).for_each(|d| loads[j][d] -= mass * rates.acceleration[d].0[k]);
                 }
             }
         }

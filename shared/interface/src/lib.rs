@@ -320,8 +320,8 @@ impl<const D: usize> Interface<D> {
     pub fn smallest_distance(&self) -> f64 {
         let mut least = f64::INFINITY;
         for (i, _) in self.fluid.slots() {
-            for &j in self.fluid_list.of(i) {
-                let apart = |d: usize| self.fluid.position[d][i] - self.solid.position[d][j as usize];
+            for j in self.fluid_list.of(i) {
+                let apart = |d: usize| self.fluid.position[d][i] - self.solid.position[d][j];
                 let r2: f64 = (0..D).map(|d| apart(d).powi(2)).sum();
                 least = least.min(r2);
             }

@@ -14,12 +14,18 @@ use iceoryx2::port::subscriber::Subscriber;
 use iceoryx2::port::update_connections::UpdateConnections;
 use iceoryx2::prelude::*;
 use iceoryx2::sample::Sample;
+use iceoryx2::sample_mut::SampleMut;
+use iceoryx2::sample_mut_uninit::SampleMutUninit;
 use iceoryx2::service::port_factory::publish_subscribe;
 use std::fmt::Debug;
+use std::mem::MaybeUninit;
 use std::sync::Arc;
 
 /// A message where it was written.
 type Message<S, R, H> = Sample<S, [Slot<R>], Slot<H>>;
+/// A message before its records are written, and after.
+type Room<S, R, H> = SampleMutUninit<S, [MaybeUninit<Slot<R>>], Slot<H>>;
+type Written<S, R, H> = SampleMut<S, [Slot<R>], Slot<H>>;
 
 /// A channel before its ports are made.
 #[derive(Debug)]
@@ -193,13 +199,29 @@ impl<S: Transport, R: Plain, H: Plain> Outgoing<S, R, H> {
         count: usize,
         mut record: impl FnMut(usize) -> R,
     ) -> Result<(), LinkError> {
+        let sample = self.loan(header, count)?;
+        self.hand_over(hub, sample.write_from_fn(|slot| Slot(record(slot))))
+    }
+
+    /// The same with records that lie side by side.
+    pub(super) fn send_all(&mut self, hub: &Hub<S>, header: &H, records: &[R]) -> Result<(), LinkError> {
+        let sample = self.loan(header, records.len())?;
+        self.hand_over(hub, sample.write_from_slice(Slot::of(records)))
+    }
+
+    /// Room for a message, with its header.
+    fn loan(&mut self, header: &H, count: usize) -> Result<Room<S, R, H>, LinkError> {
         self.check_capacity(count)?;
         let mut sample = self
             .publisher
             .loan_slice_uninit(count)
             .map_err(|e| LinkError::transport("room for a message", e))?;
         *sample.user_header_mut() = Slot(*header);
-        match sample.write_from_fn(|slot| Slot(record(slot))).send() {
+        Ok(sample)
+    }
+
+    fn hand_over(&self, hub: &Hub<S>, sample: Written<S, R, H>) -> Result<(), LinkError> {
+        match sample.send() {
             Ok(_) => Ok(()),
             Err(SendError::UnableToDeliver) => Err(hub.watch.undelivered(|port| self.owner_of(port))),
             Err(error) => Err(LinkError::transport("sending", error)),

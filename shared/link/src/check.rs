@@ -1,13 +1,11 @@
 //! What every received message must satisfy before anybody uses it.
 
 use super::config::FLUID;
+use super::records::{are_possible, copy_checked};
 use super::{LinkConfig, LinkError, Participant};
 use halfstep_wire::Name;
 use halfstep_wire::half_step::{HalfStep, Stage};
-use halfstep_wire::protocol::{
-    ForceHeader, ForceRecord, LAST_STAGE, PROTOCOL, ProbeHeader, SCHEMA, StateHeader, StateRecord, order,
-    status,
-};
+use halfstep_wire::protocol::{LAST_STAGE, PROTOCOL, ProbeHeader, SCHEMA, StateHeader, StateRecord, status};
 use std::fmt::Display;
 
 /// The message that is due.
@@ -60,13 +58,18 @@ impl Expect {
 }
 
 /// Who sent a message to whom waits for what.
-struct Check<'a> {
-    peer: Name,
-    expect: &'a Expect,
+pub(super) struct Check<'a> {
+    pub(super) peer: Name,
+    pub(super) expect: &'a Expect,
 }
 
 impl Check<'_> {
-    fn mismatch(&self, field: &'static str, expected: impl Display, found: impl Display) -> LinkError {
+    pub(super) fn mismatch(
+        &self,
+        field: &'static str,
+        expected: impl Display,
+        found: impl Display,
+    ) -> LinkError {
         LinkError::Mismatch {
             peer: self.peer,
             field,
@@ -77,7 +80,7 @@ impl Check<'_> {
         }
     }
 
-    fn equal<T: PartialEq + Display>(
+    pub(super) fn equal<T: PartialEq + Display>(
         &self,
         field: &'static str,
         expected: T,
@@ -96,11 +99,11 @@ impl Check<'_> {
         }
     }
 
-    fn finite(&self, field: &'static str, value: f64) -> Result<(), LinkError> {
+    pub(super) fn finite(&self, field: &'static str, value: f64) -> Result<(), LinkError> {
         if value.is_finite() { Ok(()) } else { Err(self.not_finite(field, None, value)) }
     }
 
-    fn not_finite(&self, field: &'static str, particle: Option<u32>, value: f64) -> LinkError {
+    pub(super) fn not_finite(&self, field: &'static str, particle: Option<u32>, value: f64) -> LinkError {
         let Expect { step, stage, .. } = *self.expect;
         LinkError::NotFinite { peer: self.peer, field, particle, value, step, stage }
     }
@@ -120,13 +123,13 @@ impl Check<'_> {
         }
     }
 
-    fn identity(&self, own: u64, run: u64, protocol: u32, schema: u64) -> Result<(), LinkError> {
+    pub(super) fn identity(&self, own: u64, run: u64, protocol: u32, schema: u64) -> Result<(), LinkError> {
         self.equal("run_id", own, run)?;
         self.equal("protocol", PROTOCOL, protocol)?;
         self.equal("schema", SCHEMA, schema)
     }
 
-    fn position(&self, step: u64, stage: u32, time: f64, dt: f64) -> Result<(), LinkError> {
+    pub(super) fn position(&self, step: u64, stage: u32, time: f64, dt: f64) -> Result<(), LinkError> {
         self.equal("step", self.expect.step, step)?;
         self.equal("stage", self.expect.stage, stage)?;
         self.same_bits("time", self.expect.time, time)?;
@@ -137,8 +140,8 @@ impl Check<'_> {
 /// Particle numbers of the messages of one epoch.
 #[derive(Debug)]
 pub struct Identities {
-    ids: Vec<u32>,
-    epoch: Option<u64>,
+    pub(super) ids: Vec<u32>,
+    pub(super) epoch: Option<u64>,
 }
 
 impl Identities {
@@ -158,12 +161,9 @@ impl Identities {
         self.ids.push(id);
     }
 
-    /// Whether these are possible states of the known particles: one pass without branches for the usual message. What
-    /// is wrong with another one is found out at leisure.
-    fn match_at_once(&self, epoch: u64, records: &[StateRecord]) -> bool {
-        let good = |(id, record): (&u32, &StateRecord)| (*id == record.id) & state_is_possible(record);
-        self.is_current(epoch, records.len())
-            && self.ids.iter().zip(records).fold(true, |all, pair| all & good(pair))
+    /// The particles of a message, where they are known.
+    fn of(&self, epoch: u64, count: usize) -> &[u32] {
+        if self.is_current(epoch, count) { &self.ids } else { &[] }
     }
 
     pub(super) fn is_current(&self, epoch: u64, count: usize) -> bool {
@@ -201,11 +201,46 @@ impl StateCheck {
         records: &[StateRecord],
         expect: &Expect,
     ) -> Result<(), LinkError> {
+        let known = self.known.of(header.epoch, records.len());
+        if !self.head_calls_for_records(header, records.len(), expect)? || are_possible(known, records) {
+            return Ok(());
+        }
+        self.look_closer(header, records, expect)
+    }
+
+    /// Copies the records of a message to `records`, and checks message and copies as [`Self::verify`] does: whoever
+    /// has sent them cannot change these any more.
+    ///
+    /// # Errors
+    /// As for [`Self::verify`].
+    pub(super) fn take(
+        &mut self,
+        header: &StateHeader,
+        from: &[StateRecord],
+        expect: &Expect,
+        records: &mut Vec<StateRecord>,
+    ) -> Result<(), LinkError> {
+        records.clear();
+        let checked = self.head_calls_for_records(header, from.len(), expect)?;
+        let known = self.known.of(header.epoch, from.len());
+        if copy_checked(known, from, records) || !checked {
+            return Ok(());
+        }
+        self.look_closer(header, records, expect).inspect_err(|_| records.clear())
+    }
+
+    /// Whether the records of a message have to be checked; an error where its header is wrong.
+    fn head_calls_for_records(
+        &self,
+        header: &StateHeader,
+        count: usize,
+        expect: &Expect,
+    ) -> Result<bool, LinkError> {
         let check = Check { peer: self.peer, expect };
         check.identity(self.run_id, header.run_id, header.protocol, header.schema)?;
-        check.equal("count", records.len(), header.count as usize)?;
-        if records.len() > self.capacity {
-            let (needed, capacity) = (records.len(), self.capacity);
+        check.equal("count", count, header.count as usize)?;
+        if count > self.capacity {
+            let (needed, capacity) = (count, self.capacity);
             return Err(LinkError::Capacity {
                 peer: self.peer,
                 needed,
@@ -215,11 +250,12 @@ impl StateCheck {
         }
         match header.status {
             status::OK => {}
-            status::DIVERGED | status::FAILED => return Ok(()),
+            status::DIVERGED | status::FAILED => return Ok(false),
             status::FINISHED if expect.is_last() => {
-                check.equal("count", 0, records.len())?;
+                check.equal("count", 0, count)?;
                 check.equal("step", expect.step, header.step)?;
-                return check.equal("stage", LAST_STAGE, header.stage);
+                check.equal("stage", LAST_STAGE, header.stage)?;
+                return Ok(false);
             }
             status::FINISHED => {
                 return Err(check.mismatch("status", "0 (ok): the run has not been stopped", header.status));
@@ -232,9 +268,17 @@ impl StateCheck {
         if header.stage == Stage::First.number() && header.dt_limit <= 0.0 {
             return Err(check.mismatch("dt_limit", "a positive number", header.dt_limit));
         }
-        if self.known.match_at_once(header.epoch, records) {
-            return Ok(());
-        }
+        Ok(true)
+    }
+
+    /// Begins a new epoch, or finds out what is wrong.
+    fn look_closer(
+        &mut self,
+        header: &StateHeader,
+        records: &[StateRecord],
+        expect: &Expect,
+    ) -> Result<(), LinkError> {
+        let check = Check { peer: self.peer, expect };
         self.identities(&check, header, records)?;
         match records.iter().find(|record| !state_is_possible(record)) {
             None => Ok(()),
@@ -274,44 +318,6 @@ impl StateCheck {
     }
 }
 
-/// Checks the coupler's answer to an own state of these particles.
-///
-/// # Errors
-/// What is wrong with it: the field, what was expected and found.
-pub fn verify_forces(
-    run_id: u64,
-    sent: &Identities,
-    header: &ForceHeader,
-    records: &[ForceRecord],
-    expect: &Expect,
-) -> Result<(), LinkError> {
-    let check = Check { peer: Name::COUPLER, expect };
-    check.identity(run_id, header.run_id, header.protocol, header.schema)?;
-    check.equal("count", records.len(), header.count as usize)?;
-    check.position(header.step, header.stage, header.time, header.dt)?;
-    check.finite("next_time", header.next_time)?;
-    let stops = header.order & order::STOP != 0;
-    if stops == (header.order & order::GO != 0) {
-        return Err(check.mismatch("order", "one of go and stop", header.order));
-    }
-    if stops {
-        return check.equal("stage", Stage::First.number(), header.stage);
-    }
-    if header.dt <= 0.0 {
-        return Err(check.mismatch("dt", "a positive number", header.dt));
-    }
-    check.equal("epoch", sent.epoch.unwrap_or_default(), header.epoch)?;
-    check.equal("count", sent.ids.len(), records.len())?;
-    for (id, record) in sent.ids.iter().zip(records) {
-        check.equal("id", *id, record.id)?;
-        if !force_is_finite(record) {
-            let (field, value) = force_values(record).find(|(_, v)| !v.is_finite()).expect("just found");
-            return Err(check.not_finite(field, Some(record.id), value));
-        }
-    }
-    Ok(())
-}
-
 /// Checks the probe values of a participant on the state of a step.
 ///
 /// # Errors
@@ -331,22 +337,8 @@ pub fn verify_probes(
     check.equal("step", step, header.step)
 }
 
-/// All exponent bits set: neither finite nor the end of a sum that hides it.
-fn is_not_finite(value: f64) -> bool {
-    const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
-    value.to_bits() & EXPONENT == EXPONENT
-}
-
-/// Finite, with a positive density and mass. Without early exit, so that it compiles to a few vector instructions.
 fn state_is_possible(r: &StateRecord) -> bool {
-    let vectors = r.position.iter().chain(&r.velocity).chain(&r.deviatoric_stress);
-    let bad = vectors.fold(false, |bad, v| bad | is_not_finite(*v));
-    let bad = bad | is_not_finite(r.density) | is_not_finite(r.pressure) | is_not_finite(r.mass);
-    !bad & (r.density > 0.0) & (r.mass > 0.0)
-}
-
-fn force_is_finite(r: &ForceRecord) -> bool {
-    !r.cross_viscosity.iter().chain(&r.stress_force).fold(false, |bad, v| bad | is_not_finite(*v))
+    state_values(r).all(|(_, value)| value.is_finite()) && r.density > 0.0 && r.mass > 0.0
 }
 
 fn state_values(r: &StateRecord) -> impl Iterator<Item = (&'static str, f64)> {
@@ -359,9 +351,4 @@ fn state_values(r: &StateRecord) -> impl Iterator<Item = (&'static str, f64)> {
         .chain(named("pressure", &[r.pressure]))
         .chain(named("mass", &[r.mass]))
         .chain(named("deviatoric_stress", &r.deviatoric_stress))
-}
-
-fn force_values(r: &ForceRecord) -> impl Iterator<Item = (&'static str, f64)> {
-    let named = |name: &'static str, values: [f64; 3]| values.into_iter().map(move |v| (name, v));
-    named("cross_viscosity", r.cross_viscosity).chain(named("stress_force", r.stress_force))
 }

@@ -132,7 +132,7 @@ impl<S: Transport> CouplerPort for CouplerLink<S> {
             ..*header
         };
         let side = &mut self.partners[place];
-        side.forces.send(&self.hub, &header, records.len(), |slot| records[slot])?;
+        side.forces.send_all(&self.hub, &header, records)?;
         self.hub.notify(Some(side.participant.process));
         self.times.exchange += start.elapsed();
         Ok(())

@@ -19,6 +19,7 @@
 //! assert!(variables.iter().any(|(key, value)| *key == "HALFSTEP_PARTICIPANTS" && value == "fluid:100,solid:20"));
 //! ```
 
+mod answer;
 mod channel;
 mod check;
 mod claim;
@@ -30,11 +31,13 @@ mod hub;
 mod memory;
 mod port;
 mod process;
+mod records;
 mod slot;
 mod verdict;
 
+pub use answer::verify_forces;
 pub use channel::{ForceSample, ProbeSample, StateSample};
-pub use check::{Expect, Identities, StateCheck, verify_forces, verify_probes};
+pub use check::{Expect, Identities, StateCheck, verify_probes};
 pub use claim::{Claim, cleanup, cleanup_stale};
 pub use config::{FLUID, LinkConfig, Participant};
 pub use coupler::CouplerLink;

@@ -1,7 +1,8 @@
 //! The end of the exchange that a process of participants holds.
 
+use super::answer::take_forces;
 use super::channel::{Channel, Incoming, Outgoing};
-use super::check::{Expect, Identities, StateCheck, verify_forces};
+use super::check::{Expect, Identities, StateCheck};
 use super::hub::{Hub, Presence};
 use super::{Claim, LinkConfig, LinkError, LinkTimes, Port, StateMessage, Transport, memory};
 use halfstep_wire::Name;
@@ -134,13 +135,7 @@ impl<S: Transport> ProcessLink<S> {
         let start = Instant::now();
         let Member { state, sent, .. } = &mut self.members[member];
         state.check_capacity(count)?;
-        let header = StateHeader {
-            run_id: self.run_id,
-            protocol: PROTOCOL,
-            schema: SCHEMA,
-            count: count as u32,
-            ..*header
-        };
+        let header = whole(header, self.run_id, count);
         if header.status != status::OK || sent.is_current(header.epoch, count) {
             state.send(&self.hub, &header, count, record)?;
         } else {
@@ -157,6 +152,11 @@ impl<S: Transport> ProcessLink<S> {
     }
 }
 
+/// A header with what the link fills in.
+fn whole(header: &StateHeader, run_id: u64, count: usize) -> StateHeader {
+    StateHeader { run_id, protocol: PROTOCOL, schema: SCHEMA, count: count as u32, ..*header }
+}
+
 impl<S: Transport> Port for ProcessLink<S> {
     fn send_state(
         &mut self,
@@ -164,7 +164,18 @@ impl<S: Transport> Port for ProcessLink<S> {
         header: &StateHeader,
         records: &[StateRecord],
     ) -> Result<(), LinkError> {
-        self.send_state_from(member, header, records.len(), |slot| records[slot])
+        let start = Instant::now();
+        let Member { state, sent, .. } = &mut self.members[member];
+        state.check_capacity(records.len())?;
+        let header = whole(header, self.run_id, records.len());
+        if header.status == status::OK && !sent.is_current(header.epoch, records.len()) {
+            sent.begin(header.epoch);
+            records.iter().for_each(|record| sent.push(record.id));
+        }
+        state.send_all(&self.hub, &header, records)?;
+        self.hub.notify(None);
+        self.times.exchange += start.elapsed();
+        Ok(())
     }
 
     fn receive_peer(
@@ -180,9 +191,7 @@ impl<S: Transport> Port for ProcessLink<S> {
         let arrival = Instant::now();
         self.times.wait += arrival - start;
         let sample = super::StateSample(sample?);
-        check.verify(sample.header(), sample.records(), expect)?;
-        records.clear();
-        records.extend_from_slice(sample.records());
+        check.take(sample.header(), sample.records(), expect, records)?;
         self.times.exchange += arrival.elapsed();
         Ok(*sample.header())
     }
@@ -199,9 +208,7 @@ impl<S: Transport> Port for ProcessLink<S> {
         let arrival = Instant::now();
         self.times.wait += arrival - start;
         let sample = super::ForceSample(sample?);
-        verify_forces(self.run_id, sent, sample.header(), sample.records(), expect)?;
-        records.clear();
-        records.extend_from_slice(sample.records());
+        take_forces(self.run_id, sent, sample.header(), sample.records(), expect, records)?;
         self.times.exchange += arrival.elapsed();
         Ok(*sample.header())
     }

@@ -21,4 +21,10 @@ impl<T> Slot<T> {
         // SAFETY: `Slot` is transparent, so both slices have the same layout; the lifetime is that of the argument.
         unsafe { &*(std::ptr::from_ref(slots) as *const [T]) }
     }
+
+    /// Values as slots.
+    pub(super) fn of(values: &[T]) -> &[Self] {
+        // SAFETY: as in [`Self::values`].
+        unsafe { &*(std::ptr::from_ref(values) as *const [Self]) }
+    }
 }

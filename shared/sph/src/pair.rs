@@ -149,7 +149,7 @@ impl<const D: usize, W: PairLaw<D>> Work<D> for (&W, &ClusterList) {
     fn gather<A: Arch, L: Lanes>(self, chunk: usize, k: usize, slot: usize, sum: &mut W::Sum<L>) {
         let (law, list) = self;
         let neighbours = list.chunks()[chunk].of(k);
-        if neighbours.is_empty() {
+        if neighbours.len() == 0 {
             return;
         }
         let positions = law.target_positions();
@@ -159,8 +159,7 @@ impl<const D: usize, W: PairLaw<D>> Work<D> for (&W, &ClusterList) {
         let xi: [L::Numbers; D] =
             std::hint::black_box(components(|d| L::numbers(|k| positions[d][slot + k])));
         let mut total = *sum;
-        for &j in neighbours {
-            let j = j as usize;
+        for j in neighbours {
             let xj = law.source_numbers::<L>(j);
             let mut dx = [L::ZERO; D];
             let mut r2 = L::ZERO;

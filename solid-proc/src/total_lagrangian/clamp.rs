@@ -28,8 +28,8 @@ pub(super) fn excess_gain<const D: usize>(
     let excess = |slot: usize| -> Option<f64> {
         let i = point(slot).filter(|i| !i.clamped)?;
         let (mut sum, mut count) = (0.0, 0);
-        let own = |j: &&u32| body.get(id[**j as usize] as usize) == body.get(id[slot] as usize);
-        let near = list.of(slot).iter().filter(own).filter_map(|&j| point(j as usize));
+        let own = |j: &usize| body.get(id[*j] as usize) == body.get(id[slot] as usize);
+        let near = list.of(slot).filter(own).filter_map(point);
         for j in near.filter(|j| j.clamped) {
             let r2: f64 = (0..D).map(|d| (i.position[d] - j.position[d]).powi(2)).sum();
             if r2 < reach * reach {

@@ -14,7 +14,7 @@ use halfstep_scene::geometry::{self, Layout, SolidPoint};
 use halfstep_scene::{EffectName, Scene, Solid};
 use halfstep_sph::columns::{copy, fit, moved_farther};
 use halfstep_sph::lane::{Arch, Isa, LANES, Lane, Lanes};
-use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
+use halfstep_sph::neighbours::{ClusterList, Neighbours, PADDING, Rows};
 use halfstep_sph::pair::{self, PairLaw, distance, pair_sum};
 use halfstep_wire::order;
 use halfstep_wire::state::StateError;
@@ -327,9 +327,8 @@ impl<const D: usize> Contact<D> {
     /// Particles of other bodies that push the one at a slot: slot, x_ij and its square.
     fn pushing(&self, slot: usize) -> impl Iterator<Item = (usize, [f64; D], f64)> {
         let pushed = self.several && self.sums[slot / LANES].square.0[slot % LANES] != 0.0;
-        let near = if pushed { self.list.of(slot) } else { &[] };
-        near.iter().filter_map(move |&j| {
-            let j = j as usize;
+        let near = if pushed { self.list.of(slot) } else { Neighbours::NONE };
+        near.filter_map(move |j| {
             let apart: [f64; D] = std::array::from_fn(|d| self.position[d][slot] - self.position[d][j]);
             let square: f64 = apart.iter().map(|x| x.powi(2)).sum();
             let pushes = self.body[j] != self.body[slot] && square < self.spacing * self.spacing;

@@ -3,7 +3,7 @@
 mod list;
 mod rows;
 
-pub use list::{CHUNK_FOURS, ClusterList};
+pub use list::{CHUNK_FOURS, ClusterList, Neighbours};
 pub use rows::Rows;
 
 /// The number of a slot that only pads a row.

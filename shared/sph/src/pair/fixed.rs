@@ -30,6 +30,8 @@ pub trait FixedLaw<const D: usize>: Sync {
 pub struct FixedPairs<const D: usize> {
     position: Vectors<D>,
     list: ClusterList,
+    /// The list's entries by chunk, side by side with the slopes: their pass is the shortest of all.
+    entries: Vec<Vec<u32>>,
     /// By chunk, in the list's order.
     slopes: Vec<Vec<Lane>>,
 }
@@ -37,12 +39,12 @@ pub struct FixedPairs<const D: usize> {
 impl<const D: usize> FixedPairs<D> {
     /// Of a list of fours ([`ClusterList::narrow`]) among these positions.
     pub fn new<K: Kernel<D>>(isa: Isa, kernel: K, position: Vectors<D>, list: ClusterList) -> Self {
-        let mut pairs = Self { position, list, slopes: Vec::new() };
+        let mut pairs = Self { position, list, entries: Vec::new(), slopes: Vec::new() };
         let fused = isa.min(Isa::detect()) != Isa::Baseline;
         for (c, chunk) in pairs.list.chunks().iter().enumerate() {
             let slopes = pairs.list.clusters_of(c).enumerate().flat_map(|(k, cluster)| {
                 let pairs = &pairs;
-                chunk.of(k).iter().map(move |&j| {
+                chunk.of(k).map(move |j| {
                     let slot = cluster * LANES;
                     if fused {
                         pairs.slope::<K, Fused>(kernel, slot, j)
@@ -52,7 +54,10 @@ impl<const D: usize> FixedPairs<D> {
                 })
             });
             let slopes = slopes.collect();
+            let clusters = 0..pairs.list.clusters_of(c).len();
+            let entries = clusters.flat_map(|k| chunk.of(k)).map(|j| j as u32).collect();
             pairs.slopes.push(slopes);
+            pairs.entries.push(entries);
         }
         pairs
     }
@@ -62,10 +67,10 @@ impl<const D: usize> FixedPairs<D> {
         let Self { list, slopes, .. } = self;
         for (c, (chunk, slopes)) in list.chunks().iter().zip(slopes).enumerate() {
             let clusters = list.clusters_of(c).enumerate();
-            let pairs = clusters.flat_map(|(k, cluster)| chunk.of(k).iter().map(move |&j| (cluster, j)));
+            let pairs = clusters.flat_map(|(k, cluster)| chunk.of(k).map(move |j| (cluster, j)));
             for ((cluster, j), slope) in pairs.zip(slopes) {
                 for lane in 0..LANES {
-                    if apart(cluster * LANES + lane, j as usize) {
+                    if apart(cluster * LANES + lane, j) {
                         slope.0[lane] = 0.0;
                     }
                 }
@@ -75,8 +80,8 @@ impl<const D: usize> FixedPairs<D> {
 
     /// Where the slope of a pair is kept, by its slots: chunk and entry.
     fn place(&self, i: usize, j: usize) -> Option<(usize, usize)> {
-        let (chunk, neighbours, first) = self.list.place(i);
-        Some((chunk, first + neighbours.iter().position(|&k| k as usize == j)?))
+        let (chunk, mut neighbours, first) = self.list.place(i);
+        Some((chunk, first + neighbours.position(|k| k == j)?))
     }
 
     /// Cuts a pair, by its slots: it has no slope from now on, whichever of the two asks. `false`: it had none.
@@ -95,8 +100,7 @@ impl<const D: usize> FixedPairs<D> {
     pub fn neighbours(&self, slot: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let (chunk, neighbours, first) = self.list.place(slot);
         let slopes = self.slopes[chunk][first..].iter().map(move |slope| slope.0[slot % LANES]);
-        let pairs = neighbours.iter().map(|&j| j as usize).zip(slopes);
-        pairs.filter(move |&(j, slope)| j != slot && slope != 0.0)
+        neighbours.zip(slopes).filter(move |&(j, slope)| j != slot && slope != 0.0)
     }
 
     /// The positions.
@@ -119,8 +123,8 @@ impl<const D: usize> FixedPairs<D> {
         components(|d| L::load(&self.position[d], slot))
     }
 
-    fn slope<K: Kernel<D>, A: Arch>(&self, kernel: K, slot: usize, j: u32) -> Lane {
-        let dx = self.apart::<Lane>(&self.at(slot), j as usize);
+    fn slope<K: Kernel<D>, A: Arch>(&self, kernel: K, slot: usize, j: usize) -> Lane {
+        let dx = self.apart::<Lane>(&self.at(slot), j);
         let r2 = dx.iter().fold(Lane::ZERO, |r2, &dx| A::mul_add(dx, dx, r2));
         kernel.gradient_over_r::<A, Lane>(distance(r2, kernel.smoothing_length()))
     }
@@ -147,13 +151,15 @@ impl<const D: usize, W: FixedLaw<D>> Work<D> for OverFixed<'_, W, D> {
     fn gather<A: Arch, L: Lanes>(self, chunk: usize, k: usize, slot: usize, sum: &mut W::Sum<L>) {
         let Self(law, pairs) = self;
         let (neighbours, first) = pairs.list.chunks()[chunk].range(k);
+        let entries = &pairs.entries[chunk][first..first + neighbours.len()];
         // Not by way of memory, as with wider clusters: four targets stay in registers.
         let target = law.target::<L>(slot);
         let xi = pairs.at::<L>(slot);
         let mut total = *sum;
-        for (&j, slope) in neighbours.iter().zip(&pairs.slopes[chunk][first..]) {
-            let dx = pairs.apart(&xi, j as usize);
-            law.add::<A, L>(&target, j as usize, dx, L::of_fours(|_| *slope), &mut total);
+        for (&j, slope) in entries.iter().zip(&pairs.slopes[chunk][first..]) {
+            let j = j as usize;
+            let dx = pairs.apart(&xi, j);
+            law.add::<A, L>(&target, j, dx, L::of_fours(|_| *slope), &mut total);
         }
         *sum = total;
     }
