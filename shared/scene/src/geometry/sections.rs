@@ -10,6 +10,8 @@ use crate::{Geometry, Phase, Scene};
 const FINE: f64 = 8.0;
 /// Lines in a spacing, beside those at the ends of sides, between which an area is found: sides may cross.
 const LINES: f64 = 4.0;
+/// Outlines lie in a plane.
+const PLANE: usize = 2;
 /// Relative tolerance of lengths, in spacings.
 const ALIKE: f64 = 1e-6;
 
@@ -80,7 +82,7 @@ fn fine(geometry: &Geometry, dx: f64) -> f64 {
 fn frames<'s>(scene: &'s Scene, index: usize) -> Vec<Frame<'s>> {
     let shape = &scene.shapes[index];
     let spacing = Spacing::of(scene, shape);
-    if shape.phase != Phase::Solid || scene.dimension != 2 || spacing.nodal {
+    if shape.phase != Phase::Solid || scene.dimension != PLANE || spacing.nodal {
         return Vec::new();
     }
     let geometry = shape.geometry.unmoved();
@@ -92,7 +94,7 @@ fn frames<'s>(scene: &'s Scene, index: usize) -> Vec<Frame<'s>> {
     let direction = [cos * along[0] - sin * along[1], sin * along[0] + cos * along[1]];
     let voids = voids_before(scene, index);
     let region = Region::new(&shape.geometry, spacing, &voids);
-    let points = points::of_shape::<2>(geometry, spacing);
+    let points = points::of_shape::<PLANE>(geometry, spacing);
     let of_copy = |copy: Option<(&'s Moved, u32)>| {
         let mut frame = Frame {
             copy,
