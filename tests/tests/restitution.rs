@@ -1,6 +1,6 @@
 //! What is left of an impact's speed: a rubber disc on a wall, and steel balls that hang in a row.
 
-use halfstep_tests::run::scene_at;
+use halfstep_tests::run::{Finished, scene_at};
 
 /// A disc of 40 mm that meets a floor at 1 m/s; c_P = 37 m/s.
 const DISC: &str = r#"
@@ -115,6 +115,15 @@ fn cradle(gap: f64) -> String {
     scene
 }
 
+/// How far each ball of a cradle turns at the most, rad.
+fn most_turned(run: &Finished) -> Vec<f64> {
+    let most = |k: usize| {
+        let angles = run.curve(&format!("ball-{k}.angle")).values;
+        angles.into_iter().map(f64::abs).fold(0.0, f64::max)
+    };
+    (0..5).map(most).collect()
+}
+
 /// The last ball rises as high as the first one was, and the others stay. Gaps of 0.2 mm are a fifth of what a sub-step
 /// may go, so impacts go on through them within one. Bands: the height to 1 %, of which 0.1 % is measured; what
 /// overlaps is moved apart, by up to half of a sub-step's 1 mm (0.0025 rad) at each of the three impacts on a ball.
@@ -125,11 +134,7 @@ fn a_cradle_swings_on_at_its_end() {
         let path = folder.path().join("cradle.toml");
         std::fs::write(&path, cradle(gap)).expect("a scene");
         let run = scene_at(&path).in_process().run();
-        let most = |k: usize| {
-            let angles = run.curve(&format!("ball-{k}.angle")).values;
-            angles.into_iter().map(f64::abs).fold(0.0, f64::max)
-        };
-        let turned: Vec<f64> = (0..5).map(most).collect();
+        let turned = most_turned(&run);
         println!("gap {gap} m: at most {turned:.4?} rad");
         assert!((turned[4] - 0.3).abs() < 0.003, "gap {gap} m: {turned:?}");
         assert!(turned[1..4].iter().all(|angle| *angle < 0.0075), "gap {gap} m: {turned:?}");
@@ -170,11 +175,7 @@ fn a_cradle_of_five_solids_swings_on_at_its_end() {
     let path = folder.path().join("cradle.toml");
     std::fs::write(&path, cradle_of_solids(2e-4)).expect("a scene");
     let run = scene_at(&path).in_process().run();
-    let most = |k: usize| {
-        let angles = run.curve(&format!("ball-{k}.angle")).values;
-        angles.into_iter().map(f64::abs).fold(0.0, f64::max)
-    };
-    let turned: Vec<f64> = (0..5).map(most).collect();
+    let turned = most_turned(&run);
     println!("at most {turned:.4?} rad");
     assert!((turned[4] - 0.3).abs() < 0.003, "{turned:?}");
     assert!(turned[1..4].iter().all(|angle| *angle < 0.018), "{turned:?}");

@@ -132,29 +132,48 @@ impl<S: Transport> ProcessLink<S> {
         count: usize,
         mut record: impl FnMut(usize) -> StateRecord,
     ) -> Result<(), LinkError> {
-        let start = Instant::now();
-        let Member { state, sent, .. } = &mut self.members[member];
-        state.check_capacity(count)?;
-        let header = whole(header, self.run_id, count);
-        if header.status != status::OK || sent.is_current(header.epoch, count) {
-            state.send(&self.hub, &header, count, record)?;
-        } else {
-            sent.begin(header.epoch);
-            state.send(&self.hub, &header, count, |slot| {
+        self.publish(member, header, count, |state, hub, header, fresh| match fresh {
+            None => state.send(hub, header, count, record),
+            Some(sent) => state.send(hub, header, count, |slot| {
                 let record = record(slot);
                 sent.push(record.id);
                 record
-            })?;
+            }),
+        })
+    }
+
+    /// Publishes a state of so many particles; what sends it notes their numbers where they are new.
+    fn publish(
+        &mut self,
+        member: usize,
+        header: &StateHeader,
+        count: usize,
+        send: impl FnOnce(
+            &mut Outgoing<S, StateRecord, StateHeader>,
+            &Hub<S>,
+            &StateHeader,
+            Option<&mut Identities>,
+        ) -> Result<(), LinkError>,
+    ) -> Result<(), LinkError> {
+        let start = Instant::now();
+        let Member { state, sent, .. } = &mut self.members[member];
+        state.check_capacity(count)?;
+        let header = StateHeader {
+            run_id: self.run_id,
+            protocol: PROTOCOL,
+            schema: SCHEMA,
+            count: count as u32,
+            ..*header
+        };
+        let known = header.status != status::OK || sent.is_current(header.epoch, count);
+        if !known {
+            sent.begin(header.epoch);
         }
+        send(state, &self.hub, &header, (!known).then_some(sent))?;
         self.hub.notify(None);
         self.times.exchange += start.elapsed();
         Ok(())
     }
-}
-
-/// A header with what the link fills in.
-fn whole(header: &StateHeader, run_id: u64, count: usize) -> StateHeader {
-    StateHeader { run_id, protocol: PROTOCOL, schema: SCHEMA, count: count as u32, ..*header }
 }
 
 impl<S: Transport> Port for ProcessLink<S> {
@@ -164,18 +183,12 @@ impl<S: Transport> Port for ProcessLink<S> {
         header: &StateHeader,
         records: &[StateRecord],
     ) -> Result<(), LinkError> {
-        let start = Instant::now();
-        let Member { state, sent, .. } = &mut self.members[member];
-        state.check_capacity(records.len())?;
-        let header = whole(header, self.run_id, records.len());
-        if header.status == status::OK && !sent.is_current(header.epoch, records.len()) {
-            sent.begin(header.epoch);
-            records.iter().for_each(|record| sent.push(record.id));
-        }
-        state.send_all(&self.hub, &header, records)?;
-        self.hub.notify(None);
-        self.times.exchange += start.elapsed();
-        Ok(())
+        self.publish(member, header, records.len(), |state, hub, header, fresh| {
+            if let Some(sent) = fresh {
+                records.iter().for_each(|record| sent.push(record.id));
+            }
+            state.send_all(hub, header, records)
+        })
     }
 
     fn receive_peer(

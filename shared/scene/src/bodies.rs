@@ -17,6 +17,11 @@ pub struct Body {
 }
 
 impl Scene {
+    /// Whether a shape is one of a rigid solid.
+    pub fn is_rigid(&self, shape: &Shape) -> bool {
+        shape.solid.is_some_and(|solid| self.solids[solid].rigid().is_some())
+    }
+
     /// The bodies, in the order of their first particles.
     pub fn bodies(&self) -> Vec<Body> {
         let all = dispatch!(self.dimension, D => self.bodies_of::<D>(&geometry::solids(self)));

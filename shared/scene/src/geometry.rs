@@ -41,7 +41,7 @@ pub use cells::{Cells, cell};
 pub use crossing::{Cracks, crosses};
 pub use line::along;
 pub use moved::Moved;
-pub use nearest::nearest;
+pub use nearest::{nearest, nearest_solid};
 use occupied::Occupied;
 pub(crate) use outline::extent;
 pub use pieces::{pieces, touching};

@@ -115,7 +115,7 @@ pub(super) fn probe(
     let mut probe = Probe { name, kind, solid: None };
     let point = probe.kind.point_of_solid();
     probe.solid = match probe.kind {
-        _ if point.is_some() => point.and_then(|at| nearest_solid(shapes, &at)),
+        _ if point.is_some() => point.and_then(|at| shapes[geometry::nearest_solid(shapes, &at)?].solid),
         ProbeKind::Force { shape: Some(shape), .. } | ProbeKind::Moment { shape: Some(shape), .. } => {
             shapes[shape].solid
         }
@@ -220,12 +220,6 @@ fn gauges(section: &Section<'_>) -> Option<Vec<f64>> {
         return None;
     }
     items.iter().map(|item| section.as_number("x", item, Range::ANY)).collect()
-}
-
-/// The solid whose shape is nearest to a point: of several equally near the one that comes first.
-fn nearest_solid(shapes: &[Shape], at: &[f64; 3]) -> Option<usize> {
-    let of_solid = shapes.iter().filter_map(|s| Some((s.solid?, geometry::distance(&s.geometry, at))));
-    of_solid.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(solid, _)| solid)
 }
 
 pub(super) fn reference(section: Section<'_>, folder: &Path) -> Option<Reference> {

@@ -70,7 +70,6 @@ pub(super) fn overlaps<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &
         })
         .filter(is_there)
         .collect();
-    let rigid = |shape: &Shape| shape.solid.is_some_and(|k| scene.solids[k].rigid().is_some());
     let pairs = scene.contacts();
     let contact = |a: &Toucher<'_>, b: &Toucher<'_>| match (a.shape.solid, b.shape.solid) {
         (Some(k), Some(l)) if k != l => pairs.iter().any(|pair| pair.solids == [k.min(l), k.max(l)]),
@@ -83,15 +82,15 @@ pub(super) fn overlaps<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &
                 a.shape.solid.is_some_and(|k| scene.solids[k].model.name() == SolidModelName::Hypoelastic);
             !one_continuum && !one_body && !tied(scene, a.shape, b.shape)
         }
-        (Some(_), None) => rigid(a.shape) && !tied(scene, a.shape, b.shape),
-        (None, Some(_)) => rigid(b.shape) && !tied(scene, b.shape, a.shape),
+        (Some(_), None) => scene.is_rigid(a.shape) && !tied(scene, a.shape, b.shape),
+        (None, Some(_)) => scene.is_rigid(b.shape) && !tied(scene, b.shape, a.shape),
         (None, None) => false,
     };
     for (k, a) in touchers.iter().enumerate() {
         for b in touchers[k + 1..].iter().filter(|b| contact(a, b)) {
             let depth = a.depth_in(b).max(b.depth_in(a));
             let by_outline = a.shape.solid != b.shape.solid
-                || rigid(a.shape)
+                || scene.is_rigid(a.shape)
                 || a.shape.solid.is_some_and(|k| scene.leaves_bodies_to_coupler(k));
             if depth > OVERLAP[usize::from(!by_outline)] * scene.resolution {
                 let text = in_each_other(scene, a.shape, b.shape, depth);

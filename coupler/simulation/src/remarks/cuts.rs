@@ -13,8 +13,9 @@ const ALIKE: f64 = 1e-6;
 /// ones of which voids leave another area.
 pub(super) fn cuts(scene: &Scene, placed: &[Placed], all: &mut Vec<String>) {
     for (index, shape) in scene.shapes.iter().enumerate().filter(|(_, shape)| shape.phase == Phase::Solid) {
-        if shape.solid.is_some_and(|k| scene.solids[k].rigid().is_some()) {
-            all.extend(hollowed(scene, index).filter(|_| placed[index].lost == 0));
+        if scene.is_rigid(shape) {
+            let whole = placed[index].lost == 0;
+            all.extend(whole.then(|| hollowed(scene, index)).flatten());
         } else if shape.lattice_angle == 0.0 {
             let both = geometry::sections(scene, index);
             all.extend(both.iter().filter_map(|sections| thinned(scene, shape, sections)));

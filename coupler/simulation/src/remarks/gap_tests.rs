@@ -1,12 +1,7 @@
 //! Gaps between shapes of any outline: what is remarked on, and what is near it not.
 
-use super::tank_tests::{basin, of, wall, water};
+use super::tank_tests::{basin, beside, wall, water};
 use super::trap_tests::{has, on};
-
-/// Beside a basin of 1 m with 0.3 m of water, 0.2 m deep, at a spacing of 10 mm.
-fn beside(shape: &str) -> Vec<String> {
-    of(&format!("{shape}{}{}", basin(), water([0.0, 0.3, 0.2])))
-}
 
 fn polygon(corners: &str, more: &str) -> Vec<String> {
     beside(&wall("rock", &format!("polygon = {corners}\n{more}")))

@@ -176,7 +176,8 @@ pub(super) fn displacements(scene: &Scene, all: &mut Vec<String>) {
             ProbeKind::Displacement { at } if probe.solid == shape.solid => Some((probe.name.as_str(), at)),
             _ => None,
         });
-        let own: Vec<_> = places.filter(|(_, at)| nearest_solid(scene, at) == Some(index)).collect();
+        let own: Vec<_> =
+            places.filter(|(_, at)| geometry::nearest_solid(&scene.shapes, at) == Some(index)).collect();
         let reach = scene.spacing(shape);
         let in_clamp = |at: &[f64; 3]| shape.clamp.iter().any(|clamp| geometry::holds(clamp, at, reach));
         if let Some((first, at)) = own.first().filter(|_| !own.iter().any(|(_, at)| in_clamp(at))) {
@@ -198,13 +199,6 @@ fn way(scene: &Scene, wall: &Shape, at: [f64; 3]) -> f64 {
     let places = (0..=INSTANTS).map(|k| motion.at(scene.end_time * k as f64 / INSTANTS as f64));
     let ways = places.map(|place| place.displacement_of(at).map(|x| x * x).iter().sum::<f64>());
     ways.fold(0.0, f64::max).sqrt()
-}
-
-/// The shape of solid that is nearest to a place.
-fn nearest_solid(scene: &Scene, at: &[f64; 3]) -> Option<usize> {
-    let solids = scene.shapes.iter().enumerate().filter(|(_, s)| s.phase == Phase::Solid);
-    let distance = |shape: &Shape| geometry::distance(&shape.geometry, at);
-    solids.min_by(|a, b| distance(a.1).total_cmp(&distance(b.1))).map(|(index, _)| index)
 }
 
 /// Joints in tanks that move, tied to what does not go along.

@@ -12,8 +12,7 @@ pub(super) struct Mover<'s> {
 
 /// Walls and rigid bodies that move as prescribed and do not turn.
 pub(super) fn movers(scene: &Scene) -> impl Iterator<Item = Mover<'_>> {
-    let rigid = |shape: &Shape| shape.solid.is_some_and(|k| scene.solids[k].rigid().is_some());
-    let moves = move |shape: &&Shape| shape.phase == Phase::Wall || rigid(shape);
+    let moves = move |shape: &&Shape| shape.phase == Phase::Wall || scene.is_rigid(shape);
     scene.shapes.iter().filter(moves).filter_map(|shape| Mover::of(scene, shape))
 }
 

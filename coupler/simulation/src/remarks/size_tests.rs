@@ -1,12 +1,7 @@
 //! Faces of walls, what voids leave of plates, corners, and what turns: what is remarked on, and what is near it not.
 
-use super::tank_tests::{basin, of, wall, water};
+use super::tank_tests::{basin, beside, of, wall, water};
 use super::trap_tests::has;
-
-/// A basin of 1 m with 0.3 m of water, 0.2 m deep, at a spacing of 10 mm.
-fn beside(shapes: &str) -> Vec<String> {
-    of(&format!("{shapes}{}{}", basin(), water([0.0, 0.3, 0.2])))
-}
 
 #[test]
 fn a_weir_of_part_of_a_row() {

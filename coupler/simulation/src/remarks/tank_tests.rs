@@ -37,6 +37,11 @@ pub(super) fn water([from, to, level]: [f64; 3]) -> String {
 
 pub(super) const OPEN: &str = "\"top\"";
 
+/// Shapes beside a basin of 1 m with 0.3 m of water, 0.2 m deep, at a spacing of 10 mm.
+pub(super) fn beside(shapes: &str) -> Vec<String> {
+    of(&format!("{shapes}{}{}", basin(), water([0.0, 0.3, 0.2])))
+}
+
 pub(super) fn basin() -> String {
     tank("tank", [0.0, 1.0, 0.4], OPEN)
 }

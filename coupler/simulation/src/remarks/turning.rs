@@ -64,10 +64,9 @@ pub(super) fn passages<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &
 
 /// Whether it is a wall or a rigid body that turns, and no tank.
 fn turns(scene: &Scene, shape: &Shape) -> bool {
-    let rigid = || shape.solid.is_some_and(|k| scene.solids[k].rigid().is_some());
     let followed = match shape.phase {
         Phase::Wall => !matches!(shape.geometry, Geometry::Tank { .. }),
-        Phase::Solid => rigid(),
+        Phase::Solid => scene.is_rigid(shape),
         Phase::Fluid => false,
     };
     followed && shape.motion.as_ref().is_some_and(|motion| motion.pivot().is_some())

@@ -62,6 +62,9 @@ pub fn sections(scene: &Scene, index: usize) -> [Vec<Section>; 2] {
 
 /// Area that voids leave of the solid of an index, and that of its particles, m²; `None` where no void meets it.
 pub fn left_by_voids(scene: &Scene, index: usize) -> Option<[f64; 2]> {
+    if voids_before(scene, index).is_empty() {
+        return None;
+    }
     let all = frames(scene, index);
     let meets = |frame: &Frame<'_>| frame.sections(0).iter().any(|section| section.beside_void);
     all.iter().any(meets).then(|| {
