@@ -10,13 +10,14 @@ lists=out/prices
 page=docs/price-lists.md
 mkdir -p "$lists"
 
-price() {
+# SCENE's list by a study with these arguments; the page shows the command as the second argument has it.
+write_list() {
     scene=$1
-    shift
-    case " $wanted " in *" $scene "*) ;; *) return 0 ;; esac
+    command=$2
+    shift 2
     echo "$scene"
-    "$program" study "scenes/$scene.toml" "$@" --out "$lists/$scene" > "$lists/$scene.new"
-    printf '%s' "halfstep study scenes/$scene.toml $*" > "$lists/$scene.command"
+    "$program" study "$@" --out "$lists/$scene" > "$lists/$scene.new"
+    printf '%s' "halfstep study $command" > "$lists/$scene.command"
     model=$(sed -n 's/^model name[[:space:]]*: //p' /proc/cpuinfo | head -n 1)
     waiting=$(cut -d ' ' -f 2 /proc/loadavg)
     printf '%s' "$(date +%F), ${model:-unknown}, $(nproc) processors, $waiting programs waiting for them at the end." \
@@ -26,8 +27,38 @@ price() {
     mv "$lists/$scene.new" "$lists/$scene.txt"
 }
 
+is_wanted() {
+    case " $wanted " in *" $1 "*) ;; *) return 1 ;; esac
+}
+
+price() {
+    is_wanted "$1" || return 0
+    own=scenes/$1.toml
+    name=$1
+    shift
+    write_list "$name" "$own $*" "$own" "$@"
+}
+
+# A scene of an example in Python: name, example, scene and script in its folder with the script's arguments.
+price_example() {
+    is_wanted "$1" || return 0
+    name=$1
+    folder=python/examples/$2
+    own=$folder/$3.toml
+    # What the tests' environment has needs none of its own.
+    case $2 in
+        mujoco | scikit-fem) python=$(sh tests/python/setup.sh) ;;
+        *) python=$(sh tests/python/setup.sh "$2") ;;
+    esac
+    script=$folder/$4
+    shift 4
+    line="OMP_NUM_THREADS=1 python3 $script"
+    write_list "$name" "$own --solid '$line' $*" "$own" --solid "OMP_NUM_THREADS=1 $python $PWD/$script" "$@"
+}
+
 all="oscillating-plate hydrostatic-tank taylor-green standing-wave dam-break hydrostatic-plate elastic-gate"
 all="$all breaking-wall wave-paddle solitary-wave-wall floating-box block-wall gate-lift rolling-tank"
+all="$all mujoco-box mujoco-flap mujoco-wave-flap pyelastica-stem"
 wanted=${*:-$all}
 price oscillating-plate --until 0.4 --set resolution=0.004 \
     --vary resolution=0.002,0.0028571428571428571,0.0066666666666666667 \
@@ -73,6 +104,14 @@ price gate-lift --until 0.45 --set resolution=0.002 --vary resolution=0.0016 --v
     --vary solid.model=total-lagrangian
 price rolling-tank --until 1.0 --set resolution=0.002 --vary resolution=0.0013333333333333333 \
     --vary solid.model=finite-element
+price_example mujoco-box mujoco floating-box floating_box.py \
+    --set resolution=0.0125 --vary resolution=0.01,0.02 --vary smoothing_ratio=2 --vary numerics.cfl=0.2
+price_example mujoco-flap mujoco hinged-flap 'hinged_flap.py 40 1' \
+    --set resolution=0.005 --vary resolution=0.0033333333333333333,0.01 --vary smoothing_ratio=2 --vary numerics.cfl=0.2
+price_example mujoco-wave-flap mujoco wave-flap 'wave_flap.py 5.5 0' \
+    --set resolution=0.01 --vary resolution=0.00666666666666666667 --vary numerics.cfl=0.2
+price_example pyelastica-stem pyelastica stem stem.py \
+    --until 3.2 --set resolution=0.01 --vary resolution=0.00666666666666666667 --vary numerics.cfl=0.2
 
 {
     cat <<'HEAD'

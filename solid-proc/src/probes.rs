@@ -213,6 +213,26 @@ impl<const D: usize> Measurement<D> {
             Self::Energy(_) => {}
         }
     }
+
+    /// Appends what goes with the values of the probe ([`ProbeKind::companions`]).
+    pub(crate) fn accompany(&self, model: &dyn SolidModel<D>, out: &mut Vec<f64>) {
+        use BodyQuantity::{ContactMoment, Moment};
+        match self {
+            Self::OfParticles(particles, Moment | ContactMoment) => {
+                out.extend(mean(model, particles, model.particles().position));
+            }
+            Self::Body(body, Moment | ContactMoment) => out.extend(model.rigid_bodies()[*body].center),
+            _ => {}
+        }
+    }
+}
+
+/// Mean over particles of a model, each with its mass.
+fn mean<const D: usize>(model: &dyn SolidModel<D>, particles: &[u32], of: &[[f64; D]]) -> [f64; D] {
+    let masses = model.particles().mass;
+    let mass: f64 = particles.iter().map(|&p| masses[p as usize]).sum();
+    let sum = |d| particles.iter().map(|&p| masses[p as usize] * of[p as usize][d]).sum::<f64>();
+    std::array::from_fn(|d| sum(d) / mass)
 }
 
 /// Puts the components of something of a body that strains: of its centre of mass, or of the forces on its particles.
@@ -224,24 +244,29 @@ fn of_particles<const D: usize>(
     put: &mut impl FnMut(f64),
 ) {
     let state = model.particles();
-    let mass: f64 = particles.iter().map(|&p| state.mass[p as usize]).sum();
-    let mean = |of: &[[f64; D]]| -> [f64; D] {
-        let sum = |d| particles.iter().map(|&p| state.mass[p as usize] * of[p as usize][d]).sum::<f64>();
-        std::array::from_fn(|d| sum(d) / mass)
+    let mean = |of| mean(model, particles, of);
+    // Forces on particles, by number.
+    let sum = |force: &[[f64; D]]| -> [f64; D] {
+        std::array::from_fn(|d| particles.iter().map(|&p| force[p as usize][d]).sum())
+    };
+    let moment = |force: &[[f64; D]], put: &mut _| {
+        let all = particles.iter().map(|&p| (&force[p as usize], &state.position[p as usize]));
+        about(mean(state.position), all, put);
+    };
+    let of_contact = || {
+        let mut force = vec![[0.0; D]; state.len()];
+        model.contact_forces(&mut |p, given| force[p as usize] = given);
+        force
     };
     let vector = match quantity {
         BodyQuantity::Position => mean(state.position),
         BodyQuantity::Velocity => mean(state.velocity),
-        BodyQuantity::Force => {
-            std::array::from_fn(|d| particles.iter().map(|&p| load.force[p as usize][d]).sum())
-        }
-        BodyQuantity::Moment => {
-            let centre = mean(state.position);
-            let all = particles.iter().map(|&p| (&load.force[p as usize], &state.position[p as usize]));
-            return about(centre, all, put);
-        }
+        BodyQuantity::Force => sum(&load.force),
+        BodyQuantity::ContactForce => sum(&of_contact()),
+        BodyQuantity::Moment => return moment(&load.force, put),
+        BodyQuantity::ContactMoment => return moment(&of_contact(), put),
         // A scene cannot ask for the others.
-        _ => [f64::NAN; D],
+        BodyQuantity::Angle | BodyQuantity::AngularVelocity | BodyQuantity::Energy => [f64::NAN; D],
     };
     vector.iter().for_each(|&x| put(x));
 }

@@ -242,6 +242,7 @@ impl<const D: usize> Role for Solid<D> {
     fn probes(&self, out: &mut Vec<f64>) {
         let ledger = self.ledger.as_ref().map(|own| &own.ledger);
         self.probes.iter().for_each(|probe| probe.measure(self.model.as_ref(), &self.load, ledger, out));
+        self.probes.iter().for_each(|probe| probe.accompany(self.model.as_ref(), out));
     }
 
     fn audit(&self) -> Audit {

@@ -43,6 +43,8 @@ fn the_script_asks_for_scenes_that_there_are_and_keeps_the_rest_of_the_page() {
     for name in ["docs/price-lists.sh", "docs/price-lists.md"] {
         std::fs::copy(repository().join(name), folder.path().join(name)).unwrap();
     }
+    std::fs::create_dir_all(folder.path().join("tests/python")).unwrap();
+    std::fs::write(folder.path().join("tests/python/setup.sh"), "echo python3\n").unwrap();
     let stand_in = folder.path().join("stand-in");
     std::fs::write(&stand_in, STAND_IN).unwrap();
     std::fs::set_permissions(&stand_in, Permissions::from_mode(0o700)).unwrap();
@@ -56,11 +58,11 @@ fn the_script_asks_for_scenes_that_there_are_and_keeps_the_rest_of_the_page() {
     }
 
     let (calls, page) = run(folder.path(), &[]);
-    assert!(calls.lines().count() >= 14, "{calls}");
+    assert!(calls.lines().count() >= 18, "{calls}");
     for call in calls.lines() {
         let words: Vec<&str> = call.split_whitespace().collect();
         let path = words[1];
-        let name = path.trim_start_matches("scenes/").trim_end_matches(".toml");
+        let name = words[words.len() - 1].trim_start_matches("out/prices/");
         assert!(section(&page, name).unwrap().contains("a new list"), "{name}");
         let after = |key: &str| words.windows(2).filter(|w| w[0] == key).map(|w| w[1]).collect::<Vec<_>>();
         let settings: Vec<String> = after("--set").into_iter().map(str::to_owned).collect();

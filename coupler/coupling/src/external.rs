@@ -88,6 +88,11 @@ impl ExternalSolid {
         contact: &[[f64; 2]],
     ) -> &[f64] {
         self.values.clear();
+        let of_fluid = |i: usize| {
+            let (mut force, of_contact) = (forces[i].force(records[i].mass), contact.get(i));
+            of_contact.iter().for_each(|of| (0..2).for_each(|d| force[d] -= of[d]));
+            force
+        };
         let of_probes = self.kinds.iter().zip(&self.chosen).zip(&mut self.turned);
         for ((kind, chosen), turned) in of_probes {
             let parts = kind.components(self.dimension).0.len();
@@ -129,7 +134,7 @@ impl ExternalSolid {
                 | ProbeKind::Energy { .. } => self.values.extend(std::iter::repeat_n(f64::NAN, parts)),
                 ProbeKind::Moment { about, .. } => {
                     let of = |&i: &usize| {
-                        let (x, f) = (records[i].position, forces[i].force(records[i].mass));
+                        let (x, f) = (records[i].position, of_fluid(i));
                         (x[0] - about[0]) * f[1] - (x[1] - about[1]) * f[0]
                     };
                     self.values.push(chosen.iter().map(of).sum());
@@ -149,8 +154,7 @@ impl ExternalSolid {
                 }
                 ProbeKind::Force { .. } => {
                     for d in 0..self.dimension {
-                        let force = |&i: &usize| forces[i].force(records[i].mass)[d];
-                        self.values.push(chosen.iter().map(force).sum());
+                        self.values.push(chosen.iter().map(|&i| of_fluid(i)[d]).sum());
                     }
                 }
                 _ => {

@@ -126,22 +126,29 @@ impl<const D: usize> Solids<D> {
         for (solid, _) in external.iter().enumerate().filter(|(_, external)| external.is_some()) {
             contact.iter_mut().for_each(|contact| contact.leave_bodies(solid));
         }
-        let side = |(solid, external): (usize, Option<ExternalSolid>)| CoupledSolid {
-            interface: Parameters::new(scene, solid, isa).map(Interface::new),
-            forces: Vec::new(),
-            by_kind: ByKind::default(),
-            at_n: Vec::new(),
-            count: None,
-            before: Vec::new(),
-            reach: REACH * scene.smoothing_ratio * scene.resolution,
-            saved: 0,
-            touches_walls,
-            walls: (external.is_some() || scene.leaves_walls_to_coupler(solid))
+        let side = |(solid, external): (usize, Option<ExternalSolid>)| {
+            let walls = (external.is_some() || scene.leaves_walls_to_coupler(solid))
                 .then(|| WallContact::new(scene, solid))
-                .flatten(),
-            touched: Touched::of::<D>(scene, solid),
-            expected: external.as_ref().and(layout.as_ref()).map(|layout| Expected::of(scene, layout, solid)),
-            external,
+                .flatten();
+            let touches = contact.is_some() || walls.is_some();
+            CoupledSolid {
+                interface: Parameters::new(scene, solid, isa).map(Interface::new),
+                forces: Vec::new(),
+                by_kind: ByKind::default(),
+                at_n: Vec::new(),
+                count: None,
+                before: Vec::new(),
+                reach: REACH * scene.smoothing_ratio * scene.resolution,
+                saved: 0,
+                touches_walls,
+                walls,
+                touched: touches.then(|| Touched::of::<D>(scene, solid)).flatten(),
+                expected: external
+                    .as_ref()
+                    .and(layout.as_ref())
+                    .map(|layout| Expected::of(scene, layout, solid)),
+                external,
+            }
         };
         Self {
             first: usize::from(scene.fluid.is_some()),

@@ -13,7 +13,7 @@ use halfstep_output::run_json::{
 };
 use halfstep_role::report::Report;
 use halfstep_scene::geometry::Layout;
-use halfstep_scene::{Phase, Scene};
+use halfstep_scene::{Phase, ProbeKind, Scene};
 use halfstep_wire::Name;
 
 /// The participants of a coupled scene with the sizes of their messages: each in the process that the scene names,
@@ -71,7 +71,8 @@ pub(crate) fn participants<const D: usize>(
 
 /// Number of probe values of the participant at this place.
 fn values(scene: &Scene, place: usize) -> usize {
-    roles::probes_of(scene, place).map(|probe| probe.kind.components(scene.dimension).0.len()).sum()
+    let of = |kind: &ProbeKind| kind.components(scene.dimension).0.len() + kind.companions(scene.dimension);
+    roles::probes_of(scene, place).map(|probe| of(&probe.kind)).sum()
 }
 
 /// Puts what the coupler found into the report of a run.

@@ -197,10 +197,9 @@ impl BodyQuantity {
         }
     }
 
-    /// A body that strains has no such thing, or its model does not keep it apart.
+    /// A body that strains has no such thing.
     pub fn is_of_rigid(self) -> bool {
-        use BodyQuantity::*;
-        matches!(self, Angle | AngularVelocity | ContactForce | ContactMoment)
+        matches!(self, Self::Angle | Self::AngularVelocity)
     }
 
     /// One component about z in the plane.
@@ -303,6 +302,15 @@ impl ProbeKind {
                 (one(quantity.about_z()), quantity.unit())
             }
             Self::Body { quantity, .. } => (axes(), quantity.unit()),
+        }
+    }
+
+    /// Number of values that a solid's process sends for the probe beyond its components, after those of all probes:
+    /// the centre of mass about which a moment is, from which the coupler parts contact and fluid.
+    pub fn companions(&self, dimension: usize) -> usize {
+        match self {
+            Self::Body { quantity: BodyQuantity::Moment | BodyQuantity::ContactMoment, .. } => dimension,
+            _ => 0,
         }
     }
 }

@@ -215,7 +215,8 @@ pub struct ForceHeader {
     pub checkpoint: u64,
 }
 
-/// Heads the probe values of a participant: as many numbers follow as its probes have components, in the scene's order.
+/// Heads the probe values of a participant: as many numbers follow as its probes have components, in the scene's order,
+/// then for each probe of a body's moment its centre of mass.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ProbeHeader {

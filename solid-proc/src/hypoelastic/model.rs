@@ -398,6 +398,13 @@ impl<const D: usize> SolidModel<D> for Hypoelastic<D> {
         self.particles().kinetic_energy_of(particles) + stored.sum::<f64>()
     }
 
+    fn contact_forces(&self, give: &mut dyn FnMut(u32, [f64; D])) {
+        let Some(walls) = &self.walls else { return };
+        for (id, &slot) in self.slot_of[..self.own].iter().enumerate() {
+            give(id as u32, walls.acceleration(slot as usize).map(|a| self.mass * a));
+        }
+    }
+
     fn state(&mut self) -> Option<&mut dyn halfstep_wire::state::State> {
         Some(self)
     }

@@ -268,6 +268,11 @@ impl<const D: usize> Contact<D> {
         }
     }
 
+    /// Calls `give` with each particle's number and the force of contacts on it, N (2D: N/m).
+    pub(crate) fn forces(&self, mut give: impl FnMut(u32, [f64; D])) {
+        self.accelerations(|id, a| give(id, a.map(|a| self.mass * a)));
+    }
+
     /// Acceleration of the particle at a slot by other bodies, m/s².
     fn by_bodies(&self, slot: usize) -> [f64; D] {
         if !self.several {

@@ -442,6 +442,10 @@ impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {
         self.particles().kinetic_energy_of(particles) + stored.sum::<f64>()
     }
 
+    fn contact_forces(&self, give: &mut dyn FnMut(u32, [f64; D])) {
+        self.contact.iter().for_each(|contact| contact.forces(&mut *give));
+    }
+
     fn state(&mut self) -> Option<&mut dyn halfstep_wire::state::State> {
         Some(self)
     }

@@ -1,16 +1,26 @@
-//! Contact forces on each record of a solid, where a probe parts those on a body from the fluid's.
+//! Contact forces on each record of a solid, where a probe parts them from the fluid's.
 
 use crate::roles::probes_of;
-use halfstep_scene::geometry::{self, SolidPoint};
+use halfstep_scene::geometry::{self, SolidPoint, holds};
 use halfstep_scene::{BodyQuantity, ProbeKind, Scene};
 use halfstep_wire::protocol::StateRecord;
 use halfstep_wire::state::{Fields, State, StateError};
 use std::collections::HashSet;
 
-/// A probe of a body's force: what its participant measured is the sum of all forces that it was sent.
-struct OfBody {
+/// What a probe measures of the forces on its particles.
+enum Part {
+    Force,
+    /// Moment about a point, m.
+    Moment([f64; 2]),
+    /// Moment about the centre of mass, which has this place among the participant's values.
+    AboutCentre(usize),
+}
+
+/// A probe of forces: what its participant measured is the sum of all forces that it was sent.
+struct OfForces {
     /// Place of its first value among the participant's.
     value: usize,
+    part: Part,
     /// What is added of the contact forces: taken out of the fluid's, or added to the model's own.
     sign: f64,
     particles: HashSet<u32>,
@@ -18,7 +28,7 @@ struct OfBody {
 
 /// Contact forces on a solid's records, as evaluated last and before, N (2D: N/m).
 pub(super) struct Touched {
-    probes: Vec<OfBody>,
+    probes: Vec<OfForces>,
     now: Vec<[f64; 2]>,
     before: Vec<[f64; 2]>,
 }
@@ -26,30 +36,47 @@ pub(super) struct Touched {
 impl Touched {
     /// Of the solid of that index; `None` where no probe asks.
     pub(super) fn of<const D: usize>(scene: &Scene, solid: usize) -> Option<Self> {
-        let asks = |kind: &ProbeKind| {
-            matches!(kind, ProbeKind::Body { quantity, .. } if matches!(quantity, BodyQuantity::Force
-                | BodyQuantity::Moment | BodyQuantity::ContactForce | BodyQuantity::ContactMoment))
-        };
         let place = solid + usize::from(scene.fluid.is_some());
+        let asks = |kind: &ProbeKind| match kind {
+            ProbeKind::Force { .. } | ProbeKind::Moment { .. } => true,
+            ProbeKind::Body { quantity, .. } => sign_of(*quantity).is_some(),
+            _ => false,
+        };
         if !probes_of(scene, place).any(|probe| asks(&probe.kind)) {
             return None;
         }
         let layout = geometry::solids::<D>(scene);
-        let of_solid = |point: &&SolidPoint<D>| scene.shapes[point.body as usize].solid == Some(solid);
+        let shape = |point: &SolidPoint<D>| point.body as usize;
+        let of_solid = |point: &&SolidPoint<D>| scene.shapes[shape(point)].solid == Some(solid);
         let own: Vec<&SolidPoint<D>> = layout.solid.iter().filter(of_solid).collect();
+        let chosen = |is_of: &dyn Fn(&SolidPoint<D>) -> bool| -> HashSet<u32> {
+            (0..own.len() as u32).filter(|k| is_of(own[*k as usize])).collect()
+        };
+        let count = |kind: &ProbeKind| kind.components(scene.dimension).0.len();
+        let mut centre = probes_of(scene, place).map(|probe| count(&probe.kind)).sum();
         let (mut probes, mut value) = (Vec::new(), 0);
         for probe in probes_of(scene, place) {
-            if let ProbeKind::Body { body, quantity } = &probe.kind {
-                let sign = match quantity {
-                    BodyQuantity::Force => Some(-1.0),
-                    BodyQuantity::ContactForce => Some(1.0),
-                    _ => None,
-                };
-                let is_of = |k: &u32| scene.shapes[own[*k as usize].body as usize].body() == body;
-                let particles = || (0..own.len() as u32).filter(is_of).collect();
-                probes.extend(sign.map(|sign| OfBody { value, sign, particles: particles() }));
-            }
-            value += probe.kind.components(scene.dimension).0.len();
+            let of = match &probe.kind {
+                ProbeKind::Force { within, shape } | ProbeKind::Moment { within, shape, .. } => {
+                    let inside = |point: &SolidPoint<D>| {
+                        within.is_none_or(|block| holds(&block, &point.position, 0.0))
+                            && shape.is_none_or(|shape| shape == point.body as usize)
+                    };
+                    let part = match &probe.kind {
+                        ProbeKind::Moment { about, .. } => Part::Moment([about[0], about[1]]),
+                        _ => Part::Force,
+                    };
+                    Some((part, -1.0, chosen(&inside)))
+                }
+                ProbeKind::Body { body, quantity } => sign_of(*quantity).map(|sign| {
+                    let part = if quantity.turns() { Part::AboutCentre(centre) } else { Part::Force };
+                    (part, sign, chosen(&|point| scene.shapes[shape(point)].body() == body))
+                }),
+                _ => None,
+            };
+            probes.extend(of.map(|(part, sign, particles)| OfForces { value, part, sign, particles }));
+            value += count(&probe.kind);
+            centre += probe.kind.companions(scene.dimension);
         }
         Some(Self { probes, now: Vec::new(), before: Vec::new() })
     }
@@ -73,13 +100,34 @@ impl Touched {
     /// Corrects what a solid measured on this state with the forces that brought it there.
     pub(super) fn correct(&self, records: &[StateRecord], values: &mut [f64]) {
         for probe in &self.probes {
-            for (record, force) in records.iter().zip(&self.before) {
-                if probe.particles.contains(&record.id) {
-                    let sums = values[probe.value..].iter_mut().zip(force);
-                    sums.for_each(|(sum, force)| *sum += probe.sign * force);
+            let of =
+                records.iter().zip(&self.before).filter(|(record, _)| probe.particles.contains(&record.id));
+            let about = match probe.part {
+                Part::Force => {
+                    for (_, force) in of {
+                        let sums = values[probe.value..].iter_mut().zip(force);
+                        sums.for_each(|(sum, force)| *sum += probe.sign * force);
+                    }
+                    continue;
                 }
-            }
+                Part::Moment(about) => about,
+                Part::AboutCentre(place) => [values[place], values[place + 1]],
+            };
+            let moment = |(record, force): (&StateRecord, &[f64; 2])| {
+                let x = record.position;
+                (x[0] - about[0]) * force[1] - (x[1] - about[1]) * force[0]
+            };
+            values[probe.value] += probe.sign * of.map(moment).sum::<f64>();
         }
+    }
+}
+
+/// What is added of the contact forces to a quantity of a body; `None`: it holds none of them.
+fn sign_of(quantity: BodyQuantity) -> Option<f64> {
+    match quantity {
+        BodyQuantity::Force | BodyQuantity::Moment => Some(-1.0),
+        BodyQuantity::ContactForce | BodyQuantity::ContactMoment => Some(1.0),
+        _ => None,
     }
 }
 
@@ -97,9 +145,17 @@ mod tests {
     use super::*;
     use std::path::Path;
 
-    /// Two blocks of one solid and a slab of another one; the second block's first value is the third.
+    /// Two blocks of one solid, of three particles, and a slab of another one.
     #[test]
-    fn a_bodys_contact_is_taken_out_of_its_force() {
+    fn contact_is_taken_out_of_the_fluids_forces() {
+        let body = |name: &str, kind: &str, body: &str| {
+            format!(
+                "[[probe]]\nname = \"{name}\"\nkind = \"{kind}\"\nbody = \"{body}\"\nsolid = \"blocks\"\n"
+            )
+        };
+        let all = |name: &str, kind: &str, more: &str| {
+            format!("[[probe]]\nname = \"{name}\"\nkind = \"{kind}\"\nsolid = \"blocks\"\n{more}\n")
+        };
         let text = "resolution = 0.1\nend_time = 1.0\ngravity = [0.0, -10.0]\n\
                     [[solid]]\nname = \"blocks\"\nmodel = \"rigid\"\ndensity = 500.0\n\
                     [[solid]]\nname = \"slab\"\nmodel = \"rigid\"\ndensity = 500.0\n\
@@ -108,24 +164,43 @@ mod tests {
                     [[shape]]\nname = \"b\"\nphase = \"solid\"\nsolid = \"blocks\"\n\
                     box = { min = [0.5, 0.0], max = [0.6, 0.1] }\n\
                     [[shape]]\nname = \"s\"\nphase = \"solid\"\nsolid = \"slab\"\n\
-                    box = { min = [0.0, -0.2], max = [1.0, -0.1] }\n\
-                    [[probe]]\nname = \"a\"\nkind = \"body-contact-force\"\nbody = \"a\"\nsolid = \"blocks\"\n\
-                    [[probe]]\nname = \"b\"\nkind = \"body-force\"\nbody = \"b\"\nsolid = \"blocks\"\n";
-        let scene = halfstep_scene::parse(text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}"));
+                    box = { min = [0.0, -0.2], max = [1.0, -0.1] }\n"
+            .to_owned()
+            + &body("by-others", "body-contact-force", "a")
+            + &body("by-water", "body-force", "b")
+            + &body("turned-by-water", "body-moment", "a")
+            + &body("turned-by-others", "body-contact-moment", "b")
+            + &all("right", "force", "within = { min = [0.1, 0.0], max = [0.6, 0.1] }")
+            + &all("turned", "moment", "about = [1.0, 2.0]")
+            + &all("one", "force", "shape = \"b\"");
+        let scene =
+            halfstep_scene::parse(&text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}"));
         assert!(Touched::of::<2>(&scene, 1).is_none(), "nobody asks");
-        let mut touched = Touched::of::<2>(&scene, 0).expect("two probes ask");
-        let records: Vec<StateRecord> =
-            (0..3).map(|id| StateRecord { id, ..StateRecord::default() }).collect();
+        let mut touched = Touched::of::<2>(&scene, 0).expect("seven probes ask");
+        let record =
+            |(id, x): (u32, f64)| StateRecord { id, position: [x, 3.0, 0.0], ..StateRecord::default() };
+        let records: Vec<StateRecord> = [(0, 1.0), (1, 3.0), (2, 5.0)].map(record).into();
         touched.begin(3);
         touched.add(0, [1.0, 2.0]);
         touched.add(1, [0.5, 0.0]);
         touched.add(2, [8.0, 4.0]);
-        let mut values = [0.0, 0.0, 10.0, 10.0];
+        // Seven probes, then the centres of a and of b.
+        let measured = [0.0, 0.0, 10.0, 10.0, 20.0, 0.0, 10.0, 10.0, 100.0, 9.0, 9.0, 2.0, 2.5, 4.0, 2.0];
+        let mut values = measured;
         touched.correct(&records, &mut values);
-        assert_eq!(values, [0.0, 0.0, 10.0, 10.0], "before these forces nothing touched");
+        assert_eq!(values, measured, "before these forces nothing touched");
         touched.begin(3);
         touched.correct(&records, &mut values);
-        assert_eq!(values, [1.5, 2.0, 2.0, 6.0]);
+        assert_eq!(values[..4], [1.5, 2.0, 2.0, 6.0]);
+        // About (2, 2.5): (-1, 0.5) x (1, 2) = -2.5 and (1, 0.5) x (0.5, 0) = -0.25.
+        assert_eq!(values[4], 22.75);
+        // About (4, 2): (1, 1) x (8, 4) = -4.
+        assert_eq!(values[5], -4.0);
+        assert_eq!(values[6..8], [1.5, 6.0]);
+        // About (1, 2): (0, 1) x (1, 2) = -1, (2, 1) x (0.5, 0) = -0.5, (4, 1) x (8, 4) = 8.
+        assert_eq!(values[8], 93.5);
+        assert_eq!(values[9..11], [1.0, 5.0]);
+        assert_eq!(values[11..], measured[11..], "centres are as they were");
         assert_eq!(touched.now(), [[0.0; 2]; 3]);
     }
 }

@@ -2,7 +2,7 @@
 
 use halfstep_output::RunReport;
 use halfstep_output::run_json::{ContactReport, ProbeReport, WALLS};
-use halfstep_scene::{BodyQuantity, EnergyPart, Probe, ProbeKind, Scene, Shape};
+use halfstep_scene::{EnergyPart, ProbeKind, Scene, Shape};
 
 /// Density error that a weakly compressible fluid should stay below.
 const DENSITY_ERROR: f64 = 0.03;
@@ -67,7 +67,6 @@ pub fn outcome(scene: &Scene, report: &RunReport) -> Vec<String> {
         }
     }
     all.extend(report.contacts.iter().filter_map(|contact| deep(scene, contact)));
-    all.extend(forces_with_contact(scene, report));
     all.extend(beside_cracks(scene, report));
     if let Some(energy) = &report.energy {
         if energy.relative_residual > RESIDUAL {
@@ -138,23 +137,6 @@ fn parties(names: &[String]) -> String {
     }
 }
 
-/// Forces of the fluid on a solid that another one touched were measured together with the contact.
-fn forces_with_contact(scene: &Scene, report: &RunReport) -> Vec<String> {
-    let of_fluid = |kind: &ProbeKind| match kind {
-        ProbeKind::Force { .. } | ProbeKind::Moment { .. } => true,
-        ProbeKind::Body { quantity, .. } => *quantity == BodyQuantity::Moment,
-        _ => false,
-    };
-    let touched = |probe: &Probe| {
-        let solid = &scene.solids.get(probe.solid?)?.name;
-        let pressed =
-            |contact: &&ContactReport| contact.largest_force > 0.0 && contact.solids.contains(solid);
-        let who = parties(&report.contacts.iter().find(pressed)?.solids);
-        Some(format!("probe `{}` holds the force of the contact of {who}, too", probe.name))
-    };
-    scene.probes.iter().filter(|probe| of_fluid(&probe.kind)).filter_map(touched).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -182,27 +164,6 @@ mod tests {
             ["9.5 % of the fluid is under tension at the end: it would rather part"]
         );
         assert_eq!(of(0.0, 1.0, 0.0, 3), ["3 of 40 particles of the flap left the domain"]);
-    }
-
-    #[test]
-    fn a_force_that_holds_a_contact_is_named() {
-        let text = "resolution = 0.01\nend_time = 1.0\ngravity = [0.0, -10.0]\n[fluid]\ndensity = 1000.0\n\
-                    [[solid]]\nname = \"a\"\nmodel = \"rigid\"\ndensity = 500.0\n[[solid]]\nname = \"b\"\n\
-                    model = \"rigid\"\ndensity = 500.0\n[[shape]]\nname = \"water\"\nphase = \"fluid\"\n\
-                    box = { min = [0.0, 0.0], max = [0.2, 0.1] }\n[[shape]]\nname = \"x\"\nphase = \"solid\"\n\
-                    solid = \"a\"\nbox = { min = [0.0, 0.2], max = [0.1, 0.3] }\n[[shape]]\nname = \"y\"\n\
-                    phase = \"solid\"\nsolid = \"b\"\nbox = { min = [0.0, 0.4], max = [0.1, 0.5] }\n\
-                    [[probe]]\nname = \"push\"\nkind = \"force\"\nsolid = \"a\"\n";
-        let scene = halfstep_scene::parse(text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}"));
-        let solids = || ["a", "b"].map(String::from).to_vec();
-        let contact =
-            |largest_force| ContactReport { solids: solids(), largest_force, ..ContactReport::default() };
-        let of = |force| {
-            let report = RunReport { contacts: vec![contact(force)], ..RunReport::default() };
-            forces_with_contact(&scene, &report)
-        };
-        assert_eq!(of(0.0), [""; 0], "they never met");
-        assert_eq!(of(1.0), ["probe `push` holds the force of the contact of a and b, too"]);
     }
 
     #[test]
