@@ -95,9 +95,7 @@ impl<const D: usize> TotalLagrangian<D> {
             self.set_bracket(slot, &bracket);
         }
         self.failure = self.failure.or(worst);
-        if !candidates.is_empty() {
-            self.grow(&candidates);
-        }
+        self.grow(candidates);
     }
 
     /// B of a slot, Pa.

@@ -17,7 +17,7 @@ const SMALLEST: f64 = 0.5;
 /// a run. A crack that opens is cut at less than twice its volume.
 const VOLUME_CHANGE: f64 = 5.0;
 /// Longest pair over dx whose cells share a face.
-const STRAIGHT: f64 = 1.05;
+pub(super) const STRAIGHT: f64 = 1.05;
 
 impl<const D: usize> TotalLagrangian<D> {
     /// A particle is damaged, and its volume has changed more than any law means.
@@ -32,7 +32,7 @@ impl<const D: usize> TotalLagrangian<D> {
         let mut torn = Vec::new();
         let broken = |slot: usize| fracture.is_broken(slot);
         // A rigid clamp has no damage: the particle beside it decides.
-        let rigid = |slot: usize| self.rigid_clamps && self.fixed.clamped[slot] != 0.0;
+        let rigid = |slot: usize| self.is_rigid(slot);
         for &i in fracture.damaged.iter().filter(|&&slot| broken(slot)) {
             for (j, _) in self.pairs.neighbours(i) {
                 if !(broken(j) && i < j || rigid(j)) {
@@ -40,7 +40,11 @@ impl<const D: usize> TotalLagrangian<D> {
                 }
                 let strain =
                     if rigid(j) { fracture.strain[i] } else { fracture.strain[i].min(fracture.strain[j]) };
-                if self.is_stretched([i, j], STRETCHED * strain) {
+                // A row that bends is torn at an edge.
+                let mut edges = fracture.ligaments_of(i).iter().filter(|ligament| ligament.next == j);
+                if self.is_stretched([i, j], STRETCHED * strain)
+                    || edges.any(|ligament| self.is_edge_stretched(ligament, STRETCHED * strain))
+                {
                     torn.push([i.min(j), i.max(j)]);
                 }
             }
@@ -104,6 +108,7 @@ impl<const D: usize> TotalLagrangian<D> {
             let touched = self.cut(pairs);
             pairs = self.overstrained(&touched);
         }
+        self.note_ligaments();
         let one = self.fracture.as_ref().map(|fracture| fracture.body.clone()).unwrap_or_default();
         self.divide();
         self.face_what_is_near(&one);
@@ -204,7 +209,7 @@ impl<const D: usize> TotalLagrangian<D> {
     /// The moment matrix of a particle that was cut off from neighbours: whether it is free and has lost its
     /// deformation gradient is told by `false`.
     pub(super) fn correct_again(&mut self, slot: usize) -> bool {
-        if self.rigid_clamps && self.fixed.clamped[slot] != 0.0 {
+        if self.is_rigid(slot) {
             return true;
         }
         let moment = self.moment(slot);

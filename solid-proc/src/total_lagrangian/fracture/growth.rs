@@ -16,6 +16,18 @@ fn resistance(damage: f64) -> f64 {
     square(square(fourth))
 }
 
+/// What pulls at a particle.
+struct Pulled {
+    /// Principal tension of the undamaged law, Pa.
+    tension: f64,
+    /// The largest principal stretch.
+    stretch: f64,
+    /// J.
+    volume_ratio: f64,
+    /// At an edge of a last row, not in its middle.
+    at_edge: bool,
+}
+
 /// Where a particle is on its softening curve.
 struct Point {
     /// e0.
@@ -67,8 +79,17 @@ impl<const D: usize> TotalLagrangian<D> {
         strained + 0.5 * self.hourglass[slot] * self.volume * self.error_square(slot)
     }
 
-    /// Damage grows in these particles, ascending, whose stresses are those of the state.
-    pub(in crate::total_lagrangian) fn grow(&mut self, candidates: &[usize]) {
+    /// Damage grows in these particles, ascending, whose stresses are those of the state, and in last rows.
+    pub(in crate::total_lagrangian) fn grow(&mut self, mut candidates: Vec<usize>) {
+        let Some(fracture) = &self.fracture else { return };
+        if fracture.accepted && !fracture.ligaments.is_empty() {
+            candidates.extend(fracture.ligaments.iter().map(|ligament| ligament.slot));
+            candidates.sort_unstable();
+            candidates.dedup();
+        }
+        if candidates.is_empty() {
+            return;
+        }
         let crushed: Vec<usize> = candidates.iter().copied().filter(|&slot| self.is_crushed(slot)).collect();
         if let Some(fracture) = &mut self.fracture {
             fracture.crushed = crushed;
@@ -76,24 +97,24 @@ impl<const D: usize> TotalLagrangian<D> {
         let Some(fracture) = &self.fracture else { return };
         let mut grown = Vec::new();
         for &slot in candidates.iter().filter(|&&slot| self.has_strain(slot)) {
-            let tension = self.tension(slot);
+            let Pulled { tension, stretch, volume_ratio, at_edge } = self.pulled(slot, fracture);
             let begins = if fracture.strain[slot] > 0.0 {
                 None
             } else {
                 let outward = &fracture.outward[slot];
-                let ratio = if *outward == [0.0; D] { 1.0 } else { self.at_surface(slot, outward) };
+                let ratio =
+                    if at_edge || *outward == [0.0; D] { 1.0 } else { self.at_surface(slot, outward) };
                 if ratio * tension <= fracture.keys.strength {
                     continue;
                 }
                 Some(fracture.keys.strength / (ratio * fracture.modulus))
             };
-            let stretch = self.stretch(slot);
             let mut point = match begins {
                 Some(onset) => Point { onset, begun: stretch, strain: onset, damage: 0.0 },
                 None => fracture.point(slot),
             };
             // A force over the area that it had.
-            let nominal = tension * self.volume_ratio[slot] / stretch;
+            let nominal = tension * volume_ratio / stretch;
             // What a squeeze stretches across it is no opening: the law of the whole has no tension there.
             let strain = (tension / fracture.modulus).min(point.onset + stretch - point.begun);
             point.strain = point.strain.max(strain);
@@ -127,10 +148,20 @@ impl<const D: usize> TotalLagrangian<D> {
         }
     }
 
-    /// The largest principal stretch of a slot.
-    fn stretch(&self, slot: usize) -> f64 {
-        let f = &self.gradient[slot];
-        largest(&(f.transpose() * f)).sqrt()
+    /// What pulls at a particle: of one in the last row beside a crack the more at an edge of it.
+    fn pulled(&self, slot: usize, fracture: &Fracture<D>) -> Pulled {
+        let own = self.pulled_by(&self.gradient[slot], self.volume_ratio[slot], false);
+        let edges = fracture.ligaments_of(slot).iter().flat_map(|ligament| self.at_edges(ligament));
+        let at = |f: Matrix<D>| {
+            let j = self.law.volume_ratio(&f);
+            (j > 0.0).then(|| self.pulled_by(&f, j, true))
+        };
+        edges.filter_map(at).fold(own, |most, edge| if edge.tension > most.tension { edge } else { most })
+    }
+
+    fn pulled_by(&self, f: &Matrix<D>, volume_ratio: f64, at_edge: bool) -> Pulled {
+        let stretch = largest(&(f.transpose() * f)).sqrt();
+        Pulled { tension: largest(&self.effective_of(f, volume_ratio)), stretch, volume_ratio, at_edge }
     }
 
     /// Strain energy that damage takes from a particle at F, J, by growing.

@@ -16,6 +16,8 @@
 //! A damaged particle that is squeezed to a fifth of its volume, or torn to five times of it, is crushed: it loses all
 //! its pairs, and goes on as a single particle before it ends the run.
 //!
+//! Where cuts leave one row of particles, its edges decide in its place (see `ligament`).
+//!
 //! Both change only at the ends of sub-steps of a step's second stage, which is not taken back, one particle after the
 //! other: the first stage computes with what is damaged and cut at n.
 
@@ -23,6 +25,7 @@ mod cuts;
 mod faces;
 mod friction;
 mod growth;
+mod ligament;
 mod principal;
 mod softening;
 mod split;
@@ -44,6 +47,7 @@ use halfstep_scene::{EffectName, Fracture as Keys, Scene};
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::neighbours::PADDING;
 use halfstep_sph::{tensor, with_kernel};
+use ligament::Ligament;
 use nalgebra::SVector;
 use softening::Softening;
 
@@ -86,6 +90,8 @@ pub(super) struct Fracture<const D: usize> {
     crushed: Vec<usize>,
     /// Pairs that are cut, in the order of the cuts.
     faces: Vec<Face>,
+    /// Particles in the last row beside a cut, ascending by their slots; they follow from the cuts.
+    ligaments: Vec<Ligament<D>>,
     /// Coulomb's coefficient of what is left; 0: it does not rub.
     friction: f64,
     /// What rubs in the present state, in the order in which it is slowed.
@@ -159,6 +165,7 @@ impl<const D: usize> Fracture<D> {
             damaged: Vec::new(),
             crushed: Vec::new(),
             faces: Vec::new(),
+            ligaments: Vec::new(),
             friction: match takes_part(scene, solid, EffectName::FragmentFriction) {
                 true => keys.friction,
                 false => 0.0,
@@ -248,6 +255,11 @@ impl<const D: usize> TotalLagrangian<D> {
     /// d of a slot.
     pub(super) fn damage_at(&self, slot: usize) -> f64 {
         self.fracture.as_ref().map_or(0.0, |fracture| fracture.damage[slot])
+    }
+
+    /// The slot has a particle of a rigid clamp.
+    pub(super) fn is_rigid(&self, slot: usize) -> bool {
+        self.rigid_clamps && self.fixed.clamped[slot] != 0.0
     }
 
     /// The slot has a particle that its model moves.

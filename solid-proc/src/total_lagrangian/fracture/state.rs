@@ -65,6 +65,7 @@ impl<const D: usize> TotalLagrangian<D> {
         }
         damaged.into_iter().for_each(|slot| self.soften(slot));
         if !cuts.is_empty() {
+            self.note_ligaments();
             self.divide();
         }
         Ok(())

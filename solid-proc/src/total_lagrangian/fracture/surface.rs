@@ -40,11 +40,17 @@ impl<const D: usize> TotalLagrangian<D> {
 
     /// Stress of the undamaged law, Pa.
     fn effective(&self, slot: usize) -> Matrix<D> {
-        let cauchy = self.law.cauchy(&self.gradient[slot], self.volume_ratio[slot]);
+        self.effective_of(&self.gradient[slot], self.volume_ratio[slot])
+    }
+
+    /// The same of F and J.
+    pub(super) fn effective_of(&self, f: &Matrix<D>, j: f64) -> Matrix<D> {
+        let cauchy = self.law.cauchy(f, j);
         cauchy.deviator - Matrix::identity() * cauchy.pressure
     }
 
     /// Principal tension of the undamaged law, Pa.
+    #[cfg(test)]
     pub(super) fn tension(&self, slot: usize) -> f64 {
         largest(&self.effective(slot))
     }

@@ -11,6 +11,7 @@ mod debris_tests;
 mod friction_tests;
 mod irregular_tests;
 mod law_tests;
+mod ligament_tests;
 
 /// Runs a solid alone and keeps its ledger.
 struct Run<const D: usize> {

@@ -229,18 +229,12 @@ fn a_ragged_face_is_a_row_of_notches() {
     }
 }
 
-/// The last row of a cantilever that its own weight breaks holds as a hinge: what fracture takes until it is off, or
-/// until 0.1 s, over G_f t.
+/// What fracture takes of a cantilever of few rows that its own weight breaks, until it is off, over G_f t: the edges of
+/// its last row tear, which held as a hinge and took 1.7 to 70 times as much.
 #[test]
-fn walls_of_few_rows_hold_as_hinges() {
+fn walls_of_few_rows_take_their_fracture_energy() {
     let dx = 0.005;
-    for (rows, off, measured) in [
-        (6.0, Some(0.0475), 1.67),
-        (5.0, Some(0.080), 3.93),
-        (4.0, None, 14.1),
-        (3.0, None, 42.0),
-        (2.0, None, 70.0),
-    ] {
+    for rows in [6.0, 5.0, 4.0, 3.0, 2.0] {
         let t = rows * dx;
         let text = format!(
             "resolution = {dx}\nend_time = 1.0\ngravity = [0.0, -9.81]\n[solid]\ndensity = 2400.0\n\
@@ -254,10 +248,11 @@ fn walls_of_few_rows_hold_as_hinges() {
         while run.model.summary().bodies == 1 && run.time < 0.1 {
             run.step();
         }
-        let ratio = run.model.summary().energy / (0.1 * t);
-        println!("{rows} rows: {ratio:.2} of G_f t at {:.4} s", run.time);
-        assert!((ratio / measured - 1.0).abs() < 0.03, "{rows}: {ratio}");
-        assert!(off.is_none_or(|off: f64| (run.time / off - 1.0).abs() < 0.05), "{rows}: {} s", run.time);
+        let summary = run.model.summary();
+        let ratio = summary.energy / (0.1 * t);
+        println!("{rows} rows: {ratio:.3} of G_f t, off at {:.4} s, rest {:e} J/m", run.time, run.rest());
+        assert!((summary.bodies, summary.loose) == (2, 0), "{rows}: {summary:?}");
+        assert!((ratio - 1.0).abs() < 0.25, "{rows}: {ratio}");
     }
 }
 
