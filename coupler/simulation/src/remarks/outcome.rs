@@ -106,7 +106,7 @@ fn beside_cracks(scene: &Scene, report: &RunReport) -> Vec<String> {
         if times > BESIDE_CRACKS {
             all.push(format!(
                 "fracture of the {} took {taken:.3} J, {times:.1} times what the cracks of {area:.3} take at \
-                 {} J/m²: a crushed particle, and a last row that holds as a hinge, store more than a crack",
+                 {} J/m²: a crushed particle stores more than a crack, and so does a last row off the lattice, a hinge",
                 solid.name, keys.energy
             ));
         }
@@ -204,7 +204,7 @@ mod tests {
         assert_eq!(of(1.19, 0.2), [""; 0], "2.98 times");
         assert_eq!(of(0.3, 0.0), [""; 0], "it is damaged");
         let said = "fracture of the solid took 1.400 J, 3.5 times what the cracks of 0.200 take at 2 J/m²: a crushed \
-                    particle, and a last row that holds as a hinge, store more than a crack";
+                    particle stores more than a crack, and so does a last row off the lattice, a hinge";
         assert_eq!(of(1.4, 0.2), [said]);
     }
 }
