@@ -229,8 +229,8 @@ fn a_ragged_face_is_a_row_of_notches() {
     }
 }
 
-/// What fracture takes of a cantilever of few rows that its own weight breaks, until it is off, over G_f t: the edges of
-/// its last row tear, which held as a hinge and took 1.7 to 70 times as much.
+/// What fracture takes of a cantilever of few rows that its own weight breaks, until it is off, over G_f t: the edges
+/// of its last row tear, which held as a hinge and took 1.7 to 70 times as much.
 #[test]
 fn walls_of_few_rows_take_their_fracture_energy() {
     let dx = 0.005;

@@ -102,7 +102,7 @@ fn the_edges_of_a_bent_row_by_hand() {
 }
 
 /// The upper half turns about the middle of the last row: the edge opens by half of the angle times the spacing, of
-/// which either particle beside the crack sees half over the spacing, as of a straight crack, and their middles nothing.
+/// which either particle beside the crack sees half over the spacing, as of a straight crack, and its middle nothing.
 #[test]
 fn a_hinge_between_two_particles() {
     let mut run = wall("");
