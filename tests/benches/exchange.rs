@@ -2,8 +2,8 @@
 //! `cargo bench --bench exchange`. `target/bench.json` has the same numbers.
 //!
 //! Fluid, solid and coupler are processes that exchange through the link and compute nothing; two more send bare bytes
-//! to each other. All sleep while they wait. The kinds of exchange take turns, so that other programs on the machine
-//! meet all of them; all figures are medians.
+//! to each other, asleep while they wait or awake for a moment as the link's ends. The kinds of exchange take turns, so
+//! that other programs on the machine meet all of them; all figures are medians.
 
 mod support;
 
@@ -35,12 +35,14 @@ const ROUNDS: usize = 100;
 const DT: f64 = 1e-5;
 
 /// What is measured, as `target/bench.json` and the table name it.
-const KINDS: [(&str, &str); 7] = [
+const KINDS: [(&str, &str); 9] = [
     ("raw_us", "raw"),
     ("halfstep_us", "halfstep"),
     ("both_us", "both N"),
     ("wake_ups_us", "wake-ups"),
     ("raw_read_us", "raw, read"),
+    ("raw_awake_us", "awake"),
+    ("raw_read_awake_us", "read"),
     ("copy_us", "copy"),
     ("checks_us", "checks"),
 ];
@@ -50,6 +52,8 @@ const EMPTY: u64 = 0;
 const WRITTEN: u64 = 1;
 const READ: u64 = 2;
 const END: u64 = 3;
+/// With this bit the other end stays awake for the next one. (The first of each kind is not counted.)
+const AWAKE: u64 = 4;
 
 fn main() -> Outcome<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -178,8 +182,8 @@ fn in_turns(records: u32, [of_raw, of_one, of_both]: &[LinkConfig; 3]) -> Outcom
         message[0] = request;
         let start = Instant::now();
         raw.send(&message[..words]);
-        let sample = raw.receive().expect("an answer");
-        if request == READ {
+        let sample = raw.receive(request & AWAKE != 0).expect("an answer");
+        if request & !AWAKE == READ {
             answer.copy_from_slice(sample.payload());
             black_box(&mut answer);
         }
@@ -199,6 +203,8 @@ fn in_turns(records: u32, [of_raw, of_one, of_both]: &[LinkConfig; 3]) -> Outcom
                     "both_us" => both.exchange()?.ok_or("the solid has ended")?,
                     "wake_ups_us" => ask(EMPTY, 1),
                     "raw_read_us" => ask(READ, whole),
+                    "raw_awake_us" => ask(WRITTEN | AWAKE, whole),
+                    "raw_read_awake_us" => ask(READ | AWAKE, whole),
                     "copy_us" => parts.copy(),
                     _ => parts.check()?,
                 };
@@ -322,8 +328,11 @@ fn answers() -> Outcome<()> {
     let end = End::open(&config, ["answer", "ask"], back, Some(abort_flag()?));
     let answer = vec![1; back];
     let mut read = vec![0; there];
-    while let Some(message) = end.receive() {
-        match message.payload()[0] {
+    let mut awake = false;
+    while let Some(message) = end.receive(awake) {
+        let request = message.payload()[0];
+        awake = request & AWAKE != 0;
+        match request & !AWAKE {
             EMPTY => end.send(&[EMPTY]),
             WRITTEN => end.send(&answer),
             READ => {

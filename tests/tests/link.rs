@@ -54,6 +54,11 @@ macro_rules! conformance {
             }
 
             #[test]
+            fn patience() {
+                suite::patience::<$transport>();
+            }
+
+            #[test]
             fn abort() {
                 suite::abort::<$transport>();
             }

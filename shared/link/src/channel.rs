@@ -1,5 +1,6 @@
 //! The ends of a channel: one publisher, its readers, whole messages.
 
+use super::awake::Awake;
 use super::config::FLUID;
 use super::hub::{Hub, Presence, Watch, attributes, port_error, service_name};
 use super::memory::SAMPLES;
@@ -97,7 +98,7 @@ impl<S: Transport, R: Plain, H: Plain> Channel<S, R, H> {
             .subscriber_builder()
             .create()
             .map_err(|e| port_error(hub.process, "subscribing", e))?;
-        Ok(Incoming { subscriber, channel: self, sender, process, met: false })
+        Ok(Incoming { subscriber, channel: self, sender, process, met: false, awake: Awake::default() })
     }
 
     pub(super) fn writer(self, hub: &Hub<S>) -> Result<Outgoing<S, R, H>, LinkError> {
@@ -136,6 +137,7 @@ pub(super) struct Incoming<S: Transport, R: Plain, H: Plain> {
     pub(super) process: Name,
     /// The sender has come.
     met: bool,
+    awake: Awake,
 }
 
 impl<S: Transport, R: Plain, H: Plain> Incoming<S, R, H> {
@@ -160,6 +162,7 @@ impl<S: Transport, R: Plain, H: Plain> Incoming<S, R, H> {
         hub.wait(
             self.sender,
             self.process,
+            &mut self.awake,
             || channel.writer_node().is_some(),
             || {
                 let message = subscriber.receive().map_err(|e| LinkError::transport("receiving", e))?;

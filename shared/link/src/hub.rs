@@ -1,5 +1,6 @@
 //! A process's place in the run: its node, its wake-up calls, and who else is there.
 
+use super::awake::Awake;
 use super::verdict::{OpenError, PortError, Verdict};
 use super::{LinkConfig, LinkError, Transport, claim::process_lives};
 use halfstep_wire::Name;
@@ -304,22 +305,33 @@ impl<S: Transport> Hub<S> {
         }
     }
 
-    /// Sleeps until `receive` finds a message of `peer`, which runs in `process` and is `listed` as the writer of its
-    /// channel as long as it has not left.
+    /// Waits until `receive` finds a message of `peer`, which runs in `process` and is `listed` as the writer of its
+    /// channel as long as it has not left: asleep, but for a moment where messages of this channel come at once.
     pub(super) fn wait<T>(
         &mut self,
         peer: Name,
         process: Name,
+        awake: &mut Awake,
         listed: impl Fn() -> bool,
         mut receive: impl FnMut() -> Result<Option<T>, LinkError>,
     ) -> Result<T, LinkError> {
+        if self.watch.aborted() {
+            return Err(LinkError::Aborted);
+        }
+        if let Some(message) = receive()? {
+            return Ok(message);
+        }
         let start = Instant::now();
+        if let Some(message) = awake.stay(&mut receive)? {
+            return Ok(message);
+        }
         let mut looked = start;
         loop {
             if self.watch.aborted() {
                 return Err(LinkError::Aborted);
             }
             if let Some(message) = receive()? {
+                awake.learn(start.elapsed());
                 return Ok(message);
             }
             if std::mem::take(&mut self.suspicious) || looked.elapsed() >= TICK {

@@ -20,6 +20,7 @@
 //! ```
 
 mod answer;
+mod awake;
 mod channel;
 mod check;
 mod claim;

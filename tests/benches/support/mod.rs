@@ -16,6 +16,7 @@ use halfstep_sph::lane::{Isa, LANES, Precision};
 use halfstep_sph::neighbours::PADDING;
 use halfstep_sph::pair;
 use halfstep_tests::patch;
+use halfstep_tests::process::cpu_seconds;
 use halfstep_wire::half_step::HalfStep;
 use serde_json::{Map, Value};
 use std::path::Path;
@@ -201,13 +202,6 @@ pub(crate) fn medians(clock: Clock, rounds: usize, work: &mut [Box<dyn FnMut() +
         }
     }
     seconds.into_iter().map(median).collect()
-}
-
-fn cpu_seconds() -> f64 {
-    let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
-    // SAFETY: the pointer is to a live timespec.
-    unsafe { libc::clock_gettime(libc::CLOCK_THREAD_CPUTIME_ID, &mut time) };
-    time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
 }
 
 pub(crate) fn median(mut values: Vec<f64>) -> f64 {

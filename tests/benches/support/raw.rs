@@ -15,7 +15,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// As long as the link sleeps.
+/// As long as the link stays awake, and sleeps.
+const STAY: Duration = Duration::from_micros(200);
 const TICK: Duration = Duration::from_millis(50);
 const PATIENCE: Duration = Duration::from_secs(60);
 /// Messages of a channel that can exist at once, as many as the link has.
@@ -92,9 +93,16 @@ impl End {
         self.notifier.notify().unwrap();
     }
 
-    /// Sleeps until a message is there; `None` where the run ends, or the other end says nothing.
-    pub(crate) fn receive(&self) -> Option<Sample<Processes, [u64], ()>> {
+    /// Waits until a message is there, asleep, or `awake` for a moment as the link where messages come at once; `None`
+    /// where the run ends, or the other end says nothing.
+    pub(crate) fn receive(&self, awake: bool) -> Option<Sample<Processes, [u64], ()>> {
         let start = Instant::now();
+        while awake && start.elapsed() < STAY {
+            if let Some(sample) = self.subscriber.receive().unwrap() {
+                return Some(sample);
+            }
+            std::thread::yield_now();
+        }
         loop {
             let aborted = self.abort.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed));
             if aborted || start.elapsed() > PATIENCE {

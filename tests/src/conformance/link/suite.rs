@@ -4,6 +4,7 @@ use super::end::End;
 use super::play;
 use super::raw::{RawPhase, RawRole, identified};
 use super::{Run, eventually};
+use crate::process::cpu_seconds;
 use halfstep_link::{
     Claim, CouplerLink, CouplerPort, Expect, LinkConfig, LinkError, Participant, Port, ProcessLink,
     StateMessage, Transport,
@@ -209,6 +210,60 @@ pub fn silence<S: Transport>() {
         },
         |_solid| linger(),
         |_coupler| linger(),
+    );
+}
+
+/// Who waits for long takes no processor time, even if all messages before came at once.
+pub fn patience<S: Transport>() {
+    const STEPS: u64 = 100;
+    let run = Run::new(100, 100);
+    let silent = Duration::from_secs(1);
+    let asleep = |wait: &mut dyn FnMut()| {
+        let before = cpu_seconds();
+        wait();
+        let taken = cpu_seconds() - before;
+        assert!(taken < 0.02 * silent.as_secs_f64(), "{taken} s");
+    };
+    with_links::<S>(
+        &run,
+        None,
+        |mut fluid| {
+            for step in 0..=STEPS {
+                if step == STEPS {
+                    sleep(silent);
+                }
+                let records = [play::state(Name::FLUID, 0, First, 0)];
+                let header = play::state_header(Name::FLUID, step, First);
+                fluid.send_state(&StateHeader { epoch: 0, ..header }, &records).unwrap();
+                let expect = Expect::new(step, First).dt(play::clock(step).1);
+                let mut wait = || drop(fluid.receive_forces(&expect).unwrap());
+                if step == STEPS { asleep(&mut wait) } else { wait() }
+            }
+        },
+        |mut solid| {
+            for step in 0..=STEPS {
+                let mut wait = || drop(solid.receive_peer(&Expect::new(step, First)).unwrap());
+                if step == STEPS { asleep(&mut wait) } else { wait() }
+            }
+        },
+        |mut coupler| {
+            for step in 0..=STEPS {
+                let expect = Expect::new(step, First);
+                let mut wait = || drop(coupler.receive_state(0, &expect).unwrap());
+                if step == STEPS {
+                    asleep(&mut wait)
+                } else {
+                    wait()
+                }
+                if step == STEPS {
+                    sleep(silent);
+                }
+                let header = play::force_header(Name::FLUID, step, First);
+                let record = play::state(Name::FLUID, 0, First, 0);
+                let forces = [play::force(&record, &record)];
+                coupler.send_forces(0, &ForceHeader { epoch: 0, ..header }, &forces).unwrap();
+            }
+        },
     );
 }
 
