@@ -125,9 +125,9 @@ fn debris_comes_far_into_a_second_solid() {
     let run = debris(folder.path()).until(0.26).in_process().run();
     let contact = &run.report.contacts[0];
     println!("{contact:?}");
-    // 11.4 mm and 1.87 J/m measured. The last digits of other instructions move single particles: 10.1 mm, 1.91 J/m.
-    assert!((contact.largest_penetration - 0.0114).abs() < 0.003, "{contact:?}");
-    assert!((contact.normal + 1.87).abs() < 0.5, "{contact:?}");
+    // 13.9 mm and 0.60 J/m measured. The last digits of other instructions move single particles: 15.0 mm, 0.42 J/m.
+    assert!((contact.largest_penetration - 0.0139).abs() < 0.003, "{contact:?}");
+    assert!((contact.normal + 0.60).abs() < 0.3, "{contact:?}");
 }
 
 /// The second solid is a program of somebody else: a block on a spring, in a fourth process.
