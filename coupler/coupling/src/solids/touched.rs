@@ -156,7 +156,8 @@ mod tests {
         let all = |name: &str, kind: &str, more: &str| {
             format!("[[probe]]\nname = \"{name}\"\nkind = \"{kind}\"\nsolid = \"blocks\"\n{more}\n")
         };
-        let text = "resolution = 0.1\nend_time = 1.0\ngravity = [0.0, -10.0]\n\
+        let text = "resolution = 0.1\nend_time = 1.0\ngravity = [0.0, -10.0]\n[fluid]\ndensity = 1000.0\n\
+                    [[shape]]\nname = \"water\"\nphase = \"fluid\"\nbox = { min = [2.0, 0.0], max = [3.0, 1.0] }\n\
                     [[solid]]\nname = \"blocks\"\nmodel = \"rigid\"\ndensity = 500.0\n\
                     [[solid]]\nname = \"slab\"\nmodel = \"rigid\"\ndensity = 500.0\n\
                     [[shape]]\nname = \"a\"\nphase = \"solid\"\nsolid = \"blocks\"\n\
