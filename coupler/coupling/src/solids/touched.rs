@@ -156,7 +156,8 @@ mod tests {
         let all = |name: &str, kind: &str, more: &str| {
             format!("[[probe]]\nname = \"{name}\"\nkind = \"{kind}\"\nsolid = \"blocks\"\n{more}\n")
         };
-        let text = "resolution = 0.1\nend_time = 1.0\ngravity = [0.0, -10.0]\n[fluid]\ndensity = 1000.0\n\
+        let text = "resolution = 0.1\nend_time = 1.0\ngravity = [0.0, -10.0]\n\
+                    effects.thin-plate-screen = \"off\"\n[fluid]\ndensity = 1000.0\n\
                     [[shape]]\nname = \"water\"\nphase = \"fluid\"\nbox = { min = [2.0, 0.0], max = [3.0, 1.0] }\n\
                     [[solid]]\nname = \"blocks\"\nmodel = \"rigid\"\ndensity = 500.0\n\
                     [[solid]]\nname = \"slab\"\nmodel = \"rigid\"\ndensity = 500.0\n\
@@ -173,7 +174,7 @@ mod tests {
             + &body("turned-by-others", "body-contact-moment", "b")
             + &all("right", "force", "within = { min = [0.1, 0.0], max = [0.6, 0.1] }")
             + &all("turned", "moment", "about = [1.0, 2.0]")
-            + &all("one", "force", "shape = \"b\"");
+            + "[[probe]]\nname = \"one\"\nkind = \"force\"\nshape = \"b\"\n";
         let scene =
             halfstep_scene::parse(&text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}"));
         assert!(Touched::of::<2>(&scene, 1).is_none(), "nobody asks");
