@@ -52,6 +52,11 @@ at = [0.05, BOTTOM]
 [[probe]]
 name = "force"
 kind = "force"
+
+[[probe]]
+name = "floor"
+kind = "body-contact-force"
+body = "block"
 "#;
 
 const WEIGHT: f64 = 10.0 * 9.81;
@@ -127,7 +132,8 @@ fn deepest(stiffness: f64) -> f64 {
 #[test]
 fn a_falling_block_stops_on_the_floor() {
     let run = Block::new(0.01, 0.0, 0.0).external("").run();
-    let (force, way) = (run.curve("force.y"), run.curve("block.y"));
+    let (force, way) = (run.curve("floor.y"), run.curve("block.y"));
+    assert_eq!(run.curve("force.y").peak().1, 0.0, "no water is there");
     let (force, depth) = (force.between(0.3, 0.5).mean(), -0.01 - way.between(0.3, 0.5).mean());
     let ContactReport { stiffness, largest_penetration, normal, .. } = *contact(&run);
     let sunk = WEIGHT / (0.5 * stiffness * 0.105);
@@ -225,8 +231,12 @@ fn a_heavy_block_sinks_to_the_floor() {
     let path = folder.path().join("sinks.toml");
     std::fs::write(&path, SINKING).expect("a scene");
     let run = scene_at(&path).argument("--solid").argument(line("")).run();
-    let (force, height) = (run.curve("force.y").between(0.5, 0.8).mean(), run.curve("block.y").at(0.8));
-    println!("force {force} N/m of {}, height {height} m, {:?}", 2.0 * WEIGHT, contact(&run));
+    let mean = |column: &str| run.curve(column).between(0.5, 0.8).mean();
+    let [of_water, of_floor] = ["force.y", "floor.y"].map(mean);
+    let (force, height) = (of_water + of_floor, run.curve("block.y").at(0.8));
+    println!("{of_water} and {of_floor} N/m of {}, height {height} m, {:?}", 2.0 * WEIGHT, contact(&run));
+    // It lies on the floor, and the water only above it.
+    assert!(of_water < 0.0 && of_floor > 2.0 * WEIGHT, "{of_water} {of_floor}");
     assert!((force / (2.0 * WEIGHT) - 1.0).abs() < 0.01, "{force}");
     assert!((height + 0.02).abs() < 1e-3, "{height}");
     let mismatch = run.report.audit.action_reaction.expect("an audit");
@@ -269,6 +279,11 @@ at = [0.2, 0.07]
 [[probe]]
 name = "force"
 kind = "force"
+
+[[probe]]
+name = "floor"
+kind = "body-contact-force"
+body = "block"
 "#;
 
 /// Alone, too, a solid stands on the floor.
@@ -281,7 +296,8 @@ fn a_block_that_is_tried_alone_stands_on_the_floor() {
     let done = tried.arg("--out").arg(folder.path()).args(["--until", "0.3"]).output().expect("it starts");
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
     let rows = halfstep_output::read_probes(&folder.path().join("probes.csv")).expect("probes");
-    let last = rows.column("force.y").and_then(|column| column.last().copied());
-    println!("{last:?} N/m of {WEIGHT}");
-    assert!((last.expect("a force") / WEIGHT - 1.0).abs() < 1e-3, "{last:?}");
+    let last = |name: &str| rows.column(name).and_then(|column| column.last().copied()).expect("a force");
+    let [of_floor, load] = ["floor.y", "force.y"].map(last);
+    println!("{of_floor} N/m of {WEIGHT}, load {load} N/m");
+    assert!((of_floor / WEIGHT - 1.0).abs() < 1e-3 && load.abs() < 1e-9, "{of_floor} {load}");
 }

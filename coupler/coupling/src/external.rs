@@ -64,7 +64,6 @@ impl ExternalSolid {
     /// Takes the first records that the solid published: its reference configuration.
     pub fn begin(&mut self, records: &[StateRecord]) {
         self.first = records.iter().map(|r| r.position).collect();
-        self.shape_of = self.first.iter().map(|x| self.nearest_shape(x)).collect();
         self.choose_records();
     }
 
@@ -74,6 +73,7 @@ impl ExternalSolid {
     }
 
     fn choose_records(&mut self) {
+        self.shape_of = self.first.iter().map(|x| self.nearest_shape(x)).collect();
         self.chosen = self.kinds.iter().map(|kind| self.choose(kind)).collect();
     }
 

@@ -263,7 +263,11 @@ impl Pusher<'_> {
                 let step_length = if stops { f64::INFINITY } else { dt };
                 let forces = self.forces([half_step.before(), step_length], records, stage == 0);
                 if stage == 0 {
-                    self.log.row(time, self.solid.measure(records, &forces, &[]))?;
+                    let contact: Vec<[f64; 2]> = match &self.walls {
+                        Some(walls) => (0..records.len()).map(|k| walls.on(k)).collect(),
+                        None => Vec::new(),
+                    };
+                    self.log.row(time, self.solid.measure(records, &forces, &contact))?;
                 }
                 let order = if stops { order::STOP } else { order::GO };
                 let header = ForceHeader { order, ..half_step.with_step(dt, next_time).force_header() };
