@@ -95,7 +95,7 @@ impl ExternalSolid {
         };
         let of_probes = self.kinds.iter().zip(&self.chosen).zip(&mut self.turned);
         for ((kind, chosen), turned) in of_probes {
-            let parts = kind.components(self.dimension).0.len();
+            let parts = kind.count(self.dimension);
             match kind {
                 ProbeKind::Displacement { .. } => {
                     for d in 0..self.dimension {

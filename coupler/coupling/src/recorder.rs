@@ -111,7 +111,7 @@ impl Recorder {
             order: measured_by(scene)
                 .into_iter()
                 .zip(&scene.probes)
-                .map(|(place, probe)| (place, probe.kind.components(scene.dimension).0.len()))
+                .map(|(place, probe)| (place, probe.kind.count(scene.dimension)))
                 .collect(),
             values: Vec::new(),
             bar,

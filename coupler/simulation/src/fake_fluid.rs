@@ -261,12 +261,9 @@ impl Pusher<'_> {
                 }
                 // The last state has no step: contacts then take that of their limit.
                 let step_length = if stops { f64::INFINITY } else { dt };
-                let forces = self.forces([half_step.before(), step_length], records, stage == 0);
+                let contact = self.touch([half_step.before(), step_length], records, stage == 0);
+                let forces = self.forces(half_step.before(), records, &contact);
                 if stage == 0 {
-                    let contact: Vec<[f64; 2]> = match &self.walls {
-                        Some(walls) => (0..records.len()).map(|k| walls.on(k)).collect(),
-                        None => Vec::new(),
-                    };
                     self.log.row(time, self.solid.measure(records, &forces, &contact))?;
                 }
                 let order = if stops { order::STOP } else { order::GO };
@@ -307,20 +304,23 @@ impl Pusher<'_> {
         Ok(())
     }
 
-    /// Load and contact with walls at a time, s, in a time step `dt`, s. `whole`: of a state at n.
-    fn forces(&mut self, [time, dt]: [f64; 2], records: &[StateRecord], whole: bool) -> Vec<ForceRecord> {
+    /// Force of walls on each record at a time, s, in a time step `dt`, s. `whole`: of a state at n.
+    fn touch(&mut self, [time, dt]: [f64; 2], records: &[StateRecord], whole: bool) -> Vec<[f64; 2]> {
+        let Some(walls) = &mut self.walls else { return vec![[0.0; 2]; records.len()] };
+        walls.evaluate(records, [time, dt], whole);
+        (0..records.len()).map(|k| walls.on(k)).collect()
+    }
+
+    /// Load at a time, s, and contact.
+    fn forces(&self, time: f64, records: &[StateRecord], contact: &[[f64; 2]]) -> Vec<ForceRecord> {
         let load = self.trial.load;
-        if let Some(walls) = &mut self.walls {
-            walls.evaluate(records, [time, dt], whole);
-        }
         let grown = if load.ramp > 0.0 { (time / load.ramp).min(1.0) } else { 1.0 };
-        let on = |(k, (record, share)): (usize, (&StateRecord, &f64))| {
-            let walls = self.walls.as_ref().map_or([0.0; 2], |walls| walls.on(k));
+        let on = |((record, share), contact): ((&StateRecord, &f64), &[f64; 2])| {
             let [x, y, z] = load.force.map(|f| grown * share * f);
-            let stress_force = [x + walls[0], y + walls[1], z];
+            let stress_force = [x + contact[0], y + contact[1], z];
             ForceRecord { id: record.id, flags: 0, cross_viscosity: [0.0; 3], stress_force }
         };
-        records.iter().zip(&self.pushed).enumerate().map(on).collect()
+        records.iter().zip(&self.pushed).zip(contact).map(on).collect()
     }
 }
 

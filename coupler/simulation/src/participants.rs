@@ -71,7 +71,7 @@ pub(crate) fn participants<const D: usize>(
 
 /// Number of probe values of the participant at this place.
 fn values(scene: &Scene, place: usize) -> usize {
-    let of = |kind: &ProbeKind| kind.components(scene.dimension).0.len() + kind.companions(scene.dimension);
+    let of = |kind: &ProbeKind| kind.count(scene.dimension) + kind.companions(scene.dimension);
     roles::probes_of(scene, place).map(|probe| of(&probe.kind)).sum()
 }
 

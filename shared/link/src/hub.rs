@@ -315,25 +315,22 @@ impl<S: Transport> Hub<S> {
         listed: impl Fn() -> bool,
         mut receive: impl FnMut() -> Result<Option<T>, LinkError>,
     ) -> Result<T, LinkError> {
-        if self.watch.aborted() {
-            return Err(LinkError::Aborted);
-        }
-        if let Some(message) = receive()? {
-            return Ok(message);
-        }
         let start = Instant::now();
-        if let Some(message) = awake.stay(&mut receive)? {
-            return Ok(message);
-        }
-        let mut looked = start;
+        let (mut looked, mut stayed) = (start, false);
         loop {
             if self.watch.aborted() {
                 return Err(LinkError::Aborted);
             }
             if let Some(message) = receive()? {
-                awake.learn(start.elapsed());
+                if stayed {
+                    awake.learn(start.elapsed());
+                }
                 return Ok(message);
             }
+            if !stayed && let Some(message) = awake.stay(&mut receive)? {
+                return Ok(message);
+            }
+            stayed = true;
             if std::mem::take(&mut self.suspicious) || looked.elapsed() >= TICK {
                 if self.watch.is_gone(process, listed()) {
                     // What it sent before it ended is still readable.

@@ -305,6 +305,11 @@ impl ProbeKind {
         }
     }
 
+    /// Number of components.
+    pub fn count(&self, dimension: usize) -> usize {
+        self.components(dimension).0.len()
+    }
+
     /// Number of values that a solid's process sends for the probe beyond its components, after those of all probes:
     /// the centre of mass about which a moment is, from which the coupler parts contact and fluid.
     pub fn companions(&self, dimension: usize) -> usize {

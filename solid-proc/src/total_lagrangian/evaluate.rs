@@ -28,11 +28,15 @@ impl<const D: usize> TotalLagrangian<D> {
             let sum = &moments[slot / LANES];
             let moment = Matrix::<D>::from_fn(|a, b| sum.0[a.min(b)][a.max(b)].0[slot % LANES]);
             // A clamped particle is rigid: it has neither strain nor error vectors. Nor has one that lacks neighbours.
-            let rigid = self.rigid_clamps && self.fixed.clamped[slot] != 0.0;
-            let correction = tensor::moment_inverse(&moment).filter(|_| !rigid);
+            let correction = tensor::moment_inverse(&moment).filter(|_| !self.is_rigid(slot));
             self.hourglass[slot] = if correction.is_some() { self.hourglass_modulus } else { 0.0 };
             self.correction[slot] = correction.unwrap_or_else(Matrix::zeros);
         }
+    }
+
+    /// The slot has a particle of a rigid clamp.
+    pub(super) fn is_rigid(&self, slot: usize) -> bool {
+        self.rigid_clamps && self.fixed.clamped[slot] != 0.0
     }
 
     /// Pairs that a pass evaluates.

@@ -37,46 +37,30 @@ impl Touched {
     /// Of the solid of that index; `None` where no probe asks.
     pub(super) fn of<const D: usize>(scene: &Scene, solid: usize) -> Option<Self> {
         let place = solid + usize::from(scene.fluid.is_some());
-        let asks = |kind: &ProbeKind| match kind {
-            ProbeKind::Force { .. } | ProbeKind::Moment { .. } => true,
-            ProbeKind::Body { quantity, .. } => sign_of(*quantity).is_some(),
-            _ => false,
-        };
-        if !probes_of(scene, place).any(|probe| asks(&probe.kind)) {
+        if !probes_of(scene, place).any(|probe| part_of(&probe.kind, 0).is_some()) {
             return None;
         }
         let layout = geometry::solids::<D>(scene);
-        let shape = |point: &SolidPoint<D>| point.body as usize;
-        let of_solid = |point: &&SolidPoint<D>| scene.shapes[shape(point)].solid == Some(solid);
+        let of_solid = |point: &&SolidPoint<D>| scene.shapes[point.body as usize].solid == Some(solid);
         let own: Vec<&SolidPoint<D>> = layout.solid.iter().filter(of_solid).collect();
-        let chosen = |is_of: &dyn Fn(&SolidPoint<D>) -> bool| -> HashSet<u32> {
-            (0..own.len() as u32).filter(|k| is_of(own[*k as usize])).collect()
+        let takes = |kind: &ProbeKind, point: &SolidPoint<D>| match kind {
+            ProbeKind::Force { within, shape } | ProbeKind::Moment { within, shape, .. } => {
+                within.is_none_or(|block| holds(&block, &point.position, 0.0))
+                    && shape.is_none_or(|shape| shape == point.body as usize)
+            }
+            ProbeKind::Body { body, .. } => scene.shapes[point.body as usize].body() == body,
+            _ => false,
         };
-        let count = |kind: &ProbeKind| kind.components(scene.dimension).0.len();
+        let count = |kind: &ProbeKind| kind.count(scene.dimension);
         let mut centre = probes_of(scene, place).map(|probe| count(&probe.kind)).sum();
         let (mut probes, mut value) = (Vec::new(), 0);
-        for probe in probes_of(scene, place) {
-            let of = match &probe.kind {
-                ProbeKind::Force { within, shape } | ProbeKind::Moment { within, shape, .. } => {
-                    let inside = |point: &SolidPoint<D>| {
-                        within.is_none_or(|block| holds(&block, &point.position, 0.0))
-                            && shape.is_none_or(|shape| shape == point.body as usize)
-                    };
-                    let part = match &probe.kind {
-                        ProbeKind::Moment { about, .. } => Part::Moment([about[0], about[1]]),
-                        _ => Part::Force,
-                    };
-                    Some((part, -1.0, chosen(&inside)))
-                }
-                ProbeKind::Body { body, quantity } => sign_of(*quantity).map(|sign| {
-                    let part = if quantity.turns() { Part::AboutCentre(centre) } else { Part::Force };
-                    (part, sign, chosen(&|point| scene.shapes[shape(point)].body() == body))
-                }),
-                _ => None,
-            };
-            probes.extend(of.map(|(part, sign, particles)| OfForces { value, part, sign, particles }));
-            value += count(&probe.kind);
-            centre += probe.kind.companions(scene.dimension);
+        for kind in probes_of(scene, place).map(|probe| &probe.kind) {
+            if let Some((part, sign)) = part_of(kind, centre) {
+                let particles = (0..own.len() as u32).filter(|&k| takes(kind, own[k as usize])).collect();
+                probes.push(OfForces { value, part, sign, particles });
+            }
+            value += count(kind);
+            centre += kind.companions(scene.dimension);
         }
         Some(Self { probes, now: Vec::new(), before: Vec::new() })
     }
@@ -122,11 +106,20 @@ impl Touched {
     }
 }
 
-/// What is added of the contact forces to a quantity of a body; `None`: it holds none of them.
-fn sign_of(quantity: BodyQuantity) -> Option<f64> {
+/// What a probe measures of forces, with the place of the centre of mass if it is about that, and what is added of the
+/// contact forces; `None`: it holds none of them.
+fn part_of(kind: &ProbeKind, centre: usize) -> Option<(Part, f64)> {
+    let quantity = match kind {
+        ProbeKind::Force { .. } => return Some((Part::Force, -1.0)),
+        ProbeKind::Moment { about, .. } => return Some((Part::Moment([about[0], about[1]]), -1.0)),
+        ProbeKind::Body { quantity, .. } => quantity,
+        _ => return None,
+    };
     match quantity {
-        BodyQuantity::Force | BodyQuantity::Moment => Some(-1.0),
-        BodyQuantity::ContactForce | BodyQuantity::ContactMoment => Some(1.0),
+        BodyQuantity::Force => Some((Part::Force, -1.0)),
+        BodyQuantity::Moment => Some((Part::AboutCentre(centre), -1.0)),
+        BodyQuantity::ContactForce => Some((Part::Force, 1.0)),
+        BodyQuantity::ContactMoment => Some((Part::AboutCentre(centre), 1.0)),
         _ => None,
     }
 }

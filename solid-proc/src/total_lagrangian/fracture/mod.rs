@@ -237,8 +237,7 @@ impl<const D: usize> TotalLagrangian<D> {
         fracture.outward = (0..slots).map(|slot| self.outward(slot, fracture.inside)).collect();
         // The rigid side of a clamp stores nothing: the row beside it takes all of the energy, however much of the
         // opening it sees.
-        let clamped = |slot: usize| self.fixed.clamped[slot] != 0.0;
-        let beside = |slot| self.rigid_clamps && self.pairs.neighbours(slot).any(|(j, _)| clamped(j));
+        let beside = |slot| self.pairs.neighbours(slot).any(|(j, _)| self.is_rigid(j));
         let band = |slot: usize| if beside(slot) { self.spacing } else { Keys::BAND * self.spacing };
         fracture.band = (0..slots).map(band).collect();
         self.note_thickness(&mut fracture);
@@ -255,11 +254,6 @@ impl<const D: usize> TotalLagrangian<D> {
     /// d of a slot.
     pub(super) fn damage_at(&self, slot: usize) -> f64 {
         self.fracture.as_ref().map_or(0.0, |fracture| fracture.damage[slot])
-    }
-
-    /// The slot has a particle of a rigid clamp.
-    pub(super) fn is_rigid(&self, slot: usize) -> bool {
-        self.rigid_clamps && self.fixed.clamped[slot] != 0.0
     }
 
     /// The slot has a particle that its model moves.
