@@ -105,13 +105,15 @@ price gate-lift --until 0.45 --set resolution=0.002 --vary resolution=0.0016 --v
 price rolling-tank --until 1.0 --set resolution=0.002 --vary resolution=0.0013333333333333333 \
     --vary solid.model=finite-element
 price_example mujoco-box mujoco floating-box floating_box.py \
-    --set resolution=0.0125 --vary resolution=0.01,0.02 --vary smoothing_ratio=2 --vary numerics.cfl=0.2
+    --set resolution=0.0125 --vary resolution=0.01,0.01666666666666667 --vary smoothing_ratio=2 --vary numerics.cfl=0.2
 price_example mujoco-flap mujoco hinged-flap 'hinged_flap.py 40 1' \
     --set resolution=0.005 --vary resolution=0.0033333333333333333,0.01 --vary smoothing_ratio=2 --vary numerics.cfl=0.2
 price_example mujoco-wave-flap mujoco wave-flap 'wave_flap.py 5.5 0' \
-    --set resolution=0.01 --vary resolution=0.00666666666666666667 --vary numerics.cfl=0.2
+    --set resolution=0.01 --set 'shape.paddle.box.min=[-0.06,0.0]' \
+    --vary resolution=0.00666666666666666667,0.02 --vary numerics.cfl=0.2
 price_example pyelastica-stem pyelastica stem stem.py \
-    --until 3.2 --set resolution=0.01 --vary resolution=0.00666666666666666667 --vary numerics.cfl=0.2
+    --until 3.2 --set resolution=0.01 --set 'shape.paddle.box.min=[-0.06,0.0]' \
+    --vary resolution=0.00666666666666666667,0.02 --vary numerics.cfl=0.2
 
 {
     cat <<'HEAD'

@@ -64,6 +64,7 @@ pub fn remark(metric: &Metric, probes: &Table) -> Option<String> {
     match metric.kind {
         MetricKind::Peak => of_what_is_negative(metric, &part).or_else(|| between_rows(metric, &part, 1.0)),
         MetricKind::Trough => between_rows(metric, &part, -1.0),
+        MetricKind::Range => [1.0, -1.0].iter().find_map(|&sign| between_rows(metric, &part, sign)),
         _ => None,
     }
 }
@@ -94,7 +95,7 @@ fn between_rows(metric: &Metric, part: &Curve, sign: f64) -> Option<String> {
     let beyond = sign * -slope * slope / (4.0 * curvature);
     (beyond > BETWEEN * (largest - least)).then(|| {
         format!(
-            "`{}`, {}, is of the row at t = {} s, and a parabola through it and its neighbours goes on by {:.0} % of \
+            "`{}` has {} from the row at t = {} s, and a parabola through it and its neighbours goes on by {:.0} % of \
              the curve's range: rows nearer to each other (output.probe_interval) would see more of the extreme",
             metric.name,
             short(row[1]),
@@ -129,6 +130,10 @@ pub(super) fn number(metric: &Metric, curve: &Curve) -> Result<f64, Unmeasured> 
         MetricKind::PeakTime => extreme(f64::gt).map(|p| p[0]),
         MetricKind::Trough => extreme(f64::lt).map(|p| p[1]),
         MetricKind::TroughTime => extreme(f64::lt).map(|p| p[0]),
+        MetricKind::Range => {
+            let [least, largest] = range(&part);
+            Ok(largest - least)
+        }
         MetricKind::FirstAbove { level } => first_above(&part, level),
         MetricKind::Mean => Ok(mean(&part)),
         MetricKind::Period { level } => period(&part, level),
@@ -282,12 +287,14 @@ mod tests {
         };
         let of = |kind, interval| remark(&metric(kind), &table(interval));
         // Eight rows a period, at 0.063 s from the largest value.
-        let said = "`m`, 0.9290, is of the row at t = 0.3250 s, and a parabola through it and its neighbours goes on by 3 \
+        let said = "`m` has 0.9290 from the row at t = 0.3250 s, and a parabola through it and its neighbours goes on by 3 \
                     % of the curve's range: rows nearer to each other (output.probe_interval) would see more of the \
                     extreme";
         assert_eq!(of(MetricKind::Peak, 0.13).as_deref(), Some(said));
         assert!(of(MetricKind::Trough, 0.13).is_some_and(|said| said.contains("by 3 %")));
+        assert!(of(MetricKind::Range, 0.13).is_some_and(|said| said.contains("by 3 %")));
         assert_eq!(of(MetricKind::Peak, 0.01), None);
+        assert_eq!(of(MetricKind::Range, 0.01), None);
         assert_eq!(of(MetricKind::Trough, 0.01), None);
         assert_eq!(of(MetricKind::Mean, 0.13), None);
     }
@@ -302,6 +309,8 @@ mod tests {
         assert!((of(MetricKind::Peak) - 0.5 - (-0.7_f64 * 0.075).exp()).abs() < 1e-3);
         assert!((of(MetricKind::TroughTime) - 0.225).abs() < 3e-3);
         assert!((of(MetricKind::Trough) - 0.5 + (-0.7_f64 * 0.225).exp()).abs() < 1e-3);
+        let both = (-0.7_f64 * 0.075).exp() + (-0.7_f64 * 0.225).exp();
+        assert!((of(MetricKind::Range) - both).abs() < 2e-3);
     }
 
     #[test]

@@ -33,6 +33,8 @@ pub enum MetricKind {
     Trough,
     /// Time of the least value, s.
     TroughTime,
+    /// Largest value less the least.
+    Range,
     /// Root mean square of the difference to a curve of the literature, over that of the curve.
     Rms,
     /// Value at a time.
@@ -81,7 +83,7 @@ impl MetricKind {
     /// Unit of the number for a curve of this unit; empty for a pure number.
     pub fn unit<'u>(&self, of_curve: &'u str) -> &'u str {
         match self {
-            Self::Peak | Self::Trough | Self::Value { .. } | Self::Mean => of_curve,
+            Self::Peak | Self::Trough | Self::Range | Self::Value { .. } | Self::Mean => of_curve,
             Self::PeakTime | Self::TroughTime | Self::FirstAbove { .. } | Self::Period { .. } => "s",
             Self::Decay { .. } => "1/s",
             Self::Rms => "",

@@ -11,6 +11,7 @@ pub(crate) enum Kind {
     PeakTime,
     Trough,
     TroughTime,
+    Range,
     FirstAbove,
     Rms,
     Value,
@@ -19,11 +20,12 @@ pub(crate) enum Kind {
     Decay,
 }
 
-pub(crate) const KINDS: [(&str, Kind); 10] = [
+pub(crate) const KINDS: [(&str, Kind); 11] = [
     ("peak", Kind::Peak),
     ("peak-time", Kind::PeakTime),
     ("trough", Kind::Trough),
     ("trough-time", Kind::TroughTime),
+    ("range", Kind::Range),
     ("first-above", Kind::FirstAbove),
     ("rms", Kind::Rms),
     ("value", Kind::Value),
@@ -47,6 +49,7 @@ pub(super) fn metric(section: Section<'_>) -> Option<Metric> {
         Kind::PeakTime => MetricKind::PeakTime,
         Kind::Trough => MetricKind::Trough,
         Kind::TroughTime => MetricKind::TroughTime,
+        Kind::Range => MetricKind::Range,
         Kind::FirstAbove => MetricKind::FirstAbove { level: level() },
         Kind::Rms => MetricKind::Rms,
         Kind::Value => MetricKind::Value { at: section.number("at", None) },

@@ -100,7 +100,7 @@ pub(super) static REFERENCE: Table = Table {
 
 const TIME: Range = Range::at_least(0.0);
 const CURVES: &[&str] =
-    &["peak", "peak-time", "trough", "trough-time", "first-above", "rms", "period", "mean", "decay"];
+    &["peak", "peak-time", "trough", "trough-time", "range", "first-above", "rms", "period", "mean", "decay"];
 
 pub(super) static METRIC: Table = Table::new(
     "metric",
