@@ -6,10 +6,8 @@ use halfstep_tests::run::{Finished, RunBuilder, repository, scene_at, whole_mach
 
 const TO: f64 = 2.0;
 
-/// 3 and 6 particles across the walls.
 fn walls() -> RunBuilder {
-    let scene = scene_at(&repository().join("validation/tsunami-wall/solitary.toml"));
-    scene.set("resolution", 0.016 / 3.0)
+    scene_at(&repository().join("validation/tsunami-wall/solitary.toml"))
 }
 
 /// Largest of the means over 10 ms, and the integral, of a force until a time, s.
@@ -28,21 +26,20 @@ fn a_solitary_wave_breaks_a_wall_at_the_depth_of_beam_theory() {
     let whole =
         walls().set("solid.first.fracture.strength", 12e6).set("solid.first.fracture.energy", 2500.0).run();
     let gauge = |run: &Finished, k: usize| run.curve(&format!("gauge.level-{k}"));
-    // The crest is asked to be 130 mm; third-order theory (Su and Mirie 1980) runs it up to 166 mm.
-    let (crest, up) = (gauge(&broken, 1).peak().1, gauge(&broken, 3).between(0.0, 1.78).peak().1);
+    // The crest is asked to be 130 mm; third-order theory (Su and Mirie 1980) runs it up to 166 mm, where a wall holds.
+    let (crest, up) = (gauge(&broken, 1).peak().1, gauge(&whole, 3).peak().1);
     println!("crest {crest} m, up to {up} m at the wall");
     assert!((crest / 0.13 - 1.0).abs() < 0.03 && (up / 0.166 - 1.0).abs() < 0.06, "{crest} {up}");
-    // Beam theory's onset, 6 M / t² = f_t + the own weight, is at 139.6 mm. Single particles at the foot softened
-    // before, in the pressure waves of the piston's start: 1.2e-4 J/m measured.
+    // Beam theory's onset, 6 M / t² = f_t + the own weight, is at 130.0 mm. Nothing has softened before.
     let opened = broken.curve("opened.area");
     let taken = broken.curve("crack.energy");
     let early = taken.at(1.6);
     let first = taken.between(1.6, TO).first_above(early + 1e-5).expect("damage");
-    let cut = opened.first_above(0.0105).expect("a crack through two of three rows");
+    let cut = opened.first_above(0.0115).expect("a crack through three of four rows");
     let depth = gauge(&broken, 3).at(first);
     println!("damage grows from {first} s on at {depth} m, cut at {cut} s; {early} J/m before");
-    assert!((depth / 0.1396 - 1.0).abs() < 0.05 && early < 2e-4, "{depth} {early}");
-    assert!((1.70..1.85).contains(&cut), "{cut}");
+    assert!((depth / 0.13 - 1.0).abs() < 0.03 && early < 1e-8, "{depth} {early}");
+    assert!((1.76..1.80).contains(&cut), "{cut}");
     // It strikes the second wall, which nothing touches where the first one holds.
     let strikes = |run: &Finished| run.report.contacts[0].largest_force;
     assert!(strikes(&broken) > 100.0 && strikes(&whole) == 0.0);
@@ -83,7 +80,7 @@ fn killed_after_the_strike_it_goes_on_beside_a_solid_of_another_program() {
         short.out(&dir).start().killed_at(1.975)
     };
     let hit = whole.curve("tip-2.x").between(0.0, killed).peak().1;
-    assert!(hit > 1e-5, "the second wall is struck before {killed} s: {hit} m");
+    assert!(hit > 1e-6, "the second wall is struck before {killed} s: {hit} m");
     let resumed = scene_at(&repository().join("validation/tsunami-wall/solitary.toml")).resume(&dir);
     let resumed = resumed.argument("--solid").argument(&second).run();
     assert!(resumed.report.resumed[0].time > 1.965, "{:?}", resumed.report.resumed);
