@@ -110,10 +110,10 @@ price_example mujoco-flap mujoco hinged-flap 'hinged_flap.py 40 1' \
     --set resolution=0.005 --vary resolution=0.0033333333333333333,0.01 --vary smoothing_ratio=2 --vary numerics.cfl=0.2
 price_example mujoco-wave-flap mujoco wave-flap 'wave_flap.py 5.5 0' \
     --set resolution=0.01 --set 'shape.paddle.box.min=[-0.06,0.0]' \
-    --vary resolution=0.00666666666666666667,0.02 --vary numerics.cfl=0.2
+    --vary resolution=0.00666666666666666667 --vary numerics.cfl=0.2
 price_example pyelastica-stem pyelastica stem stem.py \
     --until 3.2 --set resolution=0.01 --set 'shape.paddle.box.min=[-0.06,0.0]' \
-    --vary resolution=0.00666666666666666667,0.02 --vary numerics.cfl=0.2
+    --vary resolution=0.00666666666666666667 --vary numerics.cfl=0.2
 
 {
     cat <<'HEAD'
