@@ -24,6 +24,7 @@ mod columns;
 pub mod effects;
 pub mod finite_element;
 pub mod hypoelastic;
+mod kernel_sum;
 mod ledger;
 pub mod model;
 mod models;

@@ -1,24 +1,27 @@
-//! Rigid walls toward the solid. Below the spacing dx (the mean of the two), at which two surfaces meet, particles
-//! repel each other as those of different bodies do, and what approaches is damped as soon as surfaces overlap:
-//!   F = [k (dx - r) - c w(r) min(v_sw . x_sw / r, 0)] x_sw / r,   k = (K + 4 G / 3) / 2 dx^(D-2),
-//!   c = 2 zeta sqrt(k m_s), w = 1 below 0.75 dx, 0 from dx on, a straight line between.
+//! Rigid walls toward the solid. As bodies do (see `crate::kernel_sum`), their particles push one of the solid by its
+//! depth, and what approaches is damped as soon as surfaces overlap:
+//!   F_i = -[k delta_i + c w(delta_i) max(d delta_i / dt, 0)] grad_i delta_i,   k = (K + 4 G / 3) / 2 dx^(D-2),
+//!   c = 2 zeta sqrt(k m_s), w = 0 at the surface, 1 from a quarter of the distance d on, a straight line between.
+//! What begins in a wall is pushed from where it is, and as it leaves, from the wall's surface on.
 //!
 //! Kayaki's section 4.1 extrapolates the solid's pressure to its walls, after Adami. Here a wall has none: such a push
 //! follows from no energy, begins 2h off the wall and pushes a body up that lies on it.
 
 use crate::columns::{Vectors, vectors};
+use crate::kernel_sum::KernelSum;
 use halfstep_scene::geometry::WallPoint;
 use halfstep_scene::{Motion, Placement, Scene};
 use halfstep_sph::columns::{bounds, fit};
-use halfstep_sph::fade::Fade;
+use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::{Arch, Isa, LANES, Lane, Lanes};
 use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_sph::pair::{self, PairLaw, distance, dot, pair_sum};
+use halfstep_wire::state::{Fields, StateError};
 
 /// zeta. A disc of rubber, 20 particles across, loses 0.3 % of its energy by it.
 const DAMPING_RATIO: f64 = 0.2;
-/// Distance up to which the whole damping acts, over the spacing; from the spacing on there is none.
-const TOUCH: f64 = 0.75;
+/// Depth from which on the whole damping acts, over d.
+const TOUCH: f64 = 0.25;
 
 /// Wall particles that the solid may touch.
 pub(crate) struct Walls<const D: usize> {
@@ -28,12 +31,17 @@ pub(crate) struct Walls<const D: usize> {
     /// Of the surface beside that, by number of the wall particle, m/s.
     belt: Vec<[f64; D]>,
     rows: Rows<D>,
-    /// Of the rows, m.
-    height: f64,
+    law: KernelSum<D>,
+    /// Distance that lists hold beyond its radius, m.
+    skin: f64,
     moving: Option<Moving<D>>,
     /// The solid's wall neighbours.
     neighbours: ClusterList,
-    forces: Vec<WallForce<D>>,
+    sums: Vec<WallSum<D>>,
+    /// Force over mass and grad S, by the solid's slots.
+    push: Vec<f64>,
+    /// S from which on a particle of the solid is pushed, by its number.
+    rest: Vec<f64>,
 }
 
 /// Walls that move by prescription: columns by number of the wall particle.
@@ -89,8 +97,14 @@ impl<const D: usize> Moving<D> {
 }
 
 impl<const D: usize> Walls<D> {
-    /// `None` where the solid may touch no wall.
-    pub(crate) fn new(scene: &Scene, points: &[WallPoint<D>], height: f64, isa: Isa) -> Option<Self> {
+    /// `None` where the scene's solid of that index may touch none of the walls. Lists hold `skin`, m, more than needed.
+    pub(crate) fn new(
+        scene: &Scene,
+        solid: usize,
+        points: &[WallPoint<D>],
+        skin: f64,
+        isa: Isa,
+    ) -> Option<Self> {
         let points: Vec<_> = points.iter().filter(|p| p.contact).collect();
         if points.is_empty() {
             return None;
@@ -102,10 +116,13 @@ impl<const D: usize> Walls<D> {
             velocity: vectors(n),
             belt: points.iter().map(|p| p.velocity).collect(),
             rows: Rows::default(),
-            height,
+            law: KernelSum::new(scene.solid_spacing(solid), scene.resolution),
+            skin,
             moving: Moving::new(&points, scene),
             neighbours: ClusterList::new(isa),
-            forces: Vec::new(),
+            sums: Vec::new(),
+            push: Vec::new(),
+            rest: Vec::new(),
         };
         for (i, p) in points.iter().enumerate() {
             for d in 0..D {
@@ -118,7 +135,7 @@ impl<const D: usize> Walls<D> {
 
     fn sort(&mut self) {
         let (low, high) = bounds(&self.position);
-        self.rows.sort(&self.position, &self.id, self.height, low, high);
+        self.rows.sort(&self.position, &self.id, self.reach(), low, high);
         for d in 0..D {
             self.rows.permute(&mut self.position[d]);
             fit(&mut self.velocity[d], self.rows.slots(), 0.0);
@@ -150,20 +167,20 @@ impl<const D: usize> Walls<D> {
         self.moving.as_ref().map_or(0.0, Moving::displacement)
     }
 
-    /// When the lists of walls that move were made, s.
-    pub(crate) fn listed_at(&mut self) -> Option<&mut f64> {
-        self.moving.as_mut().map(|moving| &mut moving.listed_at)
-    }
-
     /// Brings the walls that move to where they were when the lists were made.
     pub(crate) fn return_to_lists(&mut self) {
-        if let Some(time) = self.listed_at().copied() {
+        if let Some(time) = self.moving.as_ref().map(|moving| moving.listed_at) {
             self.set_time(time);
         }
     }
 
-    /// Lists who is near whom, to `reach`, m. The solid is sorted.
-    pub(crate) fn relist(&mut self, solid: &Vectors<D>, reach: f64) {
+    /// Distance that lists hold, m.
+    pub(crate) fn reach(&self) -> f64 {
+        self.law.radius + self.skin
+    }
+
+    /// Lists who is near whom. The solid is sorted.
+    pub(crate) fn relist(&mut self, solid: &Vectors<D>) {
         if let Some(moving) = &mut self.moving {
             moving.listed_at = moving.time;
             moving.listed = (0..moving.motions.len()).map(|shape| moving.of(shape)).collect();
@@ -175,8 +192,9 @@ impl<const D: usize> Walls<D> {
             self.sort();
             self.set_time(self.moving.as_ref().map_or(0.0, |moving| moving.time));
         }
-        self.neighbours.build(solid, &self.position, &self.rows, reach);
-        fit(&mut self.forces, self.neighbours.fours(), WallForce::default());
+        self.neighbours.build(solid, &self.position, &self.rows, self.reach());
+        fit(&mut self.sums, self.neighbours.fours(), WallSum::default());
+        fit(&mut self.push, solid[0].len(), 0.0);
     }
 
     /// Pairs that the pass between walls and solid evaluates.
@@ -184,90 +202,138 @@ impl<const D: usize> Walls<D> {
         self.neighbours.pairs()
     }
 
-    /// Evaluates the push on every solid particle.
-    pub(crate) fn act(&mut self, isa: Isa, solid: Touching<'_, D>) {
-        let mut forces = std::mem::take(&mut self.forces);
-        pair::pass(isa, &self.push(solid), &self.neighbours, &mut forces);
-        self.forces = forces;
-    }
-
-    fn push<'a>(&'a self, solid: Touching<'a, D>) -> Push<'a, D> {
-        Push {
-            solid,
-            position: &self.position,
-            velocity: &self.velocity,
-            touch: Fade::new(TOUCH * solid.spacing, solid.spacing),
-            dashpot: solid.dashpot(),
+    /// The solid begins where it is: nothing pushes.
+    pub(crate) fn begin(&mut self, isa: Isa, solid: Touching<'_, D>) {
+        let real = || (0..solid.id.len()).filter(|&slot| solid.id[slot] != PADDING);
+        self.rest = vec![self.law.level; real().map(|slot| solid.id[slot] as usize + 1).max().unwrap_or(0)];
+        self.sum_up(isa, solid);
+        for slot in real() {
+            let (sum, rest) = (self.sum(slot), &mut self.rest[solid.id[slot] as usize]);
+            *rest = rest.max(sum);
         }
     }
 
-    /// Wall particles that the solid particle at a slot touches, with the square of its distance, m².
-    fn touching<'w>(
+    fn sum_up(&mut self, isa: Isa, solid: Touching<'_, D>) {
+        let mut sums = std::mem::take(&mut self.sums);
+        let law = Presence { law: &self.law, solid, position: &self.position, velocity: &self.velocity };
+        pair::pass(isa, &law, &self.neighbours, &mut sums);
+        self.sums = sums;
+    }
+
+    /// Evaluates the push on every solid particle.
+    pub(crate) fn act(&mut self, isa: Isa, solid: Touching<'_, D>) {
+        self.sum_up(isa, solid);
+        for slot in 0..solid.id.len() {
+            let depth = match solid.id[slot] {
+                PADDING => 0.0,
+                id => self.law.depth(self.sum(slot), self.rest[id as usize]),
+            };
+            self.push[slot] = if depth > 0.0 {
+                let gradient = self.gradient(slot);
+                let own: f64 = (0..D).map(|d| solid.velocity[d][slot] * gradient[d]).sum();
+                let approach = ((own + self.carried(slot)) / self.law.slope).max(0.0);
+                let touch = (depth / (TOUCH * self.law.distance)).min(1.0);
+                (solid.repulsion * depth + solid.dashpot() * touch * approach) / self.law.slope
+            } else {
+                0.0
+            };
+        }
+    }
+
+    /// What has left a wall in the state that was evaluated last touches its surface from now on.
+    pub(crate) fn leave(&mut self, id: &[u32]) {
+        for (slot, &id) in id.iter().enumerate().filter(|&(_, &id)| id != PADDING) {
+            let sum = self.sum(slot);
+            let rest = &mut self.rest[id as usize];
+            *rest = rest.min(sum).max(self.law.level);
+        }
+    }
+
+    /// S of the solid particle at a slot.
+    fn sum(&self, slot: usize) -> f64 {
+        self.sums[slot / LANES].sum.0[slot % LANES]
+    }
+
+    fn gradient(&self, slot: usize) -> [f64; D] {
+        self.sums[slot / LANES].gradient.map(|g| g.0[slot % LANES])
+    }
+
+    fn carried(&self, slot: usize) -> f64 {
+        self.sums[slot / LANES].carried.0[slot % LANES]
+    }
+
+    /// Wall particles that the solid particle at a slot sees, with their distance, m.
+    fn seen<'w>(
         &'w self,
         solid: Touching<'w, D>,
         slot: usize,
     ) -> impl Iterator<Item = (usize, f64)> + use<'w, D> {
         self.neighbours.of(slot).filter_map(move |j| {
             let apart = |d: usize| solid.position[d][slot] - self.position[d][j];
-            let square = (0..D).map(|d| apart(d).powi(2)).sum::<f64>();
-            (square < solid.spacing * solid.spacing).then_some((j, square))
+            let r = (0..D).map(|d| apart(d).powi(2)).sum::<f64>().sqrt();
+            (r < self.law.radius).then_some((j, r))
         })
     }
 
     /// What walls add to the square of a particle's frequency, 1/s², and its damping, 1/s.
     pub(crate) fn stiffness(&self, solid: Touching<'_, D>, slot: usize) -> (f64, f64) {
-        if self.acceleration(slot) == [0.0; D] {
+        if self.push[slot] == 0.0 {
             return (0.0, 0.0);
         }
-        let count = self.touching(solid, slot).count() as f64;
-        (count * solid.repulsion, count * solid.dashpot())
+        let slope = self.gradient(slot).iter().map(|g| g * g).sum::<f64>() / self.law.slope.powi(2);
+        let curvature: f64 = self.seen(solid, slot).map(|(_, r)| self.law.curvature(r)).sum();
+        (solid.repulsion * slope + self.push[slot] * self.law.slope * curvature, solid.dashpot() * slope)
     }
 
     /// Power of walls that move on the solid's particles, in the state that was evaluated last, over a particle's mass,
     /// W/kg. `id` are the numbers of the solid's slots, `free` is the part of a particle that no clamp holds.
-    pub(crate) fn power(
-        &self,
-        isa: Isa,
-        solid: Touching<'_, D>,
-        id: &[u32],
-        free: impl Fn(u32) -> f64,
-    ) -> f64 {
+    pub(crate) fn power(&self, id: &[u32], free: impl Fn(u32) -> f64) -> f64 {
         if self.moving.is_none() {
             return 0.0;
         }
-        let law = PushPower(self.push(solid));
-        let mut sums = vec![Power::default(); self.neighbours.fours()];
-        pair::pass(isa, &law, &self.neighbours, &mut sums);
-        let real = (0..id.len()).filter(|&slot| id[slot] != PADDING);
-        real.map(|slot| free(id[slot]) * sums[slot / LANES].0.0[slot % LANES]).sum()
+        let pushed = (0..id.len()).filter(|&slot| self.push[slot] > 0.0);
+        pushed.map(|slot| free(id[slot]) * self.push[slot] * self.carried(slot)).sum()
     }
 
-    /// Velocity of the surface that pushes the solid particle at a slot, m/s: that of its particles by their overlap.
+    /// Velocity of the surface that pushes the solid particle at a slot, m/s: that of its particles, by their kernels.
     pub(crate) fn velocity_at(&self, solid: Touching<'_, D>, slot: usize) -> [f64; D] {
         let (mut sum, mut weights) = ([0.0; D], 0.0);
-        for (j, square) in self.touching(solid, slot).filter(|(j, _)| self.id[*j] != PADDING) {
-            let (overlap, belt) = (solid.spacing - square.sqrt(), self.belt[self.id[j] as usize]);
-            sum = std::array::from_fn(|d| sum[d] + overlap * (self.velocity[d][j] + belt[d]));
-            weights += overlap;
+        for (j, r) in self.seen(solid, slot) {
+            let (weight, belt) = (self.law.kernel.at(r), self.belt[self.id[j] as usize]);
+            sum = std::array::from_fn(|d| sum[d] + weight * (self.velocity[d][j] + belt[d]));
+            weights += weight;
         }
         if weights > 0.0 { sum.map(|v| v / weights) } else { sum }
     }
 
+    /// Visits what walls keep over an interruption.
+    pub(crate) fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
+        if let Some(moving) = &mut self.moving {
+            fields.real("walls_listed_at", &mut moving.listed_at)?;
+        }
+        let particles = self.rest.len();
+        fields.reals("walls_rest", &mut self.rest)?;
+        fields.length("walls_rest", particles, self.rest.len())
+    }
+
     /// Acceleration of the solid particle at a slot, m/s².
     pub(crate) fn acceleration(&self, slot: usize) -> [f64; D] {
-        self.forces[slot / LANES].0.map(|a| a.0[slot % LANES])
+        match self.push[slot] {
+            0.0 => [0.0; D],
+            push => self.gradient(slot).map(|g| -push * g),
+        }
     }
 }
 
 /// The solid as walls see it: columns sorted by the rows that the lists were made with.
 #[derive(Clone, Copy)]
 pub(crate) struct Touching<'a, const D: usize> {
+    /// Particle number of a slot, or padding.
+    pub(crate) id: &'a [u32],
     /// m.
     pub(crate) position: &'a Vectors<D>,
     /// m/s.
     pub(crate) velocity: &'a Vectors<D>,
-    /// Mean of the spacings of solid and walls, m.
-    pub(crate) spacing: f64,
     /// k over a particle's mass, 1/s²: see [`repulsion`].
     pub(crate) repulsion: f64,
 }
@@ -284,89 +350,50 @@ pub(crate) fn repulsion(pressure_wave_speed: f64, spacing: f64) -> f64 {
     0.5 * (pressure_wave_speed / spacing).powi(2)
 }
 
-/// Acceleration of several solid particles by the walls.
+/// Sums over walls for several solid particles.
 #[derive(Clone, Copy)]
-struct WallForce<const D: usize, L = Lane>([L; D]);
-pair_sum!(WallForce { D } { 0 });
+struct WallSum<const D: usize, L = Lane> {
+    /// S.
+    sum: L,
+    /// grad S.
+    gradient: [L; D],
+    /// Rate of S by the motion of walls.
+    carried: L,
+}
+pair_sum!(WallSum { D } { sum, gradient, carried });
 
-/// The walls push the solid.
-struct Push<'a, const D: usize> {
+/// Solid particles see walls.
+struct Presence<'a, const D: usize> {
+    law: &'a KernelSum<D>,
     solid: Touching<'a, D>,
     /// Of the wall particles, m.
     position: &'a Vectors<D>,
     /// Of the wall particles, m/s.
     velocity: &'a Vectors<D>,
-    touch: Fade,
-    /// c over a particle's mass, 1/s.
-    dashpot: f64,
 }
 
-impl<const D: usize> PairLaw<D> for Push<'_, D> {
-    /// Velocity, m/s.
-    type Target<L: Lanes> = [L; D];
-    type Sum<L: Lanes> = WallForce<D, L>;
+impl<const D: usize> PairLaw<D> for Presence<'_, D> {
+    type Target<L: Lanes> = ();
+    type Sum<L: Lanes> = WallSum<D, L>;
     #[inline(always)]
     fn target_positions(&self) -> &[Vec<f64>; D] {
         self.solid.position
     }
     #[inline(always)]
-    fn target<L: Lanes>(&self, slot: usize) -> [L; D] {
-        std::array::from_fn(|d| L::load(&self.solid.velocity[d], slot))
-    }
+    fn target<L: Lanes>(&self, _: usize) {}
     #[inline(always)]
     fn source_position(&self, j: usize) -> [f64; D] {
         std::array::from_fn(|d| self.position[d][j])
     }
     #[inline(always)]
-    fn add<A: Arch, L: Lanes>(
-        &self,
-        velocity: &[L; D],
-        j: usize,
-        dx: [L; D],
-        r2: L,
-        sum: &mut WallForce<D, L>,
-    ) {
-        let dv = std::array::from_fn(|d| velocity[d] - L::splat(self.velocity[d][j]));
-        let r = distance(r2, self.solid.spacing);
-        let overlap = (L::splat(self.solid.spacing) - r).max(L::ZERO);
-        let approach = dot::<D, A, L>(dv, dx).min(L::ZERO) / r;
-        let damping = L::splat(self.dashpot) * self.touch.at(r) * approach;
-        let coefficient = (L::splat(self.solid.repulsion) * overlap - damping) / r;
+    fn add<A: Arch, L: Lanes>(&self, (): &(), j: usize, dx: [L; D], r2: L, sum: &mut WallSum<D, L>) {
+        let r = distance(r2, self.law.radius);
+        sum.sum = sum.sum + self.law.kernel.value::<A, L>(r);
+        let slope = self.law.kernel.gradient_over_r::<A, L>(r);
         for d in 0..D {
-            sum.0[d] = A::mul_add(coefficient, dx[d], sum.0[d]);
+            sum.gradient[d] = A::mul_add(slope, dx[d], sum.gradient[d]);
         }
-    }
-}
-
-/// Power of several pushes by the walls' own velocities, over a particle's mass.
-#[derive(Clone, Copy)]
-struct Power<L = Lane>(L);
-pair_sum!(Power {} { 0 });
-
-/// The power of [`Push`] that comes from the walls' motion.
-struct PushPower<'a, const D: usize>(Push<'a, D>);
-
-impl<const D: usize> PairLaw<D> for PushPower<'_, D> {
-    type Target<L: Lanes> = [L; D];
-    type Sum<L: Lanes> = Power<L>;
-    #[inline(always)]
-    fn target_positions(&self) -> &[Vec<f64>; D] {
-        self.0.target_positions()
-    }
-    #[inline(always)]
-    fn target<L: Lanes>(&self, slot: usize) -> [L; D] {
-        self.0.target(slot)
-    }
-    #[inline(always)]
-    fn source_position(&self, j: usize) -> [f64; D] {
-        self.0.source_position(j)
-    }
-    #[inline(always)]
-    fn add<A: Arch, L: Lanes>(&self, velocity: &[L; D], j: usize, dx: [L; D], r2: L, sum: &mut Power<L>) {
-        let mut push = WallForce::default();
-        self.0.add::<A, L>(velocity, j, dx, r2, &mut push);
-        for d in 0..D {
-            sum.0 = A::mul_add(push.0[d], L::splat(self.0.velocity[d][j]), sum.0);
-        }
+        let velocity = std::array::from_fn(|d| L::splat(self.velocity[d][j]));
+        sum.carried = A::mul_add(-slope, dot::<D, A, L>(velocity, dx), sum.carried);
     }
 }

@@ -60,8 +60,7 @@ impl<const D: usize> FiniteElement<D> {
         }
         if let Some(contact) = &self.contact {
             contact.wall_accelerations(|id, a| add_to_nodes(&self.mesh, &mut sinks.walls, id, a));
-            sinks.moving_walls =
-                self.mass * contact.power_of_walls(self.isa, &self.material, |id| self.free_part(id));
+            sinks.moving_walls = self.mass * contact.power_of_walls(|id| self.free_part(id));
         }
         let inner = |(node, _): &(usize, _)| {
             let (all, walls) = (vector(&self.inner, *node as u32), vector(&sinks.walls, *node as u32));

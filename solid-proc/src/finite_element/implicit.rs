@@ -125,8 +125,7 @@ impl<const D: usize> FiniteElement<D> {
         contact.accelerations(|id, a| add_to_nodes(&self.mesh, &mut outer.contacts, id, a));
         contact.wall_accelerations(|id, a| add_to_nodes(&self.mesh, &mut outer.walls, id, a));
         if account::is_open(self.account.as_ref()) {
-            outer.moving_walls =
-                self.mass * contact.power_of_walls(self.isa, &self.material, |id| self.free_part(id));
+            outer.moving_walls = self.mass * contact.power_of_walls(|id| self.free_part(id));
         }
         contact.set_time(time + dt);
         self.now.displacement = start;

@@ -396,6 +396,7 @@ impl<const D: usize> SolidModel<D> for FiniteElement<D> {
                 self.now.copy_from(&self.at_n);
                 self.account.iter_mut().for_each(|account| account.given.open = true);
                 self.go_on(sub_steps, span, half_step.time);
+                self.contact.iter_mut().for_each(Contact::leave);
                 self.account.iter_mut().for_each(|account| account.given.open = false);
             }
         }

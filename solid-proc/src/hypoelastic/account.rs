@@ -109,7 +109,7 @@ impl<const D: usize> Hypoelastic<D> {
             if clamped { [0.0; D] } else { walls.acceleration(slot) }
         });
         let free = |id: u32| if self.points[id as usize].clamped { 0.0 } else { 1.0 };
-        (contact, self.mass * walls.power(self.isa, self.touching(), &self.id, free))
+        (contact, self.mass * walls.power(&self.id, free))
     }
 
     /// Notes what side friction took of these velocities, m/s, before it acted.

@@ -107,9 +107,9 @@ impl<const D: usize> Hypoelastic<D> {
     /// The particles as walls see them.
     pub(super) fn touching(&self) -> Touching<'_, D> {
         Touching {
+            id: &self.id,
             position: &self.now.position,
             velocity: &self.now.velocity,
-            spacing: self.wall_spacing,
             repulsion: repulsion(self.material.pressure_wave_speed(), self.spacing),
         }
     }

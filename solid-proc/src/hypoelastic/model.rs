@@ -37,8 +37,6 @@ pub struct Hypoelastic<const D: usize> {
     pub(super) isa: Isa,
     pub(super) smoothing_length: f64,
     skin: f64,
-    /// Mean of the solid's spacing and the walls', m.
-    pub(super) wall_spacing: f64,
     /// dx of its own, m.
     pub(super) spacing: f64,
     pub(super) gravity: [f64; D],
@@ -91,13 +89,12 @@ impl<const D: usize> Hypoelastic<D> {
         let layout = geometry::layout::<D>(scene).with_solid(scene, solid);
         let dx = scene.solid_spacing(solid);
         let h = material.smoothing_ratio * dx;
-        let wall_spacing = scene.interface_spacing(solid);
         let own = layout.solid.len();
         let ModelKeys::Hypoelastic(keys) = &material.model else { return None };
         let artificial_stress =
             takes_part(scene, solid, EffectName::ArtificialStress).then_some(keys.artificial_stress);
         let walls = touches_walls(scene, solid)
-            .then(|| Walls::new(scene, &layout.wall, wall_spacing + SKIN * h, isa))
+            .then(|| Walls::new(scene, solid, &layout.wall, SKIN * h, isa))
             .flatten();
         let side_friction = takes_part(scene, solid, EffectName::SideFriction)
             .then(|| material.side_friction / material.density);
@@ -117,7 +114,6 @@ impl<const D: usize> Hypoelastic<D> {
             isa,
             smoothing_length: h,
             skin: SKIN * h,
-            wall_spacing,
             spacing: dx,
             gravity: std::array::from_fn(|d| scene.gravity[d]),
             domain: (std::array::from_fn(|d| domain.min[d]), std::array::from_fn(|d| domain.max[d])),
@@ -156,6 +152,10 @@ impl<const D: usize> Hypoelastic<D> {
             account: None,
         };
         model.sort();
+        if let Some(mut walls) = model.walls.take() {
+            walls.begin(isa, model.touching());
+            model.walls = Some(walls);
+        }
         model.apply_state_equation();
         model.show_particles();
         Some(model)
@@ -180,7 +180,7 @@ impl<const D: usize> Hypoelastic<D> {
         self.neighbours.build(&self.reference, &self.reference, &self.rows, reach);
         fit(&mut self.sums, self.neighbours.fours(), SolidSum::default());
         if let Some(walls) = &mut self.walls {
-            walls.relist(&self.reference, self.wall_spacing + self.skin);
+            walls.relist(&self.reference);
         }
     }
 
@@ -369,6 +369,7 @@ impl<const D: usize> SolidModel<D> for Hypoelastic<D> {
         if !first {
             self.close_account();
             self.wall_springs = self.springs_of_walls();
+            self.walls.iter_mut().for_each(|walls| walls.leave(&self.id));
         }
         let (slot_of, now) = (&self.slot_of, &self.now);
         let place = |p: usize| vector(&now.position, slot_of[p]);

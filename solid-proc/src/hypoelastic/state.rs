@@ -3,7 +3,6 @@
 
 use super::columns::{Source, State as Columns};
 use super::model::Hypoelastic;
-use crate::wall::Walls;
 use halfstep_sph::columns::fit;
 use halfstep_sph::lane::LANES;
 use halfstep_wire::order;
@@ -16,10 +15,8 @@ impl<const D: usize> State for Hypoelastic<D> {
         fields.part("shown_velocity", &mut self.shown_velocity)?;
         fields.vectors("position_at_sort", &mut self.reference)?;
         fields.count("pair_evaluations", &mut self.pair_evaluations)?;
-        if let Some(time) = self.walls.as_mut().and_then(Walls::listed_at) {
-            fields.real("walls_listed_at", time)?;
-        }
-        if self.walls.is_some() {
+        if let Some(walls) = &mut self.walls {
+            walls.fields(fields)?;
             fields.real("wall_springs", &mut self.wall_springs)?;
         }
         let slots = self.id.len();

@@ -53,13 +53,13 @@ impl<const D: usize> TotalLagrangian<D> {
                 }
             });
             let free = |id: u32| f64::from(u8::from(self.is_free(self.slot_of[id as usize] as usize)));
-            sinks.moving_walls = self.mass * contact.power_of_walls(self.isa, &self.material, free);
+            sinks.moving_walls = self.mass * contact.power_of_walls(free);
         }
         sinks.driven = self.inner_of_driven();
         sinks
     }
 
-    /// What acts from inside on the slots that clamps move, m/s²: stresses, other bodies, and the faces of cracks.
+    /// What acts from inside on the slots that clamps move, m/s²: stresses, other bodies, the other sides of cuts.
     fn inner_of_driven(&self) -> Vec<[f64; D]> {
         let inner = |slot: usize| std::array::from_fn(|d| self.sums[slot / LANES].0[d].0[slot % LANES]);
         let mut driven: Vec<[f64; D]> = self.driven.iter().map(|(slot, _)| inner(*slot)).collect();
@@ -74,10 +74,6 @@ impl<const D: usize> TotalLagrangian<D> {
         }
         if let Some(contact) = &self.contact {
             contact.body_accelerations(|id, a| add(self.slot_of[id as usize] as usize, a));
-        }
-        for ([i, j], push) in self.face_pushes() {
-            add(i, push);
-            add(j, push.map(|a| -a));
         }
         driven
     }

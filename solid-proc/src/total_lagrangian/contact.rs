@@ -1,27 +1,29 @@
 //! Contact: what happens beyond the reference neighbours, in the present configuration.
 //!
-//! Bodies are what reference neighbours of one name connect (`geometry::pieces`). Two particles of different
-//! bodies repel each other as soon as they are closer than the spacing dx, which is where two surfaces meet:
-//!   F_ij = k (dx - r) x_ij / r,   k = M/2 dx^(D-2),   M = K + 4 G / 3,
-//! pairwise, without friction and without loss. A body does not see itself. Walls push as they push any solid
-//! (see `crate::wall`). A solid that says `contact` leaves both to the coupler.
+//! Bodies are what reference neighbours of one name connect (`geometry::pieces`). Bodies, and the two sides of a cut,
+//! push each other by springs without friction and loss ([`bodies`]); walls push as they push any solid (see
+//! `crate::wall`). A solid that says `contact` leaves both to the coupler.
+
+mod bodies;
+#[cfg(test)]
+mod tests;
 
 use crate::columns::{Vectors, vectors};
 use crate::effects::{takes_part, touches_walls};
 use crate::surface::surface_set;
 use crate::wall::{Touching, Walls, repulsion};
+use bodies::{Bodies, Slots};
 use halfstep_scene::geometry::{self, Layout, SolidPoint};
 use halfstep_scene::{EffectName, Scene, Solid};
-use halfstep_sph::columns::{copy, fit, moved_farther};
-use halfstep_sph::lane::{Arch, Isa, LANES, Lane, Lanes};
-use halfstep_sph::neighbours::{ClusterList, Neighbours, PADDING, Rows};
-use halfstep_sph::pair::{self, PairLaw, distance, pair_sum};
+use halfstep_sph::columns::{copy, moved_farther};
+use halfstep_sph::lane::{Isa, LANES};
+use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_wire::order;
-use halfstep_wire::state::StateError;
+use halfstep_wire::state::{Fields, StateError};
 
 /// Distance, in smoothing lengths of the interface, that lists hold beyond reach.
 const SKIN: f64 = 0.3;
-/// Distance from the surface within which particles may touch a wall, in spacings: its two outer rows.
+/// Distance from the surface within which particles may touch something, in spacings: its two outer rows.
 const OUTER: f64 = 1.1;
 
 /// Particles that may touch something, sorted by where they are now.
@@ -36,17 +38,14 @@ pub(crate) struct Contact<const D: usize> {
     pub(super) listed: Vectors<D>,
     rows: Rows<D>,
     list: ClusterList,
-    sums: Vec<Repulsion<D>>,
+    bodies: Bodies<D>,
     several: bool,
     walls: Option<Walls<D>>,
     /// dx of the solid, m.
     spacing: f64,
-    /// Mean of that and the walls', m.
-    wall_spacing: f64,
     /// Distance that lists hold beyond reach, m.
     skin: f64,
     domain: ([f64; D], [f64; D]),
-    stiffness: f64,
     mass: f64,
 }
 
@@ -68,18 +67,15 @@ impl<const D: usize> Contact<D> {
     ) -> Option<Self> {
         let dx = scene.solid_spacing(solid);
         let skin = SKIN * scene.smoothing_ratio * scene.resolution;
-        let wall_spacing = scene.interface_spacing(solid);
-        let walls = touches_walls(scene, solid)
-            .then(|| Walls::new(scene, &layout.wall, wall_spacing + skin, isa))
-            .flatten();
+        let walls =
+            touches_walls(scene, solid).then(|| Walls::new(scene, solid, &layout.wall, skin, isa)).flatten();
         let breaks = takes_part(scene, solid, EffectName::Fracture);
         let several = !scene.leaves_bodies_to_coupler(solid) && body.iter().any(|&b| b != body[0]);
         let id = match (&walls, several) {
             (None, false) if !breaks => return None,
             // Cracks open surfaces everywhere.
             _ if breaks => (0..layout.solid.len() as u32).collect(),
-            (Some(_), _) => surface_set(&layout.solid, body, OUTER * dx, dx),
-            (None, _) => surface_set(&layout.solid, body, 0.1 * dx, dx),
+            _ => surface_set(&layout.solid, body, OUTER * dx, dx),
         };
         let column = |of: &dyn Fn(&SolidPoint<D>) -> f64| -> Vec<f64> {
             id.iter().map(|&p| of(&layout.solid[p as usize])).collect()
@@ -95,39 +91,61 @@ impl<const D: usize> Contact<D> {
             listed: vectors(0),
             rows: Rows::default(),
             list: ClusterList::new(isa),
-            sums: Vec::new(),
+            bodies: Bodies::new(layout.solid.len(), dx, 0.25 * modulus * dx.powi(D as i32 - 2)),
             several,
             walls,
             spacing: dx,
-            wall_spacing,
             skin,
             domain: (std::array::from_fn(|d| domain.min[d]), std::array::from_fn(|d| domain.max[d])),
-            stiffness: 0.5 * modulus * dx.powi(D as i32 - 2),
             mass: material.density * dx.powi(D as i32),
             id,
         };
         contact.sort();
+        contact.begin(isa, material);
         Some(contact)
     }
 
-    /// Reach of the lists of walls, m.
-    fn wall_reach(&self) -> f64 {
-        self.wall_spacing + self.skin
+    /// Nothing pushes at the start.
+    fn begin(&mut self, isa: Isa, material: &Solid) {
+        let before = self.bodies.sums();
+        self.look(isa);
+        self.bodies.rest_since(&before);
+        if let Some(mut walls) = self.walls.take() {
+            walls.begin(isa, self.touching_solid(material));
+            self.walls = Some(walls);
+        }
+    }
+
+    /// The particles as bodies see them.
+    fn slots(&self) -> Slots<'_, D> {
+        Slots {
+            id: &self.id,
+            position: &self.position,
+            body: &self.body,
+            list: self.several.then_some(&self.list),
+        }
+    }
+
+    /// Looks who is near whom now.
+    fn look(&mut self, isa: Isa) {
+        let Self { id, position, body, list, several, bodies, .. } = self;
+        bodies.look(isa, Slots { id, position, body, list: several.then_some(&*list) });
     }
 
     fn row_height(&self) -> f64 {
-        if self.walls.is_some() { self.wall_reach() } else { self.spacing + self.skin }
+        let bodies = self.bodies.radius() + self.skin;
+        self.walls.as_ref().map_or(bodies, |walls| walls.reach().max(bodies))
     }
 
     /// Lists who is near whom, from the positions at the sort.
     fn list(&mut self) {
-        let (reach, wall_reach) = (self.spacing + self.skin, self.wall_reach());
         if self.several {
-            self.list.build(&self.listed, &self.listed, &self.rows, reach);
-            fit(&mut self.sums, self.list.fours(), Repulsion::default());
+            self.list.build(&self.listed, &self.listed, &self.rows, self.bodies.radius() + self.skin);
         }
+        let Self { id, position, body, list, several, bodies, .. } = self;
+        bodies.fit(Slots { id, position, body, list: several.then_some(&*list) });
         if let Some(walls) = &mut self.walls {
-            walls.relist(&self.listed, wall_reach);
+            walls.relist(&self.listed);
         }
     }
 
@@ -190,18 +208,39 @@ impl<const D: usize> Contact<D> {
         self.several || self.walls.is_some()
     }
 
-    /// The bodies are these from now on, by particle number, and they are several.
-    pub(super) fn divide(&mut self, bodies: &[u32]) {
+    /// The bodies are these from now on, by particle number, and pairs of one body are cut, in the present state: that
+    /// pushes nothing.
+    pub(super) fn divide(
+        &mut self,
+        isa: Isa,
+        bodies: &[u32],
+        cuts: Vec<[u32; 2]>,
+        present: impl Fn(u32) -> Present<D>,
+    ) {
+        let before = self.bodies.sums();
         for (body, &id) in self.body.iter_mut().zip(&self.id).filter(|(_, id)| **id != PADDING) {
             *body = f64::from(bodies[id as usize]);
         }
-        self.several = true;
+        self.several = bodies.iter().any(|&body| body != bodies[0]);
+        self.bodies.cut(cuts);
         self.list();
+        self.update(present);
+        self.look(isa);
+        self.bodies.rest_since(&before);
     }
 
-    /// There are contacts between bodies.
+    /// What has left a surface in the state that was evaluated last, and is not taken back, touches it from now on
+    /// where surfaces meet.
+    pub(crate) fn leave(&mut self) {
+        self.bodies.leave();
+        if let Some(walls) = &mut self.walls {
+            walls.leave(&self.id);
+        }
+    }
+
+    /// There are contacts between bodies, or within one.
     pub(super) fn between_bodies(&self) -> bool {
-        self.several
+        self.several || self.bodies.has_cuts()
     }
 
     /// The walls, for leaving them out for a while.
@@ -236,9 +275,10 @@ impl<const D: usize> Contact<D> {
 
     /// Evaluates all contacts of the state last taken over.
     pub(crate) fn act(&mut self, isa: Isa, solid: &Solid) {
-        if self.several {
-            let law = Repel { position: &self.position, body: &self.body, spacing: self.spacing };
-            pair::pass(isa, &law, &self.list, &mut self.sums);
+        if self.between_bodies() {
+            self.look(isa);
+            let Self { id, position, body, list, several, bodies, .. } = self;
+            bodies.push(isa, Slots { id, position, body, list: several.then_some(&*list) });
         }
         if let Some(mut walls) = self.walls.take() {
             walls.act(isa, self.touching_solid(solid));
@@ -249,9 +289,9 @@ impl<const D: usize> Contact<D> {
     /// The particles as walls see them.
     fn touching_solid(&self, solid: &Solid) -> Touching<'_, D> {
         Touching {
+            id: &self.id,
             position: &self.position,
             velocity: &self.velocity,
-            spacing: self.wall_spacing,
             repulsion: repulsion(solid.pressure_wave_speed(), self.spacing),
         }
     }
@@ -275,10 +315,7 @@ impl<const D: usize> Contact<D> {
 
     /// Acceleration of the particle at a slot by other bodies, m/s².
     fn by_bodies(&self, slot: usize) -> [f64; D] {
-        if !self.several {
-            return [0.0; D];
-        }
-        self.sums[slot / LANES].force.map(|f| f.0[slot % LANES] * self.stiffness / self.mass)
+        self.bodies.force_at(slot).map(|force| force / self.mass)
     }
 
     /// Calls `add` with each particle's number and its acceleration by other bodies, m/s².
@@ -298,25 +335,25 @@ impl<const D: usize> Contact<D> {
 
     /// Power of walls that move on the solid, over a particle's mass, W/kg; `free` is the part of a particle that no
     /// clamp holds.
-    pub(crate) fn power_of_walls(&self, isa: Isa, solid: &Solid, free: impl Fn(u32) -> f64) -> f64 {
-        let power = |walls: &Walls<D>| walls.power(isa, self.touching_solid(solid), &self.id, free);
-        self.walls.as_ref().map_or(0.0, power)
+    pub(crate) fn power_of_walls(&self, free: impl Fn(u32) -> f64) -> f64 {
+        self.walls.as_ref().map_or(0.0, |walls| walls.power(&self.id, free))
     }
 
     /// What contacts add to the square of a particle's highest frequency, 1/s², and its damping by walls, 1/s: the
     /// largest of any particle in the state that was evaluated last.
     pub(crate) fn stiffness(&self, solid: &Solid) -> (f64, f64) {
+        let bodies = match self.between_bodies() {
+            true => self.bodies.largest_stiffness(self.slots(), |slot| self.held(slot)) / self.mass,
+            false => 0.0,
+        };
         let (mut springs, mut damping) = (0.0_f64, 0.0_f64);
-        let free = |slot: &usize| self.id[*slot] != PADDING && !self.held(*slot);
-        for slot in (0..self.id.len()).filter(free) {
-            let bodies = self.stiffness / self.mass * self.touched(slot) as f64;
-            let walls = self.walls.as_ref();
-            let (spring, viscous) =
-                walls.map_or((0.0, 0.0), |walls| walls.stiffness(self.touching_solid(solid), slot));
-            springs = springs.max(bodies + spring);
-            damping = damping.max(viscous);
+        if let Some(walls) = &self.walls {
+            for slot in (0..self.id.len()).filter(|&slot| self.id[slot] != PADDING && !self.held(slot)) {
+                let (spring, viscous) = walls.stiffness(self.touching_solid(solid), slot);
+                (springs, damping) = (springs.max(spring), damping.max(viscous));
+            }
         }
-        (springs, damping)
+        (bodies + springs, damping)
     }
 
     /// A clamp holds the particle at a slot.
@@ -324,34 +361,13 @@ impl<const D: usize> Contact<D> {
         self.clamped.get(self.id[slot] as usize).copied().unwrap_or(false)
     }
 
-    /// Number of particles of other bodies that push a particle; those that give way count twice.
-    fn touched(&self, slot: usize) -> usize {
-        self.pushing(slot).map(|(j, ..)| 2 - usize::from(self.held(j))).sum()
-    }
-
-    /// Particles of other bodies that push the one at a slot: slot, x_ij and its square.
-    fn pushing(&self, slot: usize) -> impl Iterator<Item = (usize, [f64; D], f64)> {
-        let pushed = self.several && self.sums[slot / LANES].square.0[slot % LANES] != 0.0;
-        let near = if pushed { self.list.of(slot) } else { Neighbours::NONE };
-        near.filter_map(move |j| {
-            let apart: [f64; D] = std::array::from_fn(|d| self.position[d][slot] - self.position[d][j]);
-            let square: f64 = apart.iter().map(|x| x.powi(2)).sum();
-            let pushes = self.body[j] != self.body[slot] && square < self.spacing * self.spacing;
-            pushes.then_some((j, apart, square))
-        })
-    }
-
-    /// Calls `visit` with particles of two bodies that push each other, the lower number first, their x_ij / r, and the
-    /// acceleration that either gets, m/s².
+    /// Calls `visit` with particles that push each other, the normal of the surface between them toward the first one,
+    /// and the acceleration along that, m/s².
     pub(super) fn touching(&self, mut visit: impl FnMut([u32; 2], [f64; D], f64)) {
-        for slot in (0..self.id.len()).filter(|&slot| self.id[slot] != PADDING) {
-            for (j, apart, square) in self.pushing(slot) {
-                if self.id[slot] < self.id[j] && self.id[j] != PADDING && square > 0.0 {
-                    let r = square.sqrt();
-                    let push = (self.spacing - r) * self.stiffness / self.mass;
-                    visit([self.id[slot], self.id[j]], apart.map(|x| x / r), push);
-                }
-            }
+        if self.between_bodies() {
+            self.bodies.touching(self.slots(), |pair, normal, force| {
+                visit(pair.map(|slot| self.id[slot]), normal, force / self.mass);
+            });
         }
     }
 
@@ -366,56 +382,17 @@ impl<const D: usize> Contact<D> {
         }
     }
 
-    /// Energy in the contacts between bodies, J.
+    /// Energy in the contacts between bodies, J (2D: J/m).
     pub(crate) fn energy(&self) -> f64 {
-        let slots = (0..self.id.len()).filter(|&s| self.several && self.id[s] != PADDING);
-        // Half of each pair's energy, k (dx - r)² / 2, belongs to either particle.
-        slots.map(|s| 0.25 * self.stiffness * self.sums[s / LANES].square.0[s % LANES]).sum()
+        self.bodies.energy()
     }
-}
 
-/// Sums over particles of other bodies for several particles, to be multiplied by k.
-#[derive(Clone, Copy)]
-struct Repulsion<const D: usize, L = Lane> {
-    force: [L; D],
-    /// sum (dx - r)².
-    square: L,
-}
-
-pair_sum!(Repulsion { D } { force, square });
-
-struct Repel<'a, const D: usize> {
-    position: &'a Vectors<D>,
-    body: &'a [f64],
-    spacing: f64,
-}
-
-impl<const D: usize> PairLaw<D> for Repel<'_, D> {
-    type Target<L: Lanes> = L;
-    type Sum<L: Lanes> = Repulsion<D, L>;
-    #[inline(always)]
-    fn target_positions(&self) -> &[Vec<f64>; D] {
-        self.position
-    }
-    #[inline(always)]
-    fn source_position(&self, j: usize) -> [f64; D] {
-        std::array::from_fn(|d| self.position[d][j])
-    }
-    #[inline(always)]
-    fn target<L: Lanes>(&self, slot: usize) -> L {
-        L::load(self.body, slot)
-    }
-    #[inline(always)]
-    fn add<A: Arch, L: Lanes>(&self, body: &L, j: usize, dx: [L; D], r2: L, sum: &mut Repulsion<D, L>) {
-        let r = distance(r2, self.spacing);
-        // Body numbers are whole: 1 between different bodies, else 0.
-        let other = *body - L::splat(self.body[j]);
-        let other = other.max(-other).min(L::splat(1.0));
-        let overlap = (L::splat(self.spacing) - r).max(L::ZERO) * other;
-        sum.square = A::mul_add(overlap, overlap, sum.square);
-        let force = overlap / r;
-        for d in 0..D {
-            sum.force[d] = A::mul_add(force, dx[d], sum.force[d]);
-        }
+    /// Visits what bodies and walls keep over an interruption, but for the order.
+    pub(super) fn rest_fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
+        let rest = self.bodies.rest();
+        let particles = rest.len();
+        fields.reals("rest", rest)?;
+        fields.length("rest", particles, rest.len())?;
+        self.walls.as_mut().map_or(Ok(()), |walls| walls.fields(fields))
     }
 }

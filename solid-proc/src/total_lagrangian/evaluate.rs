@@ -155,9 +155,6 @@ impl<const D: usize> TotalLagrangian<D> {
             }
         }
         self.sums = sums;
-        if self.fracture.is_some() {
-            self.push_faces();
-        }
         if let Some(contact) = self.contact.take() {
             self.contact = Some(self.touch(contact));
         }
@@ -176,14 +173,17 @@ impl<const D: usize> TotalLagrangian<D> {
         })
     }
 
+    /// Where a particle is now, and how fast.
+    pub(super) fn present(&self, id: u32) -> Present<D> {
+        let slot = self.slot_of[id as usize] as usize;
+        Present {
+            position: self.position_at(slot),
+            velocity: std::array::from_fn(|d| self.now.velocity[d][slot]),
+        }
+    }
+
     fn touch(&mut self, mut contact: Contact<D>) -> Contact<D> {
-        contact.update(|id| {
-            let slot = self.slot_of[id as usize] as usize;
-            Present {
-                position: self.position_at(slot),
-                velocity: std::array::from_fn(|d| self.now.velocity[d][slot]),
-            }
-        });
+        contact.update(|id| self.present(id));
         contact.act(self.isa, &self.material);
         contact.accelerations(|id, a| {
             let slot = self.slot_of[id as usize] as usize;
@@ -253,8 +253,7 @@ impl<const D: usize> TotalLagrangian<D> {
     /// sum V0 psi, the hourglass energy and that of contacts between bodies, J.
     pub(super) fn energy(&self) -> f64 {
         let inner: f64 = self.slot_of.iter().map(|&slot| self.stored_at(slot as usize)).sum();
-        let faces = if self.fracture.is_some() { self.face_energy() } else { 0.0 };
-        inner + faces + self.contact.as_ref().map_or(0.0, Contact::energy)
+        inner + self.contact.as_ref().map_or(0.0, Contact::energy)
     }
 
     /// Energy stored by the particle at a slot, J (2D: J/m).

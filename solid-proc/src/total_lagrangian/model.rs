@@ -295,7 +295,6 @@ impl<const D: usize> TotalLagrangian<D> {
             self.tear();
             if self.fracture.as_ref().is_some_and(Fracture::is_accepted) {
                 self.keep_gradients();
-                self.open_faces();
             }
             self.note_sub_step(each, &driven);
             self.rub(0.5 * each, Drift::IsDone);
@@ -390,6 +389,7 @@ impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {
                     fracture.accept(true);
                 });
                 self.sub_step(sub_steps, span, half_step.time);
+                self.contact.iter_mut().for_each(Contact::leave);
                 self.fracture.iter_mut().for_each(|fracture| fracture.accept(false));
                 self.account_for_loads(half_step.time + 0.5 * span);
                 self.account.iter_mut().for_each(|account| account.given.open = false);

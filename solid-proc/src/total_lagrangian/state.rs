@@ -5,7 +5,6 @@
 use super::contact::Contact;
 use super::fracture::Fracture;
 use super::model::TotalLagrangian;
-use crate::wall::Walls;
 use halfstep_wire::state::{Fields, State, StateError};
 
 impl<const D: usize> State for TotalLagrangian<D> {
@@ -55,9 +54,7 @@ impl<const D: usize> State for Contact<D> {
         fields.numbers("id", &mut self.id)?;
         fields.vectors("position_at_sort", &mut self.listed)?;
         self.listed.iter().try_for_each(|x| fields.length("position_at_sort", self.id.len(), x.len()))?;
-        if let Some(time) = self.walls().as_mut().and_then(Walls::listed_at) {
-            fields.real("walls_listed_at", time)?;
-        }
+        self.rest_fields(fields)?;
         if fields.loading() {
             self.reorder(&body)?;
         }

@@ -75,8 +75,6 @@ impl<const D: usize> TotalLagrangian<D> {
         let stiffest = self.slot_of.iter().map(stiffness).fold(0.0, f64::max);
         let (springs, walls) =
             self.contact.as_ref().map_or((0.0, 0.0), |contact| contact.stiffness(&self.material));
-        let faces = if self.fracture.is_some() { self.face_springs() } else { 0.0 };
-        let springs = springs + faces;
         let waves = (stiffest + self.hourglass_modulus) / density;
         let omega = ((2.0 / (STABLE * self.spacing)).powi(2) * waves + springs).sqrt();
         let viscosity = self.material.artificial_viscosity.linear * self.material.sound_speed();

@@ -42,7 +42,7 @@ impl Toucher<'_> {
 }
 
 /// Bodies, and solids of which two touch, that lie in each other or in walls at the start: contact throws them
-/// apart.
+/// apart, or begins there.
 pub(super) fn overlaps<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
     if scene.dimension != 2 || scene.solids.is_empty() {
         return;
@@ -93,7 +93,7 @@ pub(super) fn overlaps<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &
                 || scene.is_rigid(a.shape)
                 || a.shape.solid.is_some_and(|k| scene.leaves_bodies_to_coupler(k));
             if depth > OVERLAP[usize::from(!by_outline)] * scene.resolution {
-                let text = in_each_other(scene, a.shape, b.shape, depth);
+                let text = in_each_other(scene, [a.shape, b.shape], depth, by_outline);
                 if !all.contains(&text) {
                     all.push(text);
                 }
@@ -102,8 +102,8 @@ pub(super) fn overlaps<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &
     }
 }
 
-/// What is said of two shapes that lie so deep, m, in each other.
-fn in_each_other(scene: &Scene, a: &Shape, b: &Shape, depth: f64) -> String {
+/// What is said of two shapes that lie so deep, m, in each other, and touch by their outlines or by their particles.
+fn in_each_other(scene: &Scene, [a, b]: [&Shape; 2], depth: f64, by_outline: bool) -> String {
     let depth = length(depth);
     let (solid, wall) = if a.phase == Phase::Wall { (b, a) } else { (a, b) };
     let around = |shape: &Shape| geometry::bounding_box(shape, scene);
@@ -119,7 +119,11 @@ fn in_each_other(scene: &Scene, a: &Shape, b: &Shape, depth: f64) -> String {
         true => format!("copies of `{}`", a.name),
         false => format!("`{}` and `{}`", a.name, b.name),
     };
-    format!("{what} lie {depth} m in each other at the start: contact throws them apart")
+    let then = match by_outline {
+        true => "contact throws them apart",
+        false => "they push each other from there on, until they have parted",
+    };
+    format!("{what} lie {depth} m in each other at the start: {then}")
 }
 
 /// A joint ties two shapes' bodies, or a motion prescribes where one is beside a wall: they do not touch.
@@ -181,8 +185,8 @@ pub(super) fn debris(scene: &Scene, all: &mut Vec<String>) {
         let Some(broken) = contact.solids.iter().copied().find(breaks) else { continue };
         let [a, b] = contact.solids.map(|k| &scene.solids[k].name);
         all.push(format!(
-            "`{a}` and `{b}` touch with the surfaces that they begin with: what cracks open in `{}` is not held \
-             against the other, and a piece that breaks off takes its part of the surface along",
+            "`{a}` and `{b}` touch with the surfaces that they begin with: a piece that breaks off `{}` takes its part \
+             along, and where cracks leave none, its particles are held one by one",
             scene.solids[broken].name
         ));
     }

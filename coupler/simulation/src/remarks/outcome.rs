@@ -21,6 +21,9 @@ pub(crate) const DEEP: f64 = 0.1;
 /// Energy that fracture may take over that of the area that it opened.
 const BESIDE_CRACKS: f64 = 3.0;
 
+/// Single particles from which on debris is rubble, if they are more than half of all bodies.
+const RUBBLE: f64 = 10.0;
+
 /// Part of the largest energy that the ledger may leave to the error of time integration.
 const RESIDUAL: f64 = 0.05;
 
@@ -68,6 +71,7 @@ pub fn outcome(scene: &Scene, report: &RunReport) -> Vec<String> {
     }
     all.extend(report.contacts.iter().filter_map(|contact| deep(scene, contact)));
     all.extend(beside_cracks(scene, report));
+    all.extend(rubble(scene, report));
     if let Some(energy) = &report.energy {
         if energy.relative_residual > RESIDUAL {
             let percent = 100.0 * energy.relative_residual;
@@ -108,6 +112,26 @@ fn beside_cracks(scene: &Scene, report: &RunReport) -> Vec<String> {
                 "fracture of the {} took {taken:.3} J, {times:.1} times what the cracks of {area:.3} take at \
                  {} J/m²: a crushed particle stores more than a crack, and so does a last row off the lattice, a hinge",
                 solid.name, keys.energy
+            ));
+        }
+    }
+    all
+}
+
+/// Solids that fell to single particles, of those with a probe for it.
+fn rubble(scene: &Scene, report: &RunReport) -> Vec<String> {
+    let mut all = Vec::new();
+    for probe in scene.probes.iter().filter(|probe| matches!(probe.kind, ProbeKind::Bodies)) {
+        let end = |column: &str| {
+            let name = format!("{}.{column}", probe.name);
+            report.probes.iter().find(|probe| probe.name == name)?.end
+        };
+        let Some((bodies, loose)) = end("bodies").zip(end("loose")) else { continue };
+        if loose >= RUBBLE && loose > 0.5 * bodies {
+            all.push(format!(
+                "{loose} of the {bodies} bodies of the {} are single particles: how many, and where they go, depends \
+                 on the spacing",
+                scene.solids[probe.solid.unwrap_or(0)].name
             ));
         }
     }
@@ -185,6 +209,25 @@ mod tests {
         );
         assert_eq!(of(["b", WALLS], 0.0099), None, "of the block alone: 100 mm");
         assert!(of(["b", WALLS], 0.0101).is_some());
+    }
+
+    #[test]
+    fn debris_of_single_particles_is_told() {
+        let text = "resolution = 0.01\nend_time = 1.0\ngravity = [0.0, -10.0]\n[solid]\ndensity = 2000.0\n\
+                    youngs_modulus = 1e9\npoissons_ratio = 0.2\nfracture = { strength = 1e5, energy = 2.0 }\n\
+                    [[shape]]\nname = \"wall\"\nphase = \"solid\"\nbox = { min = [0.0, 0.0], max = [0.1, 0.3] }\n\
+                    [[probe]]\nname = \"pieces\"\nkind = \"bodies\"\n";
+        let scene = halfstep_scene::parse(text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}"));
+        let of = |bodies, loose| {
+            let column = |name: &str, end| ProbeReport { name: name.into(), end, ..Default::default() };
+            let probes = vec![column("pieces.bodies", Some(bodies)), column("pieces.loose", Some(loose))];
+            rubble(&scene, &RunReport { probes, ..RunReport::default() })
+        };
+        assert_eq!(of(12.0, 9.0), [""; 0], "few");
+        assert_eq!(of(20.0, 10.0), [""; 0], "half of them");
+        let said = "10 of the 19 bodies of the solid are single particles: how many, and where they go, depends on the \
+                    spacing";
+        assert_eq!(of(19.0, 10.0), [said]);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The law of contact, and the search for points of one outline inside of another.
 
 use super::outline::Outline;
-use super::placed::Placed;
+use super::placed::{DEEPEST_START, Placed};
 use super::{Side, THETA};
 use halfstep_scene::{PairContact, Scene};
 
@@ -45,6 +45,8 @@ pub(super) struct Touch {
     pub(super) share: f64,
     /// Largest approach so far, m/s.
     pub(super) approach: f64,
+    /// Depth from which on it is pushed, m: of a single particle that came to be deep inside.
+    pub(super) rest: f64,
 }
 
 /// What is nearest to a point.
@@ -113,18 +115,20 @@ impl Law {
             0 => own < target,
             _ => own > target,
         };
-        let pieces = outline.pieces.iter().map(|piece| &piece.points).zip(&placed.pieces);
-        for (own_piece, (points, around)) in pieces.enumerate() {
+        for (own_piece, (piece, around)) in outline.pieces.iter().zip(&placed.pieces).enumerate() {
+            let singles = if placed.has_torn() { &piece.singles[..] } else { &[] };
+            let margin = if singles.is_empty() { 0.0 } else { 0.5 * outline.spacing };
             for (k, target) in other.1.pieces.iter().enumerate() {
-                if one_solid && !is_other(own_piece, k) || !around.touches(target) {
+                if one_solid && !is_other(own_piece, k) || !around.meets(target, margin) {
                     continue;
                 }
-                for &point in points {
+                for &point in piece.points.iter().chain(singles) {
                     let at = placed.position[point as usize];
-                    if placed.is_torn(point) || !target.holds(at) {
+                    let radius = outline.points[point as usize].radius;
+                    if placed.is_torn(point) || !target.holds(at, radius) {
                         continue;
                     }
-                    let Some(foot) = nearest(other, k, at) else { continue };
+                    let Some(foot) = nearest(other, k, at, radius) else { continue };
                     let key = [pass, point, k as u32];
                     let before =
                         touches.binary_search_by(|touch| touch.key.cmp(&key)).ok().map(|k| touches[k]);
@@ -168,11 +172,15 @@ impl Law {
         let normal = foot.normal;
         let tangent = [-normal[1], normal[0]];
         let approach = -dot(slip, normal);
-        let fresh = Touch { key, part: foot.part, share: foot.share, approach: 0.0 };
-        let mut touch = before.unwrap_or(fresh);
+        let single = outline.points[point].radius > 0.0;
+        let deep = single && foot.depth > DEEPEST_START * outline.spacing;
+        let rest = if deep { foot.depth } else { 0.0 };
+        let mut touch =
+            before.unwrap_or(Touch { key, part: foot.part, share: foot.share, approach: 0.0, rest });
+        touch.rest = touch.rest.min(foot.depth);
         touch.approach = touch.approach.max(approach);
         let spring = 0.5 * self.stiffness * outline.points[point].length;
-        let push = self.push(spring, foot.depth, [approach, touch.approach], dt);
+        let push = self.push(spring, foot.depth - touch.rest, [approach, touch.approach], dt);
         let stuck = on(touch.part, touch.share, &surface.position);
         let from = less(placed.position[point], stuck);
         let (along, slipped) = self.along(spring, push, dot(from, tangent), dot(slip, tangent));
@@ -236,8 +244,8 @@ pub(super) fn give(outline: &Outline, point: u32, force: [f64; 2], forces: &mut 
     }
 }
 
-/// The nearest place on a piece to a point that is inside of it.
-fn nearest((outline, placed): (&Outline, &Placed), piece: usize, at: [f64; 2]) -> Option<Foot> {
+/// The nearest place on a piece to a point whose surface, at a distance before it, is inside of it.
+fn nearest((outline, placed): (&Outline, &Placed), piece: usize, at: [f64; 2], radius: f64) -> Option<Foot> {
     let ends = |part: u32| outline.parts[part as usize].ends.map(|end| placed.position[end as usize]);
     let mut best: Option<(f64, u32, f64)> = None;
     let is_torn = |part: u32| outline.parts[part as usize].ends.iter().any(|end| placed.is_torn(*end));
@@ -268,11 +276,13 @@ fn nearest((outline, placed): (&Outline, &Placed), piece: usize, at: [f64; 2]) -
         s if s >= 1.0 => [out(part), out(beside[1])],
         _ => [out(part); 2],
     };
-    let depth = square.sqrt();
+    let apart = square.sqrt();
     let outside = dot(away, side[0]) + dot(away, side[1]) >= 0.0;
-    if outside {
+    if outside && apart >= radius {
         return None;
     }
-    let normal = if share > 0.0 && share < 1.0 { side[0] } else { away.map(|x| -x / depth) };
-    Some(Foot { part, share, depth, normal })
+    let sign = if outside { 1.0 } else { -1.0 };
+    let corner = apart > 0.0 && !(share > 0.0 && share < 1.0);
+    let normal = if corner { away.map(|x| sign * x / apart) } else { side[0] };
+    Some(Foot { part, share, depth: radius - sign * apart, normal })
 }

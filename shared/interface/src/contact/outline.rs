@@ -29,6 +29,8 @@ pub(super) struct Point {
     pub(super) offset: [f64; 2],
     /// Share of the outline, m.
     pub(super) length: f64,
+    /// How far before it the surface lies, m: half a spacing of a single particle.
+    pub(super) radius: f64,
 }
 
 /// A straight part; the solid lies on its left.
@@ -45,6 +47,8 @@ pub(super) struct Part {
 pub(super) struct Piece {
     pub(super) parts: std::ops::Range<u32>,
     pub(super) points: Vec<u32>,
+    /// Points of its particles, each alone, where it can break.
+    pub(super) singles: Vec<u32>,
     /// Number of the body in the scene.
     number: u32,
     /// Least mass behind a length, kg/m (2D: kg/m²).
@@ -54,6 +58,7 @@ pub(super) struct Piece {
 /// Outline of a solid.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Outline {
+    /// Those of the outline, then those of single particles.
     pub(super) points: Vec<Point>,
     pub(super) parts: Vec<Part>,
     pub(super) pieces: Vec<Piece>,
@@ -199,6 +204,9 @@ impl Outline {
             outline.add(&particles, piece, &parts);
         }
         outline.weigh(scene, solid, &particles, mass);
+        if breaks {
+            outline.add_singles(&particles, at, mass);
+        }
         outline
     }
 
@@ -210,7 +218,7 @@ impl Outline {
             let found = ends.map(|end| {
                 *known.entry((*shape, *copy, end.map(f64::to_bits))).or_insert_with(|| {
                     let (weights, offset) = particles.weights(end, piece)?;
-                    self.points.push(Point { weights, offset, length: 0.0 });
+                    self.points.push(Point { weights, offset, length: 0.0, radius: 0.0 });
                     points.push(self.points.len() as u32 - 1);
                     points.last().copied()
                 })
@@ -236,7 +244,24 @@ impl Outline {
         }
         points.retain(|&p| self.points[p as usize].length > 0.0);
         if !all.is_empty() {
-            self.pieces.push(Piece { parts: all, points, number: piece, mass: 0.0 });
+            self.pieces.push(Piece { parts: all, points, singles: Vec::new(), number: piece, mass: 0.0 });
+        }
+    }
+
+    /// Each particle as a point of its own, whose spring is as soft as its mass asks: the steps stay those of the
+    /// outline.
+    fn add_singles(&mut self, particles: &Particles, at: &[[f64; 2]], mass: &[f64]) {
+        for (record, place) in at.iter().enumerate() {
+            let Some(k) = particles.nearest(*place, 0.75, |_| true) else { continue };
+            let number = particles.of[k].2;
+            let Some(piece) = self.pieces.iter_mut().find(|piece| piece.number == number) else { continue };
+            piece.singles.push(self.points.len() as u32);
+            self.points.push(Point {
+                weights: vec![(record as u32, 1.0)],
+                offset: [0.0; 2],
+                length: self.spacing.min(mass[record] / piece.mass),
+                radius: 0.5 * self.spacing,
+            });
         }
     }
 

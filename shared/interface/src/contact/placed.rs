@@ -9,7 +9,7 @@ const TORN: f64 = 1.5;
 /// Beside torn parts nothing is deeper in a solid than this, in spacings, and no contact begins deeper than that: what
 /// seems to be lies between fragments, or lost the surface that was nearest to it.
 const DEEPEST: f64 = 3.0;
-const DEEPEST_START: f64 = 0.5;
+pub(super) const DEEPEST_START: f64 = 0.5;
 
 /// An axis-parallel box.
 #[derive(Clone, Copy, Debug)]
@@ -35,16 +35,12 @@ impl Around {
         })
     }
 
-    fn meets(&self, other: &Self, margin: f64) -> bool {
+    pub(super) fn meets(&self, other: &Self, margin: f64) -> bool {
         (0..2).all(|d| self.low[d] <= other.high[d] + margin && other.low[d] <= self.high[d] + margin)
     }
 
-    pub(super) fn touches(&self, other: &Self) -> bool {
-        self.meets(other, 0.0)
-    }
-
-    pub(super) fn holds(&self, x: [f64; 2]) -> bool {
-        (0..2).all(|d| x[d] >= self.low[d] && x[d] <= self.high[d])
+    pub(super) fn holds(&self, x: [f64; 2], margin: f64) -> bool {
+        (0..2).all(|d| x[d] >= self.low[d] - margin && x[d] <= self.high[d] + margin)
     }
 }
 
@@ -61,7 +57,8 @@ pub(super) struct Placed {
     pub(super) velocity: Vec<[f64; 2]>,
     /// Around each piece.
     pub(super) pieces: Vec<Around>,
-    /// Points whose particles are no longer together; empty where there are none.
+    /// Points whose particles are no longer together, and single particles that other points carry; empty where none
+    /// of the outline's points is torn.
     torn: Vec<bool>,
 }
 
@@ -80,7 +77,12 @@ impl Default for Placed {
 }
 
 impl Placed {
-    /// A point's particles belong to different fragments.
+    /// Some points' particles belong to different fragments.
+    pub(super) fn has_torn(&self) -> bool {
+        !self.torn.is_empty()
+    }
+
+    /// A point's particles belong to different fragments, or the point is a single particle that others carry.
     pub(super) fn is_torn(&self, point: u32) -> bool {
         self.torn.get(point as usize).is_some_and(|torn| *torn)
     }
@@ -108,6 +110,18 @@ impl Placed {
         self.torn.extend(outline.points.iter().zip(&self.position).map(torn));
         if !self.torn.contains(&true) {
             self.torn.clear();
+            return;
+        }
+        let mut carried = vec![false; records.len()];
+        for (point, _) in outline.points.iter().zip(&self.torn).filter(|(_, torn)| !**torn) {
+            point.weights.iter().for_each(|(record, _)| carried[*record as usize] = true);
+        }
+        for single in &outline.points[self.torn.len()..] {
+            let record = single.weights[0].0 as usize;
+            let in_plane = |x: [f64; 3]| [x[0], x[1]];
+            self.torn.push(carried[record]);
+            self.position.push(in_plane(records[record].position));
+            self.velocity.push(in_plane(records[record].velocity));
         }
     }
 
@@ -137,14 +151,18 @@ impl Placed {
         };
         self.position.clear();
         self.velocity.clear();
-        self.position.extend(outline.points.iter().map(|p| sum(p, &|r| r.position, p.offset)));
-        self.velocity.extend(outline.points.iter().map(|p| sum(p, &|r| r.velocity, [0.0; 2])));
+        let singles: usize = outline.pieces.iter().map(|piece| piece.singles.len()).sum();
+        let points = &outline.points[..outline.points.len() - singles];
+        self.position.extend(points.iter().map(|p| sum(p, &|r| r.position, p.offset)));
+        self.velocity.extend(points.iter().map(|p| sum(p, &|r| r.velocity, [0.0; 2])));
         self.tear(outline, records);
         self.pieces.clear();
         let (torn, position) = (&self.torn, &self.position);
         let whole = |p: &&u32| torn.is_empty() || !torn[**p as usize];
-        let around =
-            |piece: &Piece| Around::of(piece.points.iter().filter(whole).map(|&p| position[p as usize]));
+        let around = |piece: &Piece| {
+            let singles = if torn.is_empty() { &[][..] } else { &piece.singles };
+            Around::of(piece.points.iter().chain(singles).filter(whole).map(|&p| position[p as usize]))
+        };
         self.pieces.extend(outline.pieces.iter().map(around));
     }
 }

@@ -25,14 +25,20 @@ impl State for Pair {
         let touches = &mut self.touches;
         let mut numbers: Vec<u32> =
             touches.iter().flat_map(|t| [t.key[0], t.key[1], t.key[2], t.part]).collect();
-        let mut reals: Vec<f64> = touches.iter().flat_map(|t| [t.share, t.approach]).collect();
+        let mut reals: Vec<f64> = touches.iter().flat_map(|t| [t.share, t.approach, t.rest]).collect();
         fields.numbers("touches", &mut numbers)?;
         fields.reals("sticking", &mut reals)?;
-        fields.length("sticking", numbers.len() / 2, reals.len())?;
+        fields.length("sticking", numbers.len() / 4 * 3, reals.len())?;
         if fields.loading() {
-            let all = numbers.chunks_exact(4).zip(reals.chunks_exact(2));
+            let all = numbers.chunks_exact(4).zip(reals.chunks_exact(3));
             *touches = all
-                .map(|(n, r)| Touch { key: [n[0], n[1], n[2]], part: n[3], share: r[0], approach: r[1] })
+                .map(|(n, r)| Touch {
+                    key: [n[0], n[1], n[2]],
+                    part: n[3],
+                    share: r[0],
+                    approach: r[1],
+                    rest: r[2],
+                })
                 .collect();
         }
         Ok(())

@@ -310,10 +310,8 @@ fn solids_that_shall_not_touch_do_not() {
     assert!(Contact::new(&scene).is_none());
 }
 
-/// A block that can break, in two halves 0.1 m apart, and a small one: in the gap nothing holds it, where the block's
-/// outline still is a closed line; a quarter of a spacing inside of a half it is pushed out.
-#[test]
-fn what_lies_between_fragments_is_pushed_by_none() {
+/// A block of a solid that breaks, and a small rigid one 20 mm beside it; the first states of both.
+fn breakable_and_rigid() -> (Contact, [Vec<StateRecord>; 2]) {
     let text = "resolution = 0.01\nend_time = 1.0\ngravity = [0.0, 0.0]\n[[solid]]\nname = \"a\"\ndensity = 1000.0\n\
                 youngs_modulus = 1e7\npoissons_ratio = 0.2\nfracture = { strength = 1e5, energy = 20.0 }\n\
                 [[solid]]\nname = \"b\"\nmodel = \"rigid\"\ndensity = 1000.0\n[[contact]]\n\
@@ -322,7 +320,7 @@ fn what_lies_between_fragments_is_pushed_by_none() {
     let scene = halfstep_scene::parse(&(text.to_owned() + &shapes.concat()), Path::new("x.toml"), &[]);
     let scene = scene.expect("a right scene");
     let mut contact = Contact::new(&scene).expect("two solids");
-    let of = |solid: usize| {
+    let states = [0, 1].map(|solid| {
         let points = geometry::layout::<2>(&scene).with_solid(&scene, solid).solid;
         let record = |(k, p): (usize, &geometry::SolidPoint<2>)| StateRecord {
             id: k as u32,
@@ -331,18 +329,62 @@ fn what_lies_between_fragments_is_pushed_by_none() {
             ..StateRecord::default()
         };
         points.iter().enumerate().map(record).collect::<Vec<_>>()
-    };
-    let [mut broken, small] = [of(0), of(1)];
-    contact.begin([broken.as_slice(), small.as_slice()].into_iter());
+    });
+    contact.begin(states.iter().map(Vec::as_slice));
+    (contact, states)
+}
+
+/// Force of contact on the second solid, N/m.
+fn on_second(contact: &mut Contact, states: [&[StateRecord]; 2]) -> [f64; 2] {
     let dt = contact.limit();
+    contact.evaluate(|solid| states[solid], true, dt);
+    let mut sum = [0.0; 2];
+    contact.forces(|solid, _, force| (0..2).for_each(|d| sum[d] += force[d] * f64::from(solid as u8)));
+    sum
+}
+
+/// Torn off, a particle is held by its own surface, half a spacing before it. Its spring is K/2 times a length of which
+/// no less mass lies behind than of the outline; at rest half of it acts. One that came to be deep inside is not thrown
+/// out: it is pushed from there on, and from the surface on once it was out.
+#[test]
+fn particles_without_an_outline_are_held_one_by_one() {
+    let (mut contact, [mut broken, rigid]) = breakable_and_rigid();
+    let least = contact.outlines[0].least_mass();
+    let crumb = broken.iter().position(|r| r.position[0] > 0.05 && r.position[1] > 0.05).expect("inside");
+    let mut pushed = |x: f64, broken: &mut Vec<StateRecord>| {
+        broken[crumb].position = [x, 0.0505, 0.0];
+        on_second(&mut contact, [broken.as_slice(), rigid.as_slice()])
+    };
+    assert_eq!(pushed(0.116, &mut broken), [0.0; 2], "no cracks: the outline holds alone");
+    for record in broken.iter_mut().filter(|record| record.position[0] > 0.05) {
+        record.position[0] -= 0.2;
+    }
+    let spring = 0.5 * 1e9 * (0.1 / least).min(0.01);
+    let mut expect = |x: f64, depth: f64| {
+        let found = pushed(x, &mut broken);
+        assert!((found[0] - 0.5 * spring * depth).abs() < 1e-9 * spring, "{x}: {found:?}");
+        assert!(found[1].abs() < 1e-9 * spring, "{x}: {found:?}");
+    };
+    expect(0.114, 0.0);
+    expect(0.116, 0.001);
+    expect(0.113, 0.0);
+    expect(0.124, 0.0);
+    expect(0.1245, 0.0005);
+    expect(0.121, 0.0);
+    expect(0.122, 0.001);
+    expect(0.113, 0.0);
+    expect(0.116, 0.001);
+}
+
+/// A block that can break, in two halves 0.1 m apart, and a small one: in the gap nothing holds it, where the block's
+/// outline still is a closed line; a quarter of a spacing inside of a half it is pushed out.
+#[test]
+fn what_lies_between_fragments_is_pushed_by_none() {
+    let (mut contact, [mut broken, small]) = breakable_and_rigid();
     let mut pushed = |broken: &[StateRecord], x: f64| {
         let mut there = small.clone();
         there.iter_mut().for_each(|record| record.position[0] += x - 0.12);
-        let records = [broken, there.as_slice()];
-        contact.evaluate(|solid| records[solid], true, dt);
-        let mut sum = [0.0; 2];
-        contact.forces(|solid, _, force| (0..2).for_each(|d| sum[d] += force[d] * f64::from(solid as u8)));
-        sum
+        on_second(&mut contact, [broken, there.as_slice()])
     };
     assert!(
         pushed(&broken, 0.03)[1].abs() + pushed(&broken, 0.08)[0].abs() > 1.0,

@@ -1,7 +1,6 @@
 //! Cuts of pairs, and the bodies that are left.
 
 use super::Fracture;
-use super::faces::Face;
 use crate::total_lagrangian::material::Matrix;
 use crate::total_lagrangian::model::TotalLagrangian;
 use halfstep_sph::neighbours::PADDING;
@@ -109,9 +108,7 @@ impl<const D: usize> TotalLagrangian<D> {
             pairs = self.overstrained(&touched);
         }
         self.note_ligaments();
-        let one = self.fracture.as_ref().map(|fracture| fracture.body.clone()).unwrap_or_default();
         self.divide();
-        self.face_what_is_near(&one);
         let booked = self.taken();
         self.evaluate(0.0);
         // Damage that grew meanwhile is booked.
@@ -148,7 +145,7 @@ impl<const D: usize> TotalLagrangian<D> {
             for [i, j] in pairs.drain(..) {
                 self.pairs.cut(i, j);
                 touched.extend([i, j]);
-                self.note_cut([i, j]);
+                self.fracture.iter_mut().for_each(|fracture| fracture.cuts.push([i, j]));
             }
             touched.sort_unstable();
             touched.dedup();
@@ -167,22 +164,13 @@ impl<const D: usize> TotalLagrangian<D> {
         all
     }
 
-    /// Notes a cut, and that the two may touch from now on.
-    fn note_cut(&mut self, pair: [usize; 2]) {
-        let distance = self.distance(pair).min(self.spacing);
-        if let Some(fracture) = &mut self.fracture {
-            fracture.faces.push(Face { pair, distance });
-        }
-    }
-
     /// Area of the faces of cells between which pairs are cut, m² (2D: m).
     pub(super) fn cut_area(&self) -> f64 {
         let Some(fracture) = &self.fracture else { return 0.0 };
-        let counts = |face: &&Face| {
-            fracture.irregular.is_some()
-                || self.apart(face.pair[0], face.pair[1]).norm() < STRAIGHT * self.spacing
+        let counts = |&&[i, j]: &&[usize; 2]| {
+            fracture.irregular.is_some() || self.apart(i, j).norm() < STRAIGHT * self.spacing
         };
-        fracture.face * fracture.faces.iter().filter(counts).count() as f64
+        fracture.face * fracture.cuts.iter().filter(counts).count() as f64
     }
 
     /// Area for which each pair that a cut crosses stands in an arrangement without directions, m² (2D: m): a plane
@@ -221,7 +209,7 @@ impl<const D: usize> TotalLagrangian<D> {
         correction.is_some()
     }
 
-    /// Finds the bodies that pairs still connect, and lets them touch.
+    /// Finds the bodies that pairs still connect, and lets them and the sides of cuts touch.
     pub(super) fn divide(&mut self) {
         let Some(mut fracture) = self.fracture.take() else { return };
         let mut parent: Vec<u32> = (0..self.slot_of.len() as u32).collect();
@@ -241,19 +229,23 @@ impl<const D: usize> TotalLagrangian<D> {
         fracture.bodies = count;
         fracture.loose = (0..self.id.len()).filter(|&slot| self.is_loose(slot)).count() as u32;
         fracture.thin = self.thin(&fracture);
-        if count > 1 {
-            if self.contact.is_none() {
-                self.contact = fracture.dormant.take();
-            }
-            if let Some(contact) = &mut self.contact {
-                contact.divide(&fracture.body);
-            }
+        let mut contact = self.contact.take().or_else(|| fracture.dormant.take());
+        if let Some(contact) = &mut contact {
+            let cuts = fracture.cuts.iter().map(|pair| pair.map(|slot| self.id[slot]));
+            let within = cuts.filter(|pair| fracture.within_body(*pair)).collect();
+            contact.divide(self.isa, &fracture.body, within, |id| self.present(id));
         }
+        self.contact = contact;
         self.fracture = Some(fracture);
     }
 }
 
 impl<const D: usize> Fracture<D> {
+    /// Both particles are of one body.
+    fn within_body(&self, [a, b]: [u32; 2]) -> bool {
+        self.body[a as usize] == self.body[b as usize]
+    }
+
     /// det M of a corner. In the plane it is 0.71 to 1 times a quarter of that inside, whatever the kernel, which lets
     /// every corner keep its gradient; in space 0.40 to 0.97 times an eighth.
     fn corner(&self) -> f64 {

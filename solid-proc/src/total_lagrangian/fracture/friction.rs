@@ -63,12 +63,6 @@ impl<const D: usize> TotalLagrangian<D> {
                 pairs.insert([slot(a), slot(b)], (normal, push));
             });
         }
-        let stiffness = self.face_stiffness() / self.mass;
-        self.touching_faces(|[i, j], normal, [own, _]| {
-            // Faces of two fragments push each other from d on, not from dx.
-            pairs.remove(&[j, i]);
-            pairs.insert([i, j], (normal, own * stiffness));
-        });
         let of = |(pair, (normal, push))| Rubbing { pair, normal, push, wall: [0.0; D] };
         let mut rubbing: Vec<_> = pairs.into_iter().map(of).collect();
         if let Some(contact) = &self.contact {

@@ -56,7 +56,7 @@ impl<const D: usize> TotalLagrangian<D> {
             return Vec::new();
         };
         let mut found = Vec::new();
-        for [i, j] in fracture.faces.iter().map(|face| face.pair) {
+        for [i, j] in fracture.cuts.iter().copied() {
             let along = self.apart(j, i);
             if along.norm() >= STRAIGHT * self.spacing {
                 continue;

@@ -22,7 +22,6 @@
 //! other: the first stage computes with what is damaged and cut at n.
 
 mod cuts;
-mod faces;
 mod friction;
 mod growth;
 mod ligament;
@@ -40,7 +39,6 @@ use super::material::Matrix;
 use super::model::TotalLagrangian;
 use crate::effects::takes_part;
 use crate::model::FractureSummary;
-use faces::Face;
 pub(super) use friction::Drift;
 use friction::Rubbing;
 use halfstep_scene::{EffectName, Fracture as Keys, Scene};
@@ -88,8 +86,8 @@ pub(super) struct Fracture<const D: usize> {
     damaged: Vec<usize>,
     /// Slots that are crushed in the present state, ascending: they lose all their pairs at the end of the sub-step.
     crushed: Vec<usize>,
-    /// Pairs that are cut, in the order of the cuts.
-    faces: Vec<Face>,
+    /// Pairs that are cut, by their slots, in the order of the cuts.
+    cuts: Vec<[usize; 2]>,
     /// Particles in the last row beside a cut, ascending by their slots; they follow from the cuts.
     ligaments: Vec<Ligament<D>>,
     /// Coulomb's coefficient of what is left; 0: it does not rub.
@@ -110,7 +108,7 @@ pub(super) struct Fracture<const D: usize> {
     whole: Vec<usize>,
     /// Whether each particle began in a body of five rows or more.
     was_thick: Vec<bool>,
-    /// What sees contacts once there are several bodies.
+    /// What sees contacts once there is a cut.
     dormant: Option<Contact<D>>,
     /// Softens along a straight line.
     #[cfg(test)]
@@ -164,7 +162,7 @@ impl<const D: usize> Fracture<D> {
             last: Vec::new(),
             damaged: Vec::new(),
             crushed: Vec::new(),
-            faces: Vec::new(),
+            cuts: Vec::new(),
             ligaments: Vec::new(),
             friction: match takes_part(scene, solid, EffectName::FragmentFriction) {
                 true => keys.friction,

@@ -1,16 +1,14 @@
 //! What fracture keeps over an interruption: damage, where it began, and cuts, by slot; all else follows.
 
 use super::Fracture;
-use super::faces::Face;
 use crate::total_lagrangian::model::TotalLagrangian;
 use halfstep_wire::state::{Fields, State, StateError};
 
 /// The fields as a file has them.
 struct Saved<'a, const D: usize> {
     fracture: &'a mut Fracture<D>,
-    /// Slots of the cuts, two after two, and the distances from which on they touch, m.
+    /// Slots of the cuts, two after two.
     cuts: &'a mut Vec<u32>,
-    distances: &'a mut Vec<f64>,
 }
 
 impl<const D: usize> State for Saved<'_, D> {
@@ -26,8 +24,7 @@ impl<const D: usize> State for Saved<'_, D> {
         }
         fields.real("taken", &mut self.fracture.taken)?;
         fields.numbers("cuts", self.cuts)?;
-        fields.reals("distances", self.distances)?;
-        fields.length("cuts", 2 * self.distances.len(), self.cuts.len())?;
+        fields.length("cuts", self.cuts.len() / 2 * 2, self.cuts.len())?;
         if self.fracture.friction > 0.0 { self.fracture.rubbing_fields(fields) } else { Ok(()) }
     }
 }
@@ -39,10 +36,8 @@ impl<const D: usize> TotalLagrangian<D> {
         fields: &mut Fields<'_>,
     ) -> Result<(), StateError> {
         let Some(fracture) = &mut self.fracture else { return Ok(()) };
-        let mut cuts: Vec<u32> =
-            fracture.faces.iter().flat_map(|face| face.pair).map(|slot| slot as u32).collect();
-        let mut distances: Vec<f64> = fracture.faces.iter().map(|face| face.distance).collect();
-        let mut saved = Saved { fracture, cuts: &mut cuts, distances: &mut distances };
+        let mut cuts: Vec<u32> = fracture.cuts.iter().flatten().map(|&slot| slot as u32).collect();
+        let mut saved = Saved { fracture, cuts: &mut cuts };
         fields.part("fracture", &mut saved)?;
         if !fields.loading() {
             return Ok(());
@@ -53,11 +48,11 @@ impl<const D: usize> TotalLagrangian<D> {
         }
         let damaged: Vec<usize> = (0..slots).filter(|&slot| fracture.strain[slot] > 0.0).collect();
         fracture.damaged = damaged.clone();
-        let pairs = cuts.chunks_exact(2).map(|pair| [pair[0] as usize, pair[1] as usize]);
-        fracture.faces = pairs.zip(distances).map(|(pair, distance)| Face { pair, distance }).collect();
-        // Not all sides that touch were neighbours: who lost none keeps the moment matrix of the start, bit for bit.
-        let pairs = fracture.faces.iter().map(|face| face.pair);
-        let mut touched: Vec<usize> = pairs.filter(|&[i, j]| self.pairs.cut(i, j)).flatten().collect();
+        fracture.cuts = cuts.chunks_exact(2).map(|pair| [pair[0] as usize, pair[1] as usize]).collect();
+        let mut touched: Vec<usize> = fracture.cuts.iter().flatten().copied().collect();
+        for &[i, j] in &fracture.cuts {
+            self.pairs.cut(i, j);
+        }
         touched.sort_unstable();
         touched.dedup();
         for slot in touched {

@@ -53,9 +53,8 @@ fn rub_on(run: &mut Run<2>, until: f64) -> f64 {
     taken
 }
 
-/// While fragments slide, what their surfaces do along themselves is mu times what they do across. Pairs push at up to
-/// 30 degrees to the surface, so their forces sum up to a tenth more than the force across; without friction that is
-/// the whole force along the surface.
+/// While fragments slide, what their surfaces do along themselves is mu times what they do across, to half a per cent;
+/// without friction they do nothing along themselves.
 #[test]
 fn an_impact_of_fragments_that_slide_takes_mu_times_its_impulse() {
     let ratio = |friction: f64| {
@@ -72,17 +71,19 @@ fn an_impact_of_fragments_that_slide_takes_mu_times_its_impulse() {
         let p = run.momentum();
         assert!((p[0] - 10.0).abs() < 1e-13 && (p[1] + 2.5).abs() < 1e-13, "{p:?}");
         assert!(run.rest().abs() < 7e-4 * run.start, "{} of {}", run.rest(), run.start);
-        let takes = [(0.0, 0.0), (0.05, 0.180), (0.1, 0.346), (0.2, 0.633), (0.4, 1.087)];
+        let takes = [(0.0, 0.0), (0.05, 0.209), (0.1, 0.405), (0.2, 0.763), (0.4, 1.347)];
         let takes = takes.iter().find(|(of, _)| *of == friction).expect("a case").1;
-        assert!((taken - takes).abs() < 0.02, "{friction}: {taken}");
+        assert!((taken - takes).abs() < 0.003, "{friction}: {taken}");
         (2.0 - v[0]) / (v[1] + 0.5)
     };
     let without = ratio(0.0);
+    // -0.0022 measured.
+    assert!(without.abs() < 3e-3, "{without}");
     for friction in [0.05, 0.1, 0.2, 0.4] {
         let of = (ratio(friction) - without) / friction;
         println!("{friction}: {of}");
-        // 1.09 to 1.12 measured.
-        assert!((1.08..1.13).contains(&of), "{friction}: {of}");
+        // 0.995 to 0.999 measured.
+        assert!((0.994..1.001).contains(&of), "{friction}: {of}");
     }
 }
 
@@ -94,30 +95,45 @@ fn slid(friction: f64, until: f64) -> (Run<2>, f64) {
     (run, taken)
 }
 
-/// v² / (2 mu g) is 85 mm; the rows of particles of block and floor are rough, so it stops a little earlier.
+/// After v² / (2 mu g), 85 and 170 mm. With mu = 0.6 it chatters, and goes 5 % farther.
 #[test]
 fn a_block_that_slides_on_a_floor_stops() {
-    for (friction, until, goes) in [(0.6, 0.3, 0.875), (0.3, 0.6, 0.662)] {
+    for (friction, until, goes) in [(0.6, 0.3, 1.047), (0.3, 0.6, 1.003)] {
         let (run, taken) = slid(friction, until);
         let [x, v] = mean(&run, 200);
         let way = (x[0] - 0.05) / (1.0 / (2.0 * friction * 9.81));
         // What lies still takes nothing: 5 kg/m are 24.5 mm above the floor in the end.
         let rest = run.rest() + 5.0 * 9.81 * (x[1] - 0.025);
         println!("mu {friction}: way {way}, v {v:?}, taken {taken}, rest {rest}");
-        assert!((way - goes).abs() < 0.02 && v[0].abs() < 0.05, "{friction}: {way} {v:?}");
+        assert!((way - goes).abs() < 0.005 && v[0].abs() < 0.01, "{friction}: {way} {v:?}");
         // Of the 2.5 J/m that it begins with.
-        assert!((taken - 2.03).abs() < 0.03 && rest.abs() < 4e-3, "{friction}: {taken} {rest}");
+        assert!((taken - 2.41).abs() < 0.05 && rest.abs() < 2e-3, "{friction}: {taken} {rest}");
     }
 }
 
-/// The rows of a floor of the block's own spacing brake it without friction, too.
+/// The rows of a floor of the block's own spacing do not: pair by pair they would, by 0.75 m/s².
 #[test]
-fn a_rough_floor_brakes_a_block_without_friction() {
+fn nothing_but_friction_brakes_a_block_on_a_floor_of_particles() {
     let (run, taken) = slid(0.0, 0.3);
     let [_, v] = mean(&run, 200);
     let brakes = (1.0 - v[0]) / 0.3;
     println!("{brakes} m/s²");
-    assert!(taken == 0.0 && (brakes - 0.75).abs() < 0.1, "{brakes} {taken}");
+    assert!(taken == 0.0 && brakes.abs() < 1e-3, "{brakes} {taken}");
+}
+
+/// A slab of weak concrete that slides on a floor of particles at 1 m/s under its weight alone. Where pairs push it climbs
+/// from row to row, strikes, and 156 of its 160 particles are single after 0.1 s.
+#[test]
+fn a_brittle_slab_slides_in_one_piece() {
+    let text = "resolution = 0.005\nend_time = 1.0\ngravity = [0.0, -9.81]\n[solid]\ndensity = 2400.0\n\
+                youngs_modulus = 1.5e9\npoissons_ratio = 0.2\nfracture = { strength = 1.2e5, energy = 0.25 }\n";
+    let mut run =
+        Run::<2>::of(&(text.to_owned() + FLOOR + &block("slab", [0.0, 0.0], [0.1, 0.04], [1.0, 0.0])));
+    run.until(0.02);
+    let summary = run.model.summary();
+    assert!(summary.bodies == 1 && summary.energy == 0.0, "{summary:?}");
+    let [x, v] = mean(&run, 160);
+    assert!((x[0] - 0.07).abs() < 1e-6 && (v[0] - 1.0).abs() < 1e-5, "{x:?} {v:?}");
 }
 
 /// On a slope below mu it stays where it is, but for the time in which it leans on the floor's particles.
