@@ -2,7 +2,7 @@
 //! depth, and what approaches is damped as soon as surfaces overlap:
 //!   F_i = -[k delta_i + c w(delta_i) max(d delta_i / dt, 0)] grad_i delta_i,   k = (K + 4 G / 3) / 2 dx^(D-2),
 //!   c = 2 zeta sqrt(k m_s), w = 0 at the surface, 1 from a quarter of the distance d on, a straight line between.
-//! What begins in a wall is pushed from where it is, and as it leaves, from the wall's surface on.
+//! What begins in a wall is pushed from where it is, and once it has left, from the wall's surface on.
 //!
 //! Kayaki's section 4.1 extrapolates the solid's pressure to its walls, after Adami. Here a wall has none: such a push
 //! follows from no energy, begins 2h off the wall and pushes a body up that lies on it.
@@ -22,6 +22,9 @@ use halfstep_wire::state::{Fields, StateError};
 const DAMPING_RATIO: f64 = 0.2;
 /// Depth from which on the whole damping acts, over d.
 const TOUCH: f64 = 0.25;
+
+/// Part of S at a surface below which a particle has left it.
+const LEFT: f64 = 0.5;
 
 /// Wall particles that the solid may touch.
 pub(crate) struct Walls<const D: usize> {
@@ -240,12 +243,13 @@ impl<const D: usize> Walls<D> {
         }
     }
 
-    /// What has left a wall in the state that was evaluated last touches its surface from now on.
+    /// What has left a wall in the state that was evaluated last touches its surface from now on. What slides along
+    /// one wall out of a corner of two has not.
     pub(crate) fn leave(&mut self, id: &[u32]) {
         for (slot, &id) in id.iter().enumerate().filter(|&(_, &id)| id != PADDING) {
-            let sum = self.sum(slot);
-            let rest = &mut self.rest[id as usize];
-            *rest = rest.min(sum).max(self.law.level);
+            if self.rest[id as usize] > self.law.level && self.sum(slot) < LEFT * self.law.level {
+                self.rest[id as usize] = self.law.level;
+            }
         }
     }
 

@@ -214,7 +214,7 @@ impl<const D: usize> Contact<D> {
         &mut self,
         isa: Isa,
         bodies: &[u32],
-        cuts: Vec<[u32; 2]>,
+        cuts: impl Iterator<Item = [u32; 2]>,
         present: impl Fn(u32) -> Present<D>,
     ) {
         let before = self.bodies.sums();

@@ -1,7 +1,7 @@
 //! The law of contact, and the search for points of one outline inside of another.
 
 use super::outline::Outline;
-use super::placed::{DEEPEST_START, Placed};
+use super::placed::Placed;
 use super::{Side, THETA};
 use halfstep_scene::{PairContact, Scene};
 
@@ -34,6 +34,9 @@ pub struct Law {
     pub limit: f64,
 }
 
+/// Depth beyond which a contact of a torn solid does not begin at the surface, in spacings.
+const DEEP: f64 = 0.5;
+
 /// A point of one solid inside of a piece of the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Touch {
@@ -45,7 +48,7 @@ pub(super) struct Touch {
     pub(super) share: f64,
     /// Largest approach so far, m/s.
     pub(super) approach: f64,
-    /// Depth from which on it is pushed, m: of a single particle that came to be deep inside.
+    /// Depth from which on it is pushed, m: of a point of a torn solid that came to be deep inside.
     pub(super) rest: f64,
 }
 
@@ -118,7 +121,7 @@ impl Law {
         for (own_piece, (piece, around)) in outline.pieces.iter().zip(&placed.pieces).enumerate() {
             let singles = if placed.has_torn() { &piece.singles[..] } else { &[] };
             let margin = if singles.is_empty() { 0.0 } else { 0.5 * outline.spacing };
-            for (k, target) in other.1.pieces.iter().enumerate() {
+            for (k, target) in other.1.targets.iter().enumerate() {
                 if one_solid && !is_other(own_piece, k) || !around.meets(target, margin) {
                     continue;
                 }
@@ -132,9 +135,6 @@ impl Law {
                     let key = [pass, point, k as u32];
                     let before =
                         touches.binary_search_by(|touch| touch.key.cmp(&key)).ok().map(|k| touches[k]);
-                    if foot.depth > other.1.deepest(other.0, before.is_none()) {
-                        continue;
-                    }
                     deepest = deepest.max(foot.depth);
                     let (forces, touch) = self.force([own, other], key, &foot, (before, dt));
                     found.push(touch);
@@ -172,8 +172,8 @@ impl Law {
         let normal = foot.normal;
         let tangent = [-normal[1], normal[0]];
         let approach = -dot(slip, normal);
-        let single = outline.points[point].radius > 0.0;
-        let deep = single && foot.depth > DEEPEST_START * outline.spacing;
+        // Where cracks are, a point may come to be deep inside at once: it has new particles about it, or old ones apart.
+        let deep = placed.has_torn() && foot.depth > DEEP * outline.spacing;
         let rest = if deep { foot.depth } else { 0.0 };
         let mut touch =
             before.unwrap_or(Touch { key, part: foot.part, share: foot.share, approach: 0.0, rest });
@@ -248,8 +248,7 @@ pub(super) fn give(outline: &Outline, point: u32, force: [f64; 2], forces: &mut 
 fn nearest((outline, placed): (&Outline, &Placed), piece: usize, at: [f64; 2], radius: f64) -> Option<Foot> {
     let ends = |part: u32| outline.parts[part as usize].ends.map(|end| placed.position[end as usize]);
     let mut best: Option<(f64, u32, f64)> = None;
-    let is_torn = |part: u32| outline.parts[part as usize].ends.iter().any(|end| placed.is_torn(*end));
-    for part in outline.pieces[piece].parts.clone().filter(|part| !is_torn(*part)) {
+    for part in outline.pieces[piece].parts.clone() {
         let [from, to] = ends(part);
         let (line, way) = (less(to, from), less(at, from));
         let share = (dot(way, line) / dot(line, line)).clamp(0.0, 1.0);

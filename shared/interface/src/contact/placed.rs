@@ -1,15 +1,10 @@
 //! Where an outline is, and which of its points belong together no longer.
 
-use super::outline::{Outline, Piece, Point, REACH, distance};
+use super::outline::{Outline, Point, REACH, distance};
 use halfstep_wire::protocol::StateRecord;
 
 /// A point is torn whose particles lie farther from it than this, over [`REACH`]: they belong to different fragments.
 const TORN: f64 = 1.5;
-
-/// Beside torn parts nothing is deeper in a solid than this, in spacings, and no contact begins deeper than that: what
-/// seems to be lies between fragments, or lost the surface that was nearest to it.
-const DEEPEST: f64 = 3.0;
-pub(super) const DEEPEST_START: f64 = 0.5;
 
 /// An axis-parallel box.
 #[derive(Clone, Copy, Debug)]
@@ -26,6 +21,14 @@ impl Around {
             self.low[d] = self.low[d].min(x[d]);
             self.high[d] = self.high[d].max(x[d]);
         }
+    }
+
+    /// Around both.
+    fn and(&self, other: &Self) -> Self {
+        let mut both = *self;
+        both.add(other.low);
+        both.add(other.high);
+        both
     }
 
     fn of(all: impl Iterator<Item = [f64; 2]>) -> Self {
@@ -55,8 +58,10 @@ pub(super) struct Placed {
     pub(super) position: Vec<[f64; 2]>,
     /// Of each point, m/s.
     pub(super) velocity: Vec<[f64; 2]>,
-    /// Around each piece.
+    /// Around the points of each piece.
     pub(super) pieces: Vec<Around>,
+    /// Around the outline of each piece, in which others' points are looked for: nothing where it is torn.
+    pub(super) targets: Vec<Around>,
     /// Points whose particles are no longer together, and single particles that other points carry; empty where none
     /// of the outline's points is torn.
     torn: Vec<bool>,
@@ -71,6 +76,7 @@ impl Default for Placed {
             position: Vec::new(),
             velocity: Vec::new(),
             pieces: Vec::new(),
+            targets: Vec::new(),
             torn: Vec::new(),
         }
     }
@@ -85,12 +91,6 @@ impl Placed {
     /// A point's particles belong to different fragments, or the point is a single particle that others carry.
     pub(super) fn is_torn(&self, point: u32) -> bool {
         self.torn.get(point as usize).is_some_and(|torn| *torn)
-    }
-
-    /// Greatest depth in the solid that is believed of a contact that begins, or that goes on, m.
-    pub(super) fn deepest(&self, outline: &Outline, begins: bool) -> f64 {
-        let deepest = if begins { DEEPEST_START } else { DEEPEST };
-        if self.torn.is_empty() { f64::INFINITY } else { deepest * outline.spacing }
     }
 
     /// Finds the points whose particles are no longer together.
@@ -156,13 +156,16 @@ impl Placed {
         self.position.extend(points.iter().map(|p| sum(p, &|r| r.position, p.offset)));
         self.velocity.extend(points.iter().map(|p| sum(p, &|r| r.velocity, [0.0; 2])));
         self.tear(outline, records);
-        self.pieces.clear();
         let (torn, position) = (&self.torn, &self.position);
         let whole = |p: &&u32| torn.is_empty() || !torn[**p as usize];
-        let around = |piece: &Piece| {
-            let singles = if torn.is_empty() { &[][..] } else { &piece.singles };
-            Around::of(piece.points.iter().chain(singles).filter(whole).map(|&p| position[p as usize]))
-        };
-        self.pieces.extend(outline.pieces.iter().map(around));
+        let around = |points: &[u32]| Around::of(points.iter().filter(whole).map(|&p| position[p as usize]));
+        self.targets.clear();
+        self.pieces.clear();
+        for piece in &outline.pieces {
+            let own = around(&piece.points);
+            let closed = torn.is_empty() || piece.points.iter().all(|&p| !torn[p as usize]);
+            self.targets.push(if closed { own } else { Around::NOTHING });
+            self.pieces.push(if torn.is_empty() { own } else { own.and(&around(&piece.singles)) });
+        }
     }
 }

@@ -11,7 +11,7 @@ use crate::kernel_sum::KernelSum;
 use halfstep_sph::columns::fit;
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::{Arch, Isa, LANES, Lane, Lanes};
-use halfstep_sph::neighbours::{ClusterList, PADDING};
+use halfstep_sph::neighbours::{ClusterList, Neighbours, PADDING};
 use halfstep_sph::pair::{self, PairLaw, distance, pair_sum};
 
 /// The particles of contacts, by slot.
@@ -54,11 +54,13 @@ pub(super) struct Bodies<const D: usize> {
     gradient: Vectors<D>,
     /// delta by slot, m.
     depth: Vec<f64>,
+    /// Some depth is not zero.
+    touches: bool,
     /// Force by slot, N (2D: N/m).
     force: Vectors<D>,
     /// S from which on a particle pushes, by its number.
     rest: Vec<f64>,
-    /// Pairs of one body that are cut, by particle numbers.
+    /// Pairs of one body that are cut, by particle numbers, each both ways, ascending.
     cuts: Vec<[u32; 2]>,
     /// Slot of a particle.
     slot_of: Vec<u32>,
@@ -76,6 +78,7 @@ impl<const D: usize> Bodies<D> {
             sum: Vec::new(),
             gradient: vectors(0),
             depth: Vec::new(),
+            touches: false,
             force: vectors(0),
             rest: vec![law.level; particles],
             cuts: Vec::new(),
@@ -113,8 +116,9 @@ impl<const D: usize> Bodies<D> {
     }
 
     /// Pairs of one body that are cut from now on.
-    pub(super) fn cut(&mut self, cuts: Vec<[u32; 2]>) {
-        self.cuts = cuts;
+    pub(super) fn cut(&mut self, cuts: impl Iterator<Item = [u32; 2]>) {
+        self.cuts = cuts.flat_map(|[a, b]| [[a, b], [b, a]]).collect();
+        self.cuts.sort_unstable();
     }
 
     /// What has come into view since the sums were these, by particle number, pushes no one: who was pushed is pushed
@@ -131,7 +135,8 @@ impl<const D: usize> Bodies<D> {
         let level = self.law.level;
         let raised = self.rest.iter_mut().zip(&self.slot_of).filter(|(rest, _)| **rest > level);
         for (rest, &slot) in raised {
-            *rest = rest.min(self.sum[slot as usize]).max(level);
+            let sum = self.sum.get(slot as usize).copied().unwrap_or(0.0);
+            *rest = rest.min(sum).max(level);
         }
     }
 
@@ -139,17 +144,33 @@ impl<const D: usize> Bodies<D> {
         &mut self.rest
     }
 
-    /// Slots, x_ij and its length of the cuts.
-    fn seen_cuts<'s>(
+    /// Slots of the particles from which the one at a slot is cut off within its body, x_ij and its length.
+    fn across_cuts<'s>(
         &'s self,
         at: Slots<'s, D>,
-    ) -> impl Iterator<Item = ([usize; 2], [f64; D], f64)> + use<'s, D> {
-        let of = move |pair: &[u32; 2]| {
-            let [i, j] = pair.map(|id| self.slot_of[id as usize] as usize);
-            let x = at.apart(i, j);
-            ([i, j], x, length(x))
-        };
-        self.cuts.iter().map(of).filter(|(_, _, r)| *r < self.law.radius)
+        slot: usize,
+    ) -> impl Iterator<Item = (usize, [f64; D], f64)> + use<'s, D> {
+        let id = at.id[slot];
+        let first = self.cuts.partition_point(|cut| cut[0] < id);
+        let own = self.cuts[first..].iter().take_while(move |cut| cut[0] == id);
+        own.map(move |cut| self.slot_of[cut[1] as usize] as usize).filter_map(move |j| self.seen(at, slot, j))
+    }
+
+    /// Slots of the particles that the one at a slot sees, x_ij and its length.
+    fn all_seen<'s>(
+        &'s self,
+        at: Slots<'s, D>,
+        slot: usize,
+    ) -> impl Iterator<Item = (usize, [f64; D], f64)> + use<'s, D> {
+        let near = at.list.map_or(Neighbours::NONE, |list| list.of(slot));
+        let others = near.filter(move |&j| at.body[j] != at.body[slot]);
+        others.filter_map(move |j| self.seen(at, slot, j)).chain(self.across_cuts(at, slot))
+    }
+
+    fn seen(&self, at: Slots<'_, D>, i: usize, j: usize) -> Option<(usize, [f64; D], f64)> {
+        let x = at.apart(i, j);
+        let r = length(x);
+        (r < self.law.radius && r > 0.0).then_some((j, x, r))
     }
 
     /// Sums over who is seen now.
@@ -165,28 +186,33 @@ impl<const D: usize> Bodies<D> {
                 self.gradient[d][slot] = seen.gradient[d].0[lane];
             }
         }
-        let cuts: Vec<_> = self.seen_cuts(at).collect();
-        for ([i, j], x, r) in cuts {
-            let (value, slope) = (self.law.kernel.at(r), self.law.kernel.slope_at(r));
-            for (slot, sign) in [(i, 1.0), (j, -1.0)] {
-                self.sum[slot] += value;
-                for d in 0..D {
-                    self.gradient[d][slot] += sign * slope * x[d];
-                }
+        for slot in at.real().filter(|_| !self.cuts.is_empty()) {
+            let mut seen = (self.sum[slot], self.gradient_at(slot));
+            for (_, x, r) in self.across_cuts(at, slot) {
+                let slope = self.law.kernel.slope_at(r);
+                seen.0 += self.law.kernel.at(r);
+                seen.1 = std::array::from_fn(|d| seen.1[d] + slope * x[d]);
+            }
+            self.sum[slot] = seen.0;
+            for d in 0..D {
+                self.gradient[d][slot] = seen.1[d];
             }
         }
+    }
+
+    fn gradient_at(&self, slot: usize) -> [f64; D] {
+        std::array::from_fn(|d| self.gradient[d][slot])
     }
 
     /// Depths and forces of the sums.
     pub(super) fn push(&mut self, isa: Isa, at: Slots<'_, D>) {
         self.depth.fill(0.0);
         self.force.iter_mut().for_each(|column| column.fill(0.0));
-        let mut touches = false;
         for slot in at.real() {
             self.depth[slot] = self.law.depth(self.sum[slot], self.rest[at.id[slot] as usize]);
-            touches |= self.depth[slot] > 0.0;
         }
-        if !touches {
+        self.touches = self.depth.iter().any(|depth| *depth > 0.0);
+        if !self.touches {
             return;
         }
         let factor = -self.stiffness / self.law.slope;
@@ -198,13 +224,14 @@ impl<const D: usize> Bodies<D> {
                 }
             }
         }
-        let cuts: Vec<_> = self.seen_cuts(at).collect();
-        for ([i, j], x, r) in cuts {
-            let both = factor * (self.depth[i] + self.depth[j]) * self.law.kernel.slope_at(r);
-            for (slot, sign) in [(i, 1.0), (j, -1.0)] {
-                for d in 0..D {
-                    self.force[d][slot] += sign * both * x[d];
-                }
+        for slot in at.real().filter(|_| !self.cuts.is_empty()) {
+            let mut force = self.force_at(slot);
+            for (j, x, r) in self.across_cuts(at, slot) {
+                let both = factor * (self.depth[slot] + self.depth[j]) * self.law.kernel.slope_at(r);
+                force = std::array::from_fn(|d| force[d] + both * x[d]);
+            }
+            for d in 0..D {
+                self.force[d][slot] = force[d];
             }
         }
     }
@@ -219,75 +246,54 @@ impl<const D: usize> Bodies<D> {
         0.5 * self.stiffness * self.depth.iter().map(|depth| depth * depth).sum::<f64>()
     }
 
-    /// Pairs that push each other: slots, the lower number's first, x_ij and its length.
-    fn pushing(&self, at: Slots<'_, D>) -> Vec<([usize; 2], [f64; D], f64)> {
-        let pushes = |i: usize, j: usize| self.depth[i] + self.depth[j] > 0.0;
-        let mut pairs = Vec::new();
-        if let Some(list) = at.list {
-            for i in at.real() {
-                for j in
-                    list.of(i).filter(|&j| at.id[i] < at.id[j] && at.body[i] != at.body[j] && pushes(i, j))
-                {
-                    let x = at.apart(i, j);
-                    pairs.push(([i, j], x, length(x)));
-                }
-            }
-        }
-        pairs.extend(self.seen_cuts(at).filter(|&([i, j], ..)| pushes(i, j)));
-        pairs.retain(|(_, _, r)| *r < self.law.radius && *r > 0.0);
-        pairs
-    }
-
     /// Calls `visit` with slots that push each other, the normal of the surface between them toward the first one, and
     /// the force along that, N (2D: N/m).
     pub(super) fn touching(&self, at: Slots<'_, D>, mut visit: impl FnMut([usize; 2], [f64; D], f64)) {
         // Down grad S it is clear.
         let outward = |slot: usize| {
-            let gradient: [f64; D] = std::array::from_fn(|d| self.gradient[d][slot]);
+            let gradient = self.gradient_at(slot);
             let size = length(gradient);
             gradient.map(|g| if size > 0.0 { -g / size } else { 0.0 })
         };
-        for ([i, j], x, r) in self.pushing(at) {
-            let (a, b) = (outward(i), outward(j));
-            let between: [f64; D] = std::array::from_fn(|d| a[d] - b[d]);
-            let size = length(between);
-            let normal = if size > 0.0 { between.map(|n| n / size) } else { x.map(|x| x / r) };
-            let slope = -self.law.kernel.slope_at(r) / self.law.slope;
-            let along: f64 = (0..D).map(|d| x[d] * normal[d]).sum();
-            visit([i, j], normal, self.stiffness * (self.depth[i] + self.depth[j]) * slope * along);
+        for i in at.real().filter(|_| self.touches) {
+            for (j, x, r) in self.all_seen(at, i).filter(|(j, ..)| at.id[i] < at.id[*j]) {
+                let depths = self.depth[i] + self.depth[j];
+                if depths == 0.0 {
+                    continue;
+                }
+                let (a, b) = (outward(i), outward(j));
+                let between: [f64; D] = std::array::from_fn(|d| a[d] - b[d]);
+                let size = length(between);
+                let normal = if size > 0.0 { between.map(|n| n / size) } else { x.map(|x| x / r) };
+                let slope = -self.law.kernel.slope_at(r) / self.law.slope;
+                let along: f64 = (0..D).map(|d| x[d] * normal[d]).sum();
+                visit([i, j], normal, self.stiffness * depths * slope * along);
+            }
         }
     }
 
     /// What contacts add to a particle's stiffness, N/m (2D: N/m²): the largest sum over a row of their second
     /// derivatives, of particles that no clamp holds.
     pub(super) fn largest_stiffness(&self, at: Slots<'_, D>, held: impl Fn(usize) -> bool) -> f64 {
-        let pairs = self.pushing(at);
-        let mut rows = vec![0.0; at.id.len()];
-        // Sum of how far each depth follows all that give way, per displacement.
-        let own = |slot: usize| {
-            let gradient: [f64; D] = std::array::from_fn(|d| self.gradient[d][slot]);
-            if held(slot) { 0.0 } else { length(gradient) / self.law.slope }
-        };
-        let mut follows: Vec<f64> = (0..rows.len()).map(own).collect();
         let slope = |r: f64| -self.law.kernel.slope_at(r) * r / self.law.slope;
-        for &([i, j], _, r) in &pairs {
-            for (slot, other) in [(i, j), (j, i)] {
-                follows[slot] += if held(other) { 0.0 } else { slope(r) };
-            }
-        }
-        for &([i, j], _, r) in &pairs {
-            for (slot, other) in [(i, j), (j, i)].into_iter().filter(|&(slot, _)| self.depth[slot] > 0.0) {
-                rows[other] += slope(r) * follows[slot];
-                let turned = 2.0 * self.depth[slot] * self.law.curvature(r);
-                rows[slot] += turned;
-                rows[other] += turned;
-            }
-        }
-        let free = at.real().filter(|&slot| !held(slot));
-        let row = |slot: usize| {
-            let itself = if self.depth[slot] > 0.0 { own(slot) * follows[slot] } else { 0.0 };
-            rows[slot] + itself
+        let own =
+            |slot: usize| if held(slot) { 0.0 } else { length(self.gradient_at(slot)) / self.law.slope };
+        // How far a depth follows all that give way, per displacement.
+        let follows = |slot: usize| {
+            let seen = self.all_seen(at, slot).filter(|(j, ..)| !held(*j));
+            own(slot) + seen.map(|(.., r)| slope(r)).sum::<f64>()
         };
+        let row = |slot: usize| {
+            let mut sum = if self.depth[slot] > 0.0 { own(slot) * follows(slot) } else { 0.0 };
+            for (j, _, r) in self.all_seen(at, slot) {
+                sum += 2.0 * (self.depth[slot] + self.depth[j]) * self.law.curvature(r);
+                if self.depth[j] > 0.0 {
+                    sum += slope(r) * follows(j);
+                }
+            }
+            sum
+        };
+        let free = at.real().filter(|&slot| self.touches && !held(slot));
         self.stiffness * free.map(row).fold(0.0, f64::max)
     }
 }

@@ -47,7 +47,8 @@ fn bodies_push_each_other_by_their_depths() {
 }
 
 /// In a corner a particle sees twice as many of the wall, and one that begins a third of a spacing in a wall more, too:
-/// nothing pushes at the start. What has left is pushed by the surface from then on, also after an interruption.
+/// nothing pushes at the start, nor once it has hopped along one of the two walls. What has left both is pushed by the
+/// surface from then on, also after an interruption.
 #[test]
 fn what_begins_in_a_corner_or_in_a_wall_is_pushed_once_it_has_left() {
     let with = |left: f64| {
@@ -65,6 +66,10 @@ fn what_begins_in_a_corner_or_in_a_wall_is_pushed_once_it_has_left() {
         go(&mut body, -1e-4);
         let deeper = pushed(&body);
         assert!(deeper[0] > 0.0 && deeper[1] > 0.0, "{deeper:?}");
+        body.deform(|x| [x[0], x[1] + 0.003]);
+        body.contact.iter_mut().for_each(super::Contact::leave);
+        go(&mut body, 0.0);
+        assert_eq!(pushed(&body), [0.0; 2], "it hopped");
         go(&mut body, 0.02);
         body.contact.iter_mut().for_each(super::Contact::leave);
         let mut again = solid(&with(left), &[]);

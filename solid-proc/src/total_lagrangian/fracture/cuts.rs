@@ -232,7 +232,7 @@ impl<const D: usize> TotalLagrangian<D> {
         let mut contact = self.contact.take().or_else(|| fracture.dormant.take());
         if let Some(contact) = &mut contact {
             let cuts = fracture.cuts.iter().map(|pair| pair.map(|slot| self.id[slot]));
-            let within = cuts.filter(|pair| fracture.within_body(*pair)).collect();
+            let within = cuts.filter(|pair| fracture.within_body(*pair));
             contact.divide(self.isa, &fracture.body, within, |id| self.present(id));
         }
         self.contact = contact;
