@@ -4,8 +4,8 @@
 //!   S_i = sum_j w(r_ij),   delta_i = max(S_i - S_0, 0) / sigma.
 //! S_0 and -sigma are this sum and its slope at the distance d from a flat lattice, where two surfaces meet: half the
 //! spacing of either. The radius is the one with which S differs least along the lattice, so what slides does not climb
-//! from row to row: with pairs that push from d on it does, by 0.134 dx. An energy k delta_i² / 2 pushes each pair along
-//! its line, so momentum and moment are kept.
+//! from row to row: with pairs that push from d on it does, by 0.134 dx. An energy k delta_i² / 2 pushes each pair
+//! along its line, so momentum and moment are kept.
 
 use halfstep_sph::kernel::{Kernel, WendlandC2};
 

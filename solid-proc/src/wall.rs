@@ -100,7 +100,8 @@ impl<const D: usize> Moving<D> {
 }
 
 impl<const D: usize> Walls<D> {
-    /// `None` where the scene's solid of that index may touch none of the walls. Lists hold `skin`, m, more than needed.
+    /// `None` where the scene's solid of that index may touch none of the walls. Lists hold `skin`, m, more than
+    /// needed.
     pub(crate) fn new(
         scene: &Scene,
         solid: usize,

@@ -384,8 +384,8 @@ fn crumbs_between_two_solids_gain_nothing() {
     assert_eq!(run.state_hash(), same.state_hash(), "three processes");
 }
 
-/// A brick of eight by six particles that a plate shatters. Where the plate's points were looked for in what was left of
-/// the brick's outline, contact gave up to 2190 J/m.
+/// A brick of eight by six particles that a plate shatters. Where the plate's points were looked for in what was left
+/// of the brick's outline, contact gave up to 2190 J/m.
 #[test]
 fn a_brick_that_shatters_on_a_plate_gains_nothing() {
     let brick = r#"

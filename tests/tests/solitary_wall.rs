@@ -58,7 +58,8 @@ fn a_solitary_wave_breaks_a_wall_at_the_depth_of_beam_theory() {
     let rest = [largest("ledger.integration"), largest("water-ledger.integration")];
     let (moves, holds) = (largest("ledger.kinetic"), largest("water-ledger.kinetic"));
     println!("rests {rest:?} J/m, kinetic energy of the wall up to {moves}, of the water {holds} J/m");
-    assert!(rest[0] < 5e-3 * moves && rest[1] < 1e-2 * holds, "{rest:?}");
+    // 0.012 and 0.099 % measured.
+    assert!(rest[0] < 5e-4 * moves && rest[1] < 2e-3 * holds, "{rest:?}");
     let energy = broken.report.energy.as_ref().expect("ledgers");
     let fracture = energy.joules("first", EnergyPart::Fracture).expect("its part");
     assert!((fracture + taken.at(TO)).abs() < 1e-9 * taken.at(TO), "{fracture} in run.json");

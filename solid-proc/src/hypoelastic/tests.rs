@@ -165,8 +165,9 @@ fn a_wall_that_holds_values_pushes_and_pulls() {
     assert!(!crate::effects::touches_walls(&scene, 0), "the spring would push a second time");
 }
 
-/// A quarter of a spacing in the floor the springs k / m = (c_P / dx)² / 2 of the depth delta are k / m (|grad delta|² +
-/// delta |grad grad delta|), beside the (2 c_P / (1.1 dx))² of the shortest wave.
+/// A quarter of a spacing in the floor the springs of the depth delta are
+/// k (|grad delta|² + delta |grad grad delta|) / m, k / m = (c_P / dx)² / 2, beside the (2 c_P / (1.1 dx))² of the
+/// shortest wave.
 #[test]
 fn springs_of_walls_shorten_the_sub_step() {
     let floor = "shape=[{name=\"block\",phase=\"solid\",box={min=[0.0,0.0],max=[0.2,0.15]}},\

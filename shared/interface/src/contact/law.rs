@@ -172,7 +172,8 @@ impl Law {
         let normal = foot.normal;
         let tangent = [-normal[1], normal[0]];
         let approach = -dot(slip, normal);
-        // Where cracks are, a point may come to be deep inside at once: it has new particles about it, or old ones apart.
+        // Where cracks are, a point may come to be deep inside at once: it has new particles about it, or old ones
+        // apart.
         let deep = placed.has_torn() && foot.depth > DEEP * outline.spacing;
         let rest = if deep { foot.depth } else { 0.0 };
         let mut touch =

@@ -3,8 +3,8 @@
 //! A particle sees those of other bodies, and those of its own from which it is cut off (see `crate::kernel_sum`). Its
 //! depth stores k' delta_i² / 2, so of a pair
 //!   F_ij = -k' / sigma (delta_i + delta_j) w'(r) x_ij / r,   k' = M/4 dx^(D-2),   M = K + 4 G / 3,
-//! and two flat surfaces that meet push as M/2 dx^(D-2) for each particle. Where a particle begins or is cut off, S_0 is
-//! what it sees there: nothing pushes. As it sees less, that falls with it to the S_0 of surfaces.
+//! and two flat surfaces that meet push as M/2 dx^(D-2) for each particle. Where a particle begins or is cut off, S_0
+//! is what it sees there: nothing pushes. As it sees less, that falls with it to the S_0 of surfaces.
 
 use crate::columns::{Vectors, vectors};
 use crate::kernel_sum::KernelSum;

@@ -121,8 +121,8 @@ fn nothing_but_friction_brakes_a_block_on_a_floor_of_particles() {
     assert!(taken == 0.0 && brakes.abs() < 1e-3, "{brakes} {taken}");
 }
 
-/// A slab of weak concrete that slides on a floor of particles at 1 m/s under its weight alone. Where pairs push it climbs
-/// from row to row, strikes, and 156 of its 160 particles are single after 0.1 s.
+/// A slab of weak concrete that slides on a floor of particles at 1 m/s under its weight alone. Where pairs push it
+/// climbs from row to row, strikes, and 156 of its 160 particles are single after 0.1 s.
 #[test]
 fn a_brittle_slab_slides_in_one_piece() {
     let text = "resolution = 0.005\nend_time = 1.0\ngravity = [0.0, -9.81]\n[solid]\ndensity = 2400.0\n\
