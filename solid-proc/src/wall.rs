@@ -393,7 +393,7 @@ impl<const D: usize> PairLaw<D> for Presence<'_, D> {
     #[inline(always)]
     fn add<A: Arch, L: Lanes>(&self, (): &(), j: usize, dx: [L; D], r2: L, sum: &mut WallSum<D, L>) {
         let r = distance(r2, self.law.radius);
-        sum.sum = sum.sum + self.law.kernel.value::<A, L>(r);
+        sum.sum += self.law.kernel.value::<A, L>(r);
         let slope = self.law.kernel.gradient_over_r::<A, L>(r);
         for d in 0..D {
             sum.gradient[d] = A::mul_add(slope, dx[d], sum.gradient[d]);

@@ -7,7 +7,7 @@ use halfstep_tests::{Finished, RunBuilder};
 use std::path::Path;
 
 /// A dam break on a weak wall, three particles across, and a second solid behind it that does not break. The water is
-/// there at 0.085 s; at 0.14 s there are ten bodies, and at 0.15 s the largest one hits the second wall.
+/// there at 0.085 s; at 0.14 s there are 13 bodies, and at 0.15 s the largest one hits the second wall.
 const SCENE: &str = r#"
 resolution = 0.005
 end_time = 0.18
@@ -19,7 +19,7 @@ name = "first"
 density = 1100.0
 youngs_modulus = 1e8
 poissons_ratio = 0.0
-fracture = { strength = 3e4, energy = 0.05 }
+fracture = { strength = 1.5e4, energy = 0.02 }
 [[solid]]
 name = "second"
 density = 1100.0
@@ -109,8 +109,9 @@ fn cracks_and_debris_hang_on_no_process_and_no_thread() {
     assert!(frames[0].damage.iter().all(|damage| *damage == 0.0) && !frames[0].damage.is_empty());
     let end = &frames[frames.len() - 1].damage;
     let cracked = end.iter().filter(|damage| **damage > 0.95).count();
-    // 17 of the wall's 60: some are crumbs, and some are whole.
-    assert!((12..23).contains(&cracked) && cracked < end.len(), "{cracked} of {}", end.len());
+    println!("{cracked} of {}", end.len());
+    // 30 of the wall's 60: some are crumbs, and some are whole.
+    assert!((24..37).contains(&cracked) && cracked < end.len(), "{cracked} of {}", end.len());
     assert!(end.iter().all(|damage| (0.0..=1.0).contains(damage)) && end.contains(&0.0));
     assert!(three.outcome.frames("second").iter().all(|frame| frame.damage.is_empty()));
     // One body at the start, several once it is cracked through.
@@ -140,9 +141,9 @@ fn debris_comes_far_into_a_second_solid() {
     let run = debris(folder.path()).until(0.26).in_process().run();
     let contact = &run.report.contacts[0];
     println!("{contact:?}");
-    // 13.9 mm and 0.60 J/m measured. The last digits of other instructions move single particles: 15.0 mm, 0.42 J/m.
-    assert!((contact.largest_penetration - 0.0139).abs() < 0.003, "{contact:?}");
-    assert!((contact.normal + 0.60).abs() < 0.3, "{contact:?}");
+    // 17.5 mm and 1.3 J/m measured.
+    assert!((contact.largest_penetration - 0.0175).abs() < 0.003, "{contact:?}");
+    assert!((contact.normal + 1.3).abs() < 0.4, "{contact:?}");
 }
 
 /// The second solid is a program of somebody else: a block on a spring, in a fourth process.
