@@ -377,7 +377,7 @@ fn crumbs_between_two_solids_gain_nothing() {
     assert!(bodies > 200.0, "it is crushed: {bodies} bodies");
     for pair in &run.report.contacts {
         println!("{:?} {:.2} J/m, {:.1} mm deep", pair.solids, pair.normal, 1e3 * pair.largest_penetration);
-        assert!(pair.normal < 0.0 && pair.friction == 0.0, "{pair:?}");
+        assert!(pair.normal <= 0.0 && pair.friction == 0.0, "{pair:?}");
         assert!(pair.largest_penetration <= 0.025, "{pair:?}");
     }
     let same = crushed.run().run();

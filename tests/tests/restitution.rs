@@ -51,25 +51,25 @@ fn bounce(model: &str, dx: f64) -> (f64, f64) {
     (left, contact)
 }
 
-/// The wall's spring gives back what it took, and its damping takes 2.2, 0.6, 0.3 and 0.14 % of the energy with 5, 10,
+/// The wall's spring gives back what it took, and its damping takes 2.0, 0.6, 0.3 and 0.1 % of the energy with 5, 10,
 /// 20 and 40 particles across; the rest of the loss is the solid's own: vibrations, and its artificial viscosity.
 /// Bands: a hundredth about the speed that is measured, a thousandth about the part.
 #[test]
 fn a_rubber_disc_comes_back_with_most_of_its_speed() {
     let measured = [
-        ("total-lagrangian", 0.008, 0.676, -0.0217),
-        ("total-lagrangian", 0.004, 0.944, -0.0058),
-        ("finite-element", 0.008, 0.648, -0.0206),
-        ("finite-element", 0.004, 0.940, -0.0046),
-        ("total-lagrangian", 0.002, 0.960, -0.0031),
-        ("total-lagrangian", 0.001, 0.966, -0.0014),
-        ("finite-element", 0.002, 0.960, -0.0031),
-        ("finite-element", 0.001, 0.965, -0.0013),
-        ("hypoelastic", 0.002, 0.944, -0.0024),
-        ("hypoelastic", 0.001, 0.944, -0.0012),
+        ("total-lagrangian", 0.008, 0.900, -0.020),
+        ("total-lagrangian", 0.004, 0.948, -0.006),
+        ("finite-element", 0.008, 0.869, -0.023),
+        ("finite-element", 0.004, 0.945, -0.006),
+        ("total-lagrangian", 0.002, 0.954, -0.003),
+        ("total-lagrangian", 0.001, 0.966, -0.001),
+        ("finite-element", 0.002, 0.951, -0.003),
+        ("finite-element", 0.001, 0.965, -0.001),
+        ("hypoelastic", 0.002, 0.939, -0.002),
+        ("hypoelastic", 0.001, 0.962, -0.001),
     ];
-    for (model, dx, left, taken) in measured {
-        let (found, contact) = bounce(model, dx);
+    let found = measured.map(|(model, dx, ..)| bounce(model, dx));
+    for ((model, dx, left, taken), (found, contact)) in measured.into_iter().zip(found) {
         assert!((found - left).abs() < 0.01, "{model} at {dx} m: e = {found}");
         assert!((contact - taken).abs() < 0.001, "{model} at {dx} m: contact took {contact} of the energy");
     }
