@@ -29,6 +29,7 @@ mod polygon;
 mod region;
 mod sections;
 mod surface;
+mod wall_surface;
 #[cfg(test)]
 mod tests;
 
@@ -58,6 +59,7 @@ use region::{Region, voids_before};
 pub use region::{Regions, void_meets};
 pub use sections::{Section, left_by_voids, sections};
 pub use surface::Surface;
+pub use wall_surface::WallSurface;
 
 /// Relative tolerance of every comparison of lengths, in spacings.
 const TOLERANCE: f64 = 1e-9;

@@ -1,0 +1,368 @@
+//! Surfaces of the walls that a solid may touch.
+//!
+//! In the plane they bound the union of all walls that move alike, less the voids in them and the solids that begin in
+//! them: a seam between two flush walls is none, and what is let into a wall has a socket there. The outline is cut into
+//! sides at its concave corners, and each side is touched by itself, at its point that is nearest. In space each shape
+//! is taken by itself, without voids.
+
+use super::points::{Spacing, sides};
+use super::region::voids_before;
+use super::{Polygon, Surface};
+use crate::{Block, Geometry, Motion, Phase, Scene, Shape};
+use i_overlay::core::fill_rule::FillRule;
+use i_overlay::core::overlay_rule::OverlayRule;
+use i_overlay::float::single::SingleFloatOverlay;
+use std::f64::consts::TAU;
+
+/// How far the chords of a circle are from it at most, in spacings.
+const SAGITTA: f64 = 1e-4;
+/// Edges shorter than this are none, in spacings.
+const SHORTEST: f64 = 1e-6;
+/// Sine of the angle from which on a concave corner parts two sides: 15 degrees.
+const CORNER: f64 = 0.259;
+
+/// Regions of the plane: outlines counter-clockwise, each with its holes, clockwise.
+type Regions = Vec<Vec<Vec<[f64; 2]>>>;
+
+/// The surface of walls that move alike.
+#[derive(Clone, Debug)]
+pub struct WallSurface {
+    /// How they move.
+    pub motion: Option<Motion>,
+    /// Velocity of a surface that stays where it is, m/s.
+    pub belt: [f64; 3],
+    parts: Vec<Part>,
+}
+
+#[derive(Clone, Debug)]
+enum Part {
+    Side(Side),
+    Shape(Surface),
+}
+
+/// A part of an outline from one concave corner to the next, or all of it.
+#[derive(Clone, Debug, PartialEq)]
+struct Side {
+    /// m; the wall lies on the left. Of a closed one the first is the last, too.
+    corners: Vec<[f64; 2]>,
+    end: End,
+}
+
+/// Where a side begins and ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum End {
+    /// In concave corners.
+    Corners,
+    /// Where it begins.
+    Closed,
+    /// It begins in a corner and goes straight on as the next one, which ends there.
+    GoesOn,
+    /// It goes on from the one before.
+    ComesOn,
+}
+
+impl WallSurface {
+    /// Of all walls that solids may touch.
+    pub fn all(scene: &Scene) -> Vec<Self> {
+        let mut all: Vec<(Self, Vec<usize>)> = Vec::new();
+        let touched = scene.walls_to_touch().map(std::ptr::from_ref).collect::<Vec<_>>();
+        for (index, wall) in scene.shapes.iter().enumerate().filter(|(_, s)| touched.contains(&std::ptr::from_ref(*s))) {
+            let alike = |(one, _): &&mut (Self, _)| one.motion == wall.motion && one.belt == wall.velocity;
+            match all.iter_mut().find(alike) {
+                Some((_, members)) => members.push(index),
+                None => {
+                    let one = Self { motion: wall.motion.clone(), belt: wall.velocity, parts: Vec::new() };
+                    all.push((one, vec![index]));
+                }
+            }
+        }
+        let build = |(mut one, members): (Self, Vec<usize>)| {
+            one.parts = match scene.dimension {
+                2 => sides_of(&union(scene, &members), SHORTEST * scene.resolution).into_iter().map(Part::Side).collect(),
+                _ => members.iter().map(|&k| Part::Shape(Surface::new(&scene.shapes[k].geometry, None))).collect(),
+            };
+            one
+        };
+        all.into_iter().map(build).collect()
+    }
+
+    /// Number of parts that are touched each by itself.
+    pub fn parts(&self) -> usize {
+        self.parts.len()
+    }
+
+    /// Adds the edges of a part that a point which goes no farther than `way`, m, may be nearest to, where that is
+    /// within `reach`, m, of the part; whether it is. A part that is no side has no edges.
+    pub fn near<const D: usize>(&self, part: usize, at: [f64; D], [reach, way]: [f64; 2], edges: &mut Vec<u32>) -> bool {
+        match &self.parts[part] {
+            Part::Side(side) => side.near([at[0], at[1]], [reach, way], edges),
+            Part::Shape(surface) => {
+                let mut near = false;
+                surface.nearest(at, &mut |distance, _| near |= distance.abs() < reach);
+                near
+            }
+        }
+    }
+
+    /// Calls `visit` with the number of a face, the distance of a point from it, m, negative inside of the wall, and
+    /// the unit normal out of the wall: for the point's nearest one of `edges`, or for each face of a shape.
+    pub fn nearest<const D: usize>(
+        &self,
+        part: usize,
+        edges: &[u32],
+        at: [f64; D],
+        visit: &mut impl FnMut(u32, f64, [f64; D]),
+    ) {
+        match &self.parts[part] {
+            Part::Side(side) => {
+                if let Some((distance, normal)) = side.nearest([at[0], at[1]], edges) {
+                    visit(0, distance, std::array::from_fn(|d| if d < 2 { normal[d] } else { 0.0 }));
+                }
+            }
+            Part::Shape(surface) => {
+                let mut face = 0;
+                surface.nearest(at, &mut |distance, normal| {
+                    visit(face, distance, normal);
+                    face += 1;
+                });
+            }
+        }
+    }
+
+    /// Greatest distance of its surface from a point, m; infinite in space.
+    pub fn farthest_from(&self, point: [f64; 2]) -> f64 {
+        let of = |part: &Part| match part {
+            Part::Side(side) => side.corners.iter().map(|c| libm::hypot(c[0] - point[0], c[1] - point[1])).fold(0.0, f64::max),
+            Part::Shape(_) => f64::INFINITY,
+        };
+        self.parts.iter().map(of).fold(0.0, f64::max)
+    }
+}
+
+impl Side {
+    fn edges(&self) -> usize {
+        self.corners.len() - 1
+    }
+
+    fn edge(&self, k: usize) -> [[f64; 2]; 2] {
+        [self.corners[k], self.corners[k + 1]]
+    }
+
+    /// Out of the wall.
+    fn normal(&self, k: usize) -> [f64; 2] {
+        let [from, to] = self.edge(k);
+        let [x, y] = [to[0] - from[0], to[1] - from[1]];
+        let length = libm::hypot(x, y);
+        [y / length, -x / length]
+    }
+
+    /// The edge before or after one where they meet in a corner.
+    fn beside(&self, k: usize, after: bool) -> Option<usize> {
+        let closed = self.end == End::Closed;
+        match after {
+            false if k > 0 => Some(k - 1),
+            true if k + 1 < self.edges() => Some(k + 1),
+            false => closed.then(|| self.edges() - 1),
+            true => closed.then_some(0),
+        }
+    }
+
+    fn near(&self, at: [f64; 2], [reach, way]: [f64; 2], edges: &mut Vec<u32>) -> bool {
+        let distances = || (0..self.edges()).map(|k| distance_to(self.edge(k), at).0);
+        let least = distances().fold(f64::INFINITY, f64::min);
+        if least < reach {
+            edges.extend(distances().zip(0..).filter(|&(d, _)| d <= least + 2.0 * way).map(|(_, k)| k));
+        }
+        least < reach
+    }
+
+    /// Distance, m, negative inside of the wall, and the normal there.
+    fn nearest(&self, at: [f64; 2], edges: &[u32]) -> Option<(f64, [f64; 2])> {
+        let of = |&k: &u32| (k as usize, distance_to(self.edge(k as usize), at));
+        let (k, (distance, share)) = edges.iter().map(of).min_by(|(_, a), (_, b)| a.0.total_cmp(&b.0))?;
+        // Straight on there is the other one, which is nearer.
+        match self.end {
+            End::GoesOn if k + 1 == self.edges() && share == 1.0 => return None,
+            End::ComesOn if k == 0 && share == 0.0 && distance > across(self.edge(0), at).abs() => return None,
+            _ => {}
+        }
+        let other = match share {
+            0.0 => self.beside(k, false),
+            1.0 => self.beside(k, true),
+            _ => None,
+        };
+        let own = self.normal(k);
+        let out = other.map_or(own, |other| {
+            let beside = self.normal(other);
+            let sum = [own[0] + beside[0], own[1] + beside[1]];
+            let length = libm::hypot(sum[0], sum[1]);
+            if length > 0.0 { sum.map(|x| x / length) } else { own }
+        });
+        let [from, to] = self.edge(k);
+        let away = [0, 1].map(|a| at[a] - (from[a] + share * (to[a] - from[a])));
+        let way = if away[0] * out[0] + away[1] * out[1] < 0.0 { -1.0 } else { 1.0 };
+        // On the surface, and along an edge, the normal is the edge's.
+        let normal = if distance == 0.0 {
+            out
+        } else if other.is_none() && share > 0.0 && share < 1.0 {
+            own
+        } else {
+            away.map(|a| way * a / distance)
+        };
+        Some((way * distance, normal))
+    }
+}
+
+/// Distance of a point from a straight line, m, and where its foot is along the line, 0 to 1.
+fn distance_to([from, to]: [[f64; 2]; 2], at: [f64; 2]) -> (f64, f64) {
+    let (way, off) = ([to[0] - from[0], to[1] - from[1]], [at[0] - from[0], at[1] - from[1]]);
+    let share = ((off[0] * way[0] + off[1] * way[1]) / (way[0] * way[0] + way[1] * way[1])).clamp(0.0, 1.0);
+    if share > 0.0 && share < 1.0 {
+        // The difference to the foot would lose digits along the line.
+        return (across([from, to], at).abs(), share);
+    }
+    let end = if share == 0.0 { from } else { to };
+    (libm::hypot(at[0] - end[0], at[1] - end[1]), share)
+}
+
+/// How far a point is on the left of a line, m.
+fn across([from, to]: [[f64; 2]; 2], at: [f64; 2]) -> f64 {
+    let (way, off) = ([to[0] - from[0], to[1] - from[1]], [at[0] - from[0], at[1] - from[1]]);
+    (way[0] * off[1] - way[1] * off[0]) / libm::hypot(way[0], way[1])
+}
+
+/// The shapes of those indices without voids before them and without solids.
+fn union(scene: &Scene, members: &[usize]) -> Regions {
+    let mut all = Regions::new();
+    for &index in members {
+        all = all.overlay_as::<i64>(&own_places(scene, index), OverlayRule::Union, FillRule::EvenOdd);
+    }
+    for (index, _) in scene.shapes.iter().enumerate().filter(|(_, shape)| shape.phase == Phase::Solid) {
+        all = all.overlay_as::<i64>(&own_places(scene, index), OverlayRule::Difference, FillRule::EvenOdd);
+    }
+    all
+}
+
+/// The region of a shape less the voids before it.
+fn own_places(scene: &Scene, index: usize) -> Regions {
+    let shape: &Shape = &scene.shapes[index];
+    let spacing = Spacing::of(scene, shape);
+    let mut own = regions(&shape.geometry, spacing);
+    for void in voids_before(scene, index) {
+        own = own.overlay_as::<i64>(&regions(&void.geometry, spacing), OverlayRule::Difference, FillRule::EvenOdd);
+    }
+    own
+}
+
+/// What a geometry holds.
+fn regions(geometry: &Geometry, spacing: Spacing) -> Regions {
+    match geometry {
+        Geometry::Box(block) => vec![vec![around_block(block)]],
+        Geometry::Disc { center, radius } => vec![vec![circle(center, *radius, spacing.dx)]],
+        Geometry::Ring { center, inner, outer } => {
+            let mut hole = circle(center, *inner, spacing.dx);
+            hole.reverse();
+            vec![vec![circle(center, *outer, spacing.dx), hole]]
+        }
+        Geometry::Tank { cavity, open } => {
+            let mut outer = *cavity;
+            for axis in 0..2 {
+                let [low, high] = sides(axis).map(|side| if open.contains(&side) { 0.0 } else { spacing.thickness() });
+                (outer.min[axis], outer.max[axis]) = (cavity.min[axis] - low, cavity.max[axis] + high);
+            }
+            let (outer, cavity) = (vec![vec![around_block(&outer)]], vec![vec![around_block(cavity)]]);
+            outer.overlay_as::<i64>(&cavity, OverlayRule::Difference, FillRule::EvenOdd)
+        }
+        Geometry::Polygon(polygon) => {
+            let Polygon { outline, holes } = polygon;
+            vec![std::iter::once(outline).chain(holes).cloned().collect()]
+        }
+        Geometry::Moved(moved) => {
+            let one = regions(&moved.geometry, spacing);
+            let mut all = Regions::new();
+            for copy in moved.copies() {
+                let mut placed = one.clone();
+                placed.iter_mut().flatten().flatten().for_each(|corner| *corner = moved.place(copy, *corner));
+                all = all.overlay_as::<i64>(&placed, OverlayRule::Union, FillRule::EvenOdd);
+            }
+            all
+        }
+    }
+}
+
+fn around_block(Block { min, max }: &Block) -> Vec<[f64; 2]> {
+    vec![[min[0], min[1]], [max[0], min[1]], [max[0], max[1]], [min[0], max[1]]]
+}
+
+/// Corners on a circle, counter-clockwise.
+fn circle(center: &[f64; 3], radius: f64, dx: f64) -> Vec<[f64; 2]> {
+    let count = (0.5 * TAU * (radius / (2.0 * SAGITTA * dx)).sqrt()).ceil().max(12.0) as usize;
+    let place = |k: usize| {
+        let angle = TAU * k as f64 / count as f64;
+        [center[0] + radius * libm::cos(angle), center[1] + radius * libm::sin(angle)]
+    };
+    (0..count).map(place).collect()
+}
+
+/// The outlines of regions, cut at their concave corners.
+fn sides_of(regions: &Regions, shortest: f64) -> Vec<Side> {
+    let mut all = Vec::new();
+    for contour in regions.iter().flatten() {
+        let mut corners: Vec<[f64; 2]> = Vec::new();
+        let apart = |a: &[f64; 2], b: &[f64; 2]| libm::hypot(a[0] - b[0], a[1] - b[1]) > shortest;
+        for corner in contour {
+            if corners.last().is_none_or(|last| apart(last, corner)) {
+                corners.push(*corner);
+            }
+        }
+        while corners.len() > 1 && !apart(&corners[0], &corners[corners.len() - 1]) {
+            corners.pop();
+        }
+        let n = corners.len();
+        if n < 3 {
+            continue;
+        }
+        // Of a corner, sine of the angle by which the outline turns to its right there.
+        let parts = |k: usize| {
+            let way = |a: [f64; 2], b: [f64; 2]| {
+                let length = libm::hypot(b[0] - a[0], b[1] - a[1]);
+                [(b[0] - a[0]) / length, (b[1] - a[1]) / length]
+            };
+            let (before, after) = (way(corners[(k + n - 1) % n], corners[k]), way(corners[k], corners[(k + 1) % n]));
+            let (cross, dot) = (before[0] * after[1] - before[1] * after[0], before[0] * after[0] + before[1] * after[1]);
+            -cross > CORNER || (cross < 0.0 && dot < 0.0)
+        };
+        let cuts: Vec<usize> = (0..n).filter(|&k| parts(k)).collect();
+        let line = |from: usize, to: usize| (from..=to).map(|k| corners[k % n]).collect::<Vec<_>>();
+        match cuts[..] {
+            [] => all.push(Side { corners: line(0, n), end: End::Closed }),
+            // Both its ends meet in the corner, which has two sides.
+            [corner] => {
+                let length = |k: usize| {
+                    let [from, to] = [corners[k % n], corners[(k + 1) % n]];
+                    libm::hypot(to[0] - from[0], to[1] - from[1])
+                };
+                let longest = (corner..corner + n).max_by(|a, b| length(*a).total_cmp(&length(*b)));
+                let longest = longest.unwrap_or(corner);
+                let middle = [0, 1].map(|a| 0.5 * (corners[longest % n][a] + corners[(longest + 1) % n][a]));
+                let (mut first, mut rest) = (line(corner, longest), vec![middle]);
+                first.push(middle);
+                rest.extend(line(longest + 1, corner + n));
+                all.push(Side { corners: first, end: End::GoesOn });
+                all.push(Side { corners: rest, end: End::ComesOn });
+            }
+            _ => {
+                for (i, &from) in cuts.iter().enumerate() {
+                    let next = cuts[(i + 1) % cuts.len()];
+                    let to = if next > from { next } else { next + n };
+                    all.push(Side { corners: line(from, to), end: End::Corners });
+                }
+            }
+        }
+    }
+    all
+}
+
+#[cfg(test)]
+#[path = "wall_surface_tests.rs"]
+mod tests;
