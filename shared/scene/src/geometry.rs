@@ -29,9 +29,9 @@ mod polygon;
 mod region;
 mod sections;
 mod surface;
-mod wall_surface;
 #[cfg(test)]
 mod tests;
+mod wall_surface;
 
 use crate::{Block, Geometry, Lattice, Motion, Phase, Scene, Shape, dispatch};
 pub use alone::{measure_alone, places_alone};
@@ -122,8 +122,6 @@ pub struct WallPoint<const D: usize> {
     pub corner: bool,
     /// Free slip (true) or no slip (false).
     pub free_slip: bool,
-    /// Whether the solid may touch it.
-    pub contact: bool,
     /// Index of its shape in [`Scene::shapes`].
     pub shape: u32,
 }
@@ -232,7 +230,6 @@ fn on_lattices<const D: usize>(scene: &Scene, phases: &[Phase]) -> Layout<D> {
                     normal: p.normal,
                     corner: p.corner,
                     free_slip: shape.free_slip,
-                    contact: shape.contact,
                     shape: index as u32,
                 })),
                 Phase::Fluid => {

@@ -1,13 +1,13 @@
 //! Surfaces of the walls that a solid may touch.
 //!
 //! In the plane they bound the union of all walls that move alike, less the voids in them and the solids that begin in
-//! them: a seam between two flush walls is none, and what is let into a wall has a socket there. The outline is cut into
-//! sides at its concave corners, and each side is touched by itself, at its point that is nearest. In space each shape
-//! is taken by itself, without voids.
+//! them: a seam between two flush walls is none, and what is let into a wall has a socket there. The outline is cut
+//! into sides at its concave corners, and each side is touched by itself, at its point that is nearest. In space each
+//! shape is taken by itself, without voids.
 
 use super::points::{Spacing, sides};
 use super::region::voids_before;
-use super::{Polygon, Surface};
+use super::{Polygon, Surface, bounding_box};
 use crate::{Block, Geometry, Motion, Phase, Scene, Shape};
 use i_overlay::core::fill_rule::FillRule;
 use i_overlay::core::overlay_rule::OverlayRule;
@@ -31,6 +31,8 @@ pub struct WallSurface {
     pub motion: Option<Motion>,
     /// Velocity of a surface that stays where it is, m/s.
     pub belt: [f64; 3],
+    /// Its farthest point's distance from the pivot that it turns about is no larger, m.
+    pub radius: f64,
     parts: Vec<Part>,
 }
 
@@ -46,6 +48,9 @@ struct Side {
     /// m; the wall lies on the left. Of a closed one the first is the last, too.
     corners: Vec<[f64; 2]>,
     end: End,
+    /// The box around it, m.
+    low: [f64; 2],
+    high: [f64; 2],
 }
 
 /// Where a side begins and ends.
@@ -65,21 +70,33 @@ impl WallSurface {
     /// Of all walls that solids may touch.
     pub fn all(scene: &Scene) -> Vec<Self> {
         let mut all: Vec<(Self, Vec<usize>)> = Vec::new();
-        let touched = scene.walls_to_touch().map(std::ptr::from_ref).collect::<Vec<_>>();
-        for (index, wall) in scene.shapes.iter().enumerate().filter(|(_, s)| touched.contains(&std::ptr::from_ref(*s))) {
+        for (index, wall) in scene.walls_to_touch() {
             let alike = |(one, _): &&mut (Self, _)| one.motion == wall.motion && one.belt == wall.velocity;
             match all.iter_mut().find(alike) {
                 Some((_, members)) => members.push(index),
                 None => {
-                    let one = Self { motion: wall.motion.clone(), belt: wall.velocity, parts: Vec::new() };
-                    all.push((one, vec![index]));
+                    let (motion, belt) = (wall.motion.clone(), wall.velocity);
+                    all.push((Self { motion, belt, radius: 0.0, parts: Vec::new() }, vec![index]));
                 }
             }
         }
         let build = |(mut one, members): (Self, Vec<usize>)| {
+            let farthest = |k: &usize| {
+                let Block { min, max } = bounding_box(&scene.shapes[*k], scene);
+                let pivot = one.motion.as_ref().and_then(Motion::pivot).unwrap_or_default();
+                let [x, y] = [0, 1].map(|a| (pivot[a] - min[a]).abs().max((pivot[a] - max[a]).abs()));
+                libm::hypot(x, y)
+            };
+            one.radius = members.iter().map(farthest).fold(0.0, f64::max);
             one.parts = match scene.dimension {
-                2 => sides_of(&union(scene, &members), SHORTEST * scene.resolution).into_iter().map(Part::Side).collect(),
-                _ => members.iter().map(|&k| Part::Shape(Surface::new(&scene.shapes[k].geometry, None))).collect(),
+                2 => sides_of(&union(scene, &members), SHORTEST * scene.resolution)
+                    .into_iter()
+                    .map(Part::Side)
+                    .collect(),
+                _ => members
+                    .iter()
+                    .map(|&k| Part::Shape(Surface::new(&scene.shapes[k].geometry, None)))
+                    .collect(),
             };
             one
         };
@@ -93,7 +110,13 @@ impl WallSurface {
 
     /// Adds the edges of a part that a point which goes no farther than `way`, m, may be nearest to, where that is
     /// within `reach`, m, of the part; whether it is. A part that is no side has no edges.
-    pub fn near<const D: usize>(&self, part: usize, at: [f64; D], [reach, way]: [f64; 2], edges: &mut Vec<u32>) -> bool {
+    pub fn near<const D: usize>(
+        &self,
+        part: usize,
+        at: [f64; D],
+        [reach, way]: [f64; 2],
+        edges: &mut Vec<u32>,
+    ) -> bool {
         match &self.parts[part] {
             Part::Side(side) => side.near([at[0], at[1]], [reach, way], edges),
             Part::Shape(surface) => {
@@ -128,18 +151,17 @@ impl WallSurface {
             }
         }
     }
-
-    /// Greatest distance of its surface from a point, m; infinite in space.
-    pub fn farthest_from(&self, point: [f64; 2]) -> f64 {
-        let of = |part: &Part| match part {
-            Part::Side(side) => side.corners.iter().map(|c| libm::hypot(c[0] - point[0], c[1] - point[1])).fold(0.0, f64::max),
-            Part::Shape(_) => f64::INFINITY,
-        };
-        self.parts.iter().map(of).fold(0.0, f64::max)
-    }
 }
 
 impl Side {
+    fn new(corners: Vec<[f64; 2]>, end: End) -> Self {
+        let bound = |first: f64, of: fn(f64, f64) -> f64| {
+            [0, 1].map(|a| corners.iter().map(|corner| corner[a]).fold(first, of))
+        };
+        let (low, high) = (bound(f64::INFINITY, f64::min), bound(f64::NEG_INFINITY, f64::max));
+        Self { corners, end, low, high }
+    }
+
     fn edges(&self) -> usize {
         self.corners.len() - 1
     }
@@ -168,6 +190,9 @@ impl Side {
     }
 
     fn near(&self, at: [f64; 2], [reach, way]: [f64; 2], edges: &mut Vec<u32>) -> bool {
+        if (0..2).any(|a| at[a] < self.low[a] - reach || at[a] > self.high[a] + reach) {
+            return false;
+        }
         let distances = || (0..self.edges()).map(|k| distance_to(self.edge(k), at).0);
         let least = distances().fold(f64::INFINITY, f64::min);
         if least < reach {
@@ -183,7 +208,9 @@ impl Side {
         // Straight on there is the other one, which is nearer.
         match self.end {
             End::GoesOn if k + 1 == self.edges() && share == 1.0 => return None,
-            End::ComesOn if k == 0 && share == 0.0 && distance > across(self.edge(0), at).abs() => return None,
+            End::ComesOn if k == 0 && share == 0.0 && distance > across(self.edge(0), at).abs() => {
+                return None;
+            }
             _ => {}
         }
         let other = match share {
@@ -249,7 +276,11 @@ fn own_places(scene: &Scene, index: usize) -> Regions {
     let spacing = Spacing::of(scene, shape);
     let mut own = regions(&shape.geometry, spacing);
     for void in voids_before(scene, index) {
-        own = own.overlay_as::<i64>(&regions(&void.geometry, spacing), OverlayRule::Difference, FillRule::EvenOdd);
+        own = own.overlay_as::<i64>(
+            &regions(&void.geometry, spacing),
+            OverlayRule::Difference,
+            FillRule::EvenOdd,
+        );
     }
     own
 }
@@ -267,7 +298,8 @@ fn regions(geometry: &Geometry, spacing: Spacing) -> Regions {
         Geometry::Tank { cavity, open } => {
             let mut outer = *cavity;
             for axis in 0..2 {
-                let [low, high] = sides(axis).map(|side| if open.contains(&side) { 0.0 } else { spacing.thickness() });
+                let [low, high] =
+                    sides(axis).map(|side| if open.contains(&side) { 0.0 } else { spacing.thickness() });
                 (outer.min[axis], outer.max[axis]) = (cavity.min[axis] - low, cavity.max[axis] + high);
             }
             let (outer, cavity) = (vec![vec![around_block(&outer)]], vec![vec![around_block(cavity)]]);
@@ -328,14 +360,16 @@ fn sides_of(regions: &Regions, shortest: f64) -> Vec<Side> {
                 let length = libm::hypot(b[0] - a[0], b[1] - a[1]);
                 [(b[0] - a[0]) / length, (b[1] - a[1]) / length]
             };
-            let (before, after) = (way(corners[(k + n - 1) % n], corners[k]), way(corners[k], corners[(k + 1) % n]));
-            let (cross, dot) = (before[0] * after[1] - before[1] * after[0], before[0] * after[0] + before[1] * after[1]);
+            let (before, after) =
+                (way(corners[(k + n - 1) % n], corners[k]), way(corners[k], corners[(k + 1) % n]));
+            let (cross, dot) =
+                (before[0] * after[1] - before[1] * after[0], before[0] * after[0] + before[1] * after[1]);
             -cross > CORNER || (cross < 0.0 && dot < 0.0)
         };
         let cuts: Vec<usize> = (0..n).filter(|&k| parts(k)).collect();
         let line = |from: usize, to: usize| (from..=to).map(|k| corners[k % n]).collect::<Vec<_>>();
         match cuts[..] {
-            [] => all.push(Side { corners: line(0, n), end: End::Closed }),
+            [] => all.push(Side::new(line(0, n), End::Closed)),
             // Both its ends meet in the corner, which has two sides.
             [corner] => {
                 let length = |k: usize| {
@@ -348,14 +382,14 @@ fn sides_of(regions: &Regions, shortest: f64) -> Vec<Side> {
                 let (mut first, mut rest) = (line(corner, longest), vec![middle]);
                 first.push(middle);
                 rest.extend(line(longest + 1, corner + n));
-                all.push(Side { corners: first, end: End::GoesOn });
-                all.push(Side { corners: rest, end: End::ComesOn });
+                all.push(Side::new(first, End::GoesOn));
+                all.push(Side::new(rest, End::ComesOn));
             }
             _ => {
                 for (i, &from) in cuts.iter().enumerate() {
                     let next = cuts[(i + 1) % cuts.len()];
                     let to = if next > from { next } else { next + n };
-                    all.push(Side { corners: line(from, to), end: End::Corners });
+                    all.push(Side::new(line(from, to), End::Corners));
                 }
             }
         }

@@ -14,8 +14,11 @@ fn wall(geometry: Geometry) -> Shape {
     wall
 }
 
-/// All that is within 0.1 of a point: distance and normal.
-fn around(scene: &Scene, at: [f64; 2]) -> Vec<(f64, [f64; 2])> {
+/// Distance and normal.
+type Found = (f64, [f64; 2]);
+
+/// All that is within 0.1 of a point.
+fn around(scene: &Scene, at: [f64; 2]) -> Vec<Found> {
     let mut all = Vec::new();
     for surface in WallSurface::all(scene) {
         for part in 0..surface.parts() {
@@ -30,12 +33,10 @@ fn around(scene: &Scene, at: [f64; 2]) -> Vec<(f64, [f64; 2])> {
 }
 
 #[track_caller]
-fn meets(scene: &Scene, at: [f64; 2], right: &[(f64, [f64; 2])]) {
+fn meets(scene: &Scene, at: [f64; 2], right: &[Found]) {
     let found = around(scene, at);
     let near = |a: f64, b: f64| (a - b).abs() < 1e-12;
-    let same = |(a, b): (&(f64, [f64; 2]), &(f64, [f64; 2]))| {
-        near(a.0, b.0) && near(a.1[0], b.1[0]) && near(a.1[1], b.1[1])
-    };
+    let same = |(a, b): (&Found, &Found)| near(a.0, b.0) && near(a.1[0], b.1[0]) && near(a.1[1], b.1[1]);
     assert!(found.len() == right.len() && found.iter().zip(right).all(same), "{found:?} {right:?}");
 }
 
@@ -101,7 +102,9 @@ fn rings_are_round() {
     let scene = scene(vec![wall(ring)]);
     for k in 0..100 {
         let angle = 0.063 * f64::from(k);
-        for (radius, right, way) in [(0.45, 0.05, -1.0), (0.95, 0.05, 1.0), (0.52, -0.02, -1.0), (0.86, -0.04, 1.0)] {
+        for (radius, right, way) in
+            [(0.45, 0.05, -1.0), (0.95, 0.05, 1.0), (0.52, -0.02, -1.0), (0.86, -0.04, 1.0)]
+        {
             let [x, y] = [angle.cos(), angle.sin()];
             let found = around(&scene, [1.0 + radius * x, 1.0 + radius * y]);
             let [(distance, normal)] = found[..] else { panic!("{found:?}") };
