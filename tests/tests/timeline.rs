@@ -187,6 +187,11 @@ fn wrong_arguments_are_told_before_anything_starts() {
     refused(traced(gate(), &folder.path().join("none/gate.json"), 1..2), &["there is no folder"]);
     refused(traced(gate(), Path::new("/proc/gate.json"), 1..2), &["/proc/gate.json: cannot be written"]);
     refused(traced(gate(), Path::new("/dev/null"), 1..2), &["is no regular file"]);
+    let out = folder.path().join("out");
+    for own in ["run.json", "scene.json", "probes.csv", "frames", "checkpoint-a"] {
+        refused(traced(gate(), &out.join(own), 1..2).out(&out), &["is a file that the run itself leaves"]);
+    }
+    refused(traced(gate(), &folder.path().join("gate.png"), 1..2), &["would be replaced by its picture"]);
     std::fs::write(&file, "mine").unwrap();
     refused(traced(gate(), &file, 1..2), &["the file exists; --force replaces it"]);
     assert_eq!(std::fs::read_to_string(&file).unwrap(), "mine");

@@ -32,7 +32,7 @@ pub fn run(scene: &Scene, options: &RunOptions) -> Result<Ended, RunError> {
     // Before an earlier run is removed.
     check_resources(scene, options)?;
     if let Some(trace) = &options.trace {
-        timeline::check(trace, &options.out, options.force)?;
+        timeline::check(trace, &scene.path, &options.out, options.force)?;
     }
     let directory = RunDirectory::create(&options.out, options.force)?;
     if let Some(trace) = &options.trace {

@@ -5,7 +5,7 @@ use crate::options::Trace;
 use halfstep_coupling::error::RunError;
 use halfstep_coupling::say;
 use halfstep_output::timeline::{Span, Timeline, Track};
-use halfstep_output::{OutputError, atomic, draw_timeline};
+use halfstep_output::{OutputError, atomic, draw_timeline, run_dir};
 use halfstep_role::timeline::{self, Event, Part, Recording, Window};
 use halfstep_scene::Scene;
 use halfstep_wire::Name;
@@ -17,7 +17,7 @@ fn path(folder: &Path, process: &str) -> PathBuf {
 }
 
 /// Refuses a file that the timeline could not be written to at the end.
-pub(crate) fn check(trace: &Trace, out: &Path, force: bool) -> Result<(), RunError> {
+pub(crate) fn check(trace: &Trace, scene: &Path, out: &Path, force: bool) -> Result<(), RunError> {
     let file = trace.file.as_path();
     let refused = |reason: String| Err(RunError::System(format!("--trace {}: {reason}", file.display())));
     if file.file_name().is_none() || file.is_dir() {
@@ -32,8 +32,25 @@ pub(crate) fn check(trace: &Trace, out: &Path, force: bool) -> Result<(), RunErr
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
-    if folder == out && !folder.exists() {
-        return Ok(());
+    let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let same = |a: &Path, b: &Path| match (a.canonicalize(), b.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => absolute(a) == absolute(b),
+    };
+    let name = file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    if same(file, scene) {
+        return refused("is the scene".into());
+    }
+    if name.ends_with(".png") {
+        return refused("would be replaced by its picture".into());
+    }
+    if same(folder, out) {
+        if run_dir::is_of_run(&name) && name != "trace.json" {
+            return refused("is a file that the run itself leaves in its folder".into());
+        }
+        if !folder.exists() {
+            return Ok(());
+        }
     }
     if !folder.is_dir() {
         return refused(format!("there is no folder {}", folder.display()));

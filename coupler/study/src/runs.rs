@@ -30,6 +30,9 @@ pub struct Program {
     pub version: String,
     /// Hash of its file: versions under development have the same number.
     pub build: String,
+    /// The instruction set that it computes with.
+    #[serde(default)]
+    pub isa: String,
     /// The programs that compute solids, each with a hash of the files that its command names.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub solids: Vec<(String, String)>,
@@ -43,7 +46,13 @@ impl Program {
     pub fn own() -> Result<Self, StudyError> {
         let bytes = own_path().and_then(std::fs::read).map_err(StudyError::system("the own program"))?;
         let build = format!("{:016x}", xxh3_64(&bytes));
-        Ok(Self { version: env!("CARGO_PKG_VERSION").into(), build, solids: Vec::new() })
+        let isa = halfstep::isa::of_environment().map_err(|e| StudyError::System(e.to_string()))?;
+        Ok(Self {
+            version: env!("CARGO_PKG_VERSION").into(),
+            build,
+            isa: format!("{isa:?}"),
+            solids: Vec::new(),
+        })
     }
 
     /// With solids that these commands compute, `[NAME=]COMMAND`.
@@ -267,7 +276,8 @@ mod tests {
             Setting::load(&path, &[], &set).unwrap()
         };
         let own = load(&[]);
-        let program = Program { version: "1".into(), build: "a".into(), solids: Vec::new() };
+        let isa = "avx2".to_string();
+        let program = Program { version: "1".into(), build: "a".into(), isa, solids: Vec::new() };
         let mut report = RunReport {
             status: Some(RunStatus::Finished),
             scene: serde_json::to_value(&own.scene).unwrap(),
@@ -276,6 +286,7 @@ mod tests {
         assert!(matches(&program, &report, &own, &program));
         assert!(!matches(&Program { build: "b".into(), ..program.clone() }, &report, &own, &program));
         assert!(!matches(&Program { version: "2".into(), ..program.clone() }, &report, &own, &program));
+        assert!(!matches(&Program { isa: "baseline".into(), ..program.clone() }, &report, &own, &program));
         assert!(!matches(&program, &report, &load(&["fluid.density=900"]), &program));
         // A program that computes a solid is another one when its file changes.
         let script = dir.path().join("plate.py");

@@ -32,6 +32,13 @@ fn is_run_file(name: &str) -> bool {
         || between("timeline-", ".json")
 }
 
+/// Whether a file or folder in the run's folder is one that a run leaves.
+pub fn is_of_run(name: &str) -> bool {
+    is_run_file(name)
+        || checkpoint::FOLDERS.contains(&name)
+        || series::frames_folder(Path::new("")) == Path::new(name)
+}
+
 /// Whether a file in the folder of a checkpoint is part of one.
 fn is_checkpoint_file(name: &str) -> bool {
     let participant = name.strip_suffix(".hdf").is_some_and(|stem| stem.parse::<Name>().is_ok());

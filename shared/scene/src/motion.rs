@@ -137,6 +137,19 @@ impl Motion {
         }
     }
 
+    /// Shortest period of its swings, s; of points twice the shortest time between two. Infinite where it does not
+    /// swing.
+    pub fn shortest_period(&self) -> f64 {
+        match self {
+            Self::Steady { .. } => f64::INFINITY,
+            Self::Oscillating { period, .. } => *period,
+            Self::Composed(composed) => {
+                let periods = composed.parts.iter().map(|part| part.course.period());
+                periods.fold(f64::INFINITY, f64::min)
+            }
+        }
+    }
+
     /// Whether it, or a part of it, goes on at a rate.
     pub fn is_steady(&self) -> bool {
         match self {

@@ -24,6 +24,8 @@ pub(super) struct Body {
     pub(super) surfaces: Vec<Surface>,
     /// A bound of the speed of what moves by prescription, m/s.
     pub(super) fastest: f64,
+    /// Shortest period of what swings by prescription, s.
+    pub(super) period: f64,
     /// Of a wall's surface, which stays where it is, m/s: what rests on it is taken along by friction.
     pub(super) surface_velocity: Vec3,
     /// What touches others' surfaces: balls, their centres from the centre of mass, m, their radii, m, and how
@@ -101,6 +103,7 @@ impl Body {
             surfaces: Vec::new(),
             balls: Vec::new(),
             fastest: 0.0,
+            period: f64::INFINITY,
             surface_velocity: Vec3::zeros(),
             radius: 0.0,
             tied: Vec::new(),

@@ -49,6 +49,7 @@ pub(super) fn system<const D: usize>(
         if touched || keys.joints.iter().any(|joint| joint.with == wall.name) {
             let mut frame = Body::frame(wall.motion.clone());
             frame.fastest = fastest(scene, wall);
+            frame.period = shortest_period(scene, wall);
             frame.surface_velocity = wall.velocity.into();
             if touched {
                 frame.surfaces.push(Surface::new(&wall.geometry, None));
@@ -101,6 +102,12 @@ fn fastest(scene: &Scene, shape: &Shape) -> f64 {
     let around = geometry::bounding_box(shape, scene);
     let motions = shape.motion.iter().chain(scene.frame.as_ref().map(|frame| &frame.motion));
     motions.map(|motion| motion.fastest(&around)).fold(0.0, |sum, speed| sum + speed)
+}
+
+/// Shortest period of a shape that swings by prescription, s, and of what stays behind a frame that does.
+fn shortest_period(scene: &Scene, shape: &Shape) -> f64 {
+    let motions = shape.motion.iter().chain(scene.frame.as_ref().map(|frame| &frame.motion));
+    motions.map(halfstep_scene::Motion::shortest_period).fold(f64::INFINITY, f64::min)
 }
 
 fn link(joint: &Joint, ends: [usize; 2], bodies: &[Body]) -> Link {
@@ -157,6 +164,8 @@ fn body<const D: usize>(
     body.driven = motion.map(Some);
     let of_shape = |point: &SolidPoint<D>| fastest(scene, &scene.shapes[point.body as usize]);
     body.fastest = own().map(of_shape).fold(0.0, f64::max);
+    let period = |point: &SolidPoint<D>| shortest_period(scene, &scene.shapes[point.body as usize]);
+    body.period = own().map(period).fold(f64::INFINITY, f64::min);
     let mut shapes: Vec<(u32, u32)> = own().map(|point| (point.body, point.copy)).collect();
     shapes.sort_unstable();
     shapes.dedup();

@@ -146,7 +146,9 @@ impl Part {
                 let (edge, inside) = (&edges.all[edge], edges.contains(&p, 0.0));
                 let way = if inside { -1.0 } else { 1.0 };
                 let foot = edge.foot(&p);
-                let normal = if distance > 0.0 {
+                let at_end = foot == edge.from || foot == edge.to;
+                // Of what lies on an edge the direction to the foot is rounding.
+                let normal = if distance > 0.0 && at_end {
                     [0, 1].map(|a| way * (p[a] - foot[a]) / distance)
                 } else {
                     edge.normal()

@@ -108,6 +108,15 @@ impl Course {
         }
     }
 
+    /// See [`super::Motion::shortest_period`].
+    pub(super) fn period(&self) -> f64 {
+        match self {
+            Self::Steady { .. } | Self::Solitary(_) => f64::INFINITY,
+            Self::Sine { period, .. } => *period,
+            Self::Points(spline) => 2.0 * spline.shortest(),
+        }
+    }
+
     /// An upper bound of the size of its rate.
     fn fastest(&self) -> f64 {
         match self {

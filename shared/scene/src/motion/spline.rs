@@ -129,6 +129,11 @@ impl Spline {
         if fall.min(rise) > 0.25 * (high - low) { high.max(-low) } else { 0.0 }
     }
 
+    /// Shortest time between two points, s.
+    pub fn shortest(&self) -> f64 {
+        self.times.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min)
+    }
+
     /// Largest rate in size.
     pub fn fastest(&self) -> f64 {
         let mut fastest = 0.0_f64;
@@ -152,6 +157,7 @@ mod tests {
 
     #[test]
     fn three_points_by_hand() {
+        assert_eq!(Spline::new(vec![0.0, 1.0, 1.5], vec![0.0, 1.0, 0.0]).shortest(), 0.5);
         // 0, 1, 0 at 0, 1, 2: M = 6 (-1 - 1) / (2 (1 + 1)) = -3; value at 1/2: (0 + 1) / 2 - (0 - 3) / 16 = 11/16.
         let spline = Spline::new(vec![0.0, 1.0, 2.0], vec![0.0, 1.0, 0.0]);
         assert_eq!(spline.at(0.5), [11.0 / 16.0, 1.5 - 0.375, -1.5]);

@@ -124,3 +124,50 @@ fn an_impact_off_the_centre_keeps_angular_momentum() {
         assert!(lost.abs() < 1e-5, "{lost:e}");
     }
 }
+
+/// What lies on an edge of a polygon is pushed across that edge: g (sin - mu cos) t² / 2 down a ramp.
+#[test]
+fn a_block_slides_down_a_polygon() {
+    for (degrees, dt) in [(20.0_f64, 5e-4), (30.0, 5e-3), (37.0, 5e-4)] {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let drop = sin / cos;
+        let ramp = format!(
+            "[[shape]]\nname = \"ramp\"\nphase = \"wall\"\npolygon = [[-1.0, {drop}], [-1.0, -2.0], [1.0, -2.0], \
+             [1.0, -{drop}]]\n"
+        );
+        let block = format!("{BOX}rotate = {{ angle = -{degrees}, about = [0.0, 0.0] }}\n{ramp}");
+        let friction = 0.9 * drop;
+        let mut model = build::<2>(&scene(&format!("contact = {{ friction = {friction} }}"), &block));
+        let load = free(&model);
+        let start = model.states[0].center;
+        run(&mut model, 0.5, dt, &load, |_, _| {});
+        let way = [0, 1].map(|d| model.states[0].center[d] - start[d]);
+        let (along, off) = (way[0] * cos - way[1] * sin, way[0] * sin + way[1] * cos);
+        let right = 0.5 * 0.1 * G * sin * 0.25;
+        println!("{degrees} degrees: {along:.6} m, by hand {right:.6} m, off {off:e}");
+        assert!((along / right - 1.0).abs() < 1e-6 && off.abs() < 1e-9, "{along} {right} {off}");
+    }
+}
+
+/// With its own steps a block that rubs on a floor which swings goes to and fro as with short ones.
+#[test]
+fn a_swinging_floor_takes_enough_steps() {
+    for period in [0.05, 0.5] {
+        let floor = format!("{FLOOR}motion = {{ amplitude = [0.01, 0.0], period = {period} }}\n");
+        let scene = scene("contact = { friction = 0.3 }", &format!("{BOX}{floor}"));
+        let range = |dt: f64| {
+            let mut model = build::<2>(&scene);
+            let load = free(&model);
+            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+            run(&mut model, 4.0 * period, dt, &load, |_, model| {
+                let x = model.states[0].center[0];
+                (low, high) = (low.min(x), high.max(x));
+            });
+            high - low
+        };
+        let own = build::<2>(&scene).sub_step_limit();
+        let [found, right] = [own, period / 2e4].map(range);
+        println!("{period} s: steps of {own:e} s, {found:.6} m, short steps {right:.6} m");
+        assert!((found / right - 1.0).abs() < 0.02, "{found} {right}");
+    }
+}
