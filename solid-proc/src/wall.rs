@@ -15,7 +15,7 @@ use halfstep_sph::neighbours::PADDING;
 use halfstep_wire::state::{Fields, StateError};
 use std::ops::Range;
 
-/// zeta. A disc of rubber, 20 particles across, loses 0.3 % of its energy by it.
+/// zeta. A disc of rubber, 20 particles across, loses 0.6 % of its energy by it.
 const DAMPING_RATIO: f64 = 0.2;
 /// Depth from which on the whole damping acts, over d.
 const TOUCH: f64 = 0.25;

@@ -7,7 +7,7 @@ use super::step::System;
 /// m/s²: where there is no gravity.
 const FALL: f64 = 9.81;
 
-/// A block that rubs on a floor which swings goes as far as with steps of 10 us to 2 %.
+/// A block that rubs on a floor which swings goes as far as with short steps to 7 %, or to 1 % where it does so gently.
 const STEPS_PER_PERIOD: f64 = 200.0;
 
 impl System {
