@@ -68,6 +68,18 @@ pub struct WallContact {
     first: (Vec<[f64; 2]>, Vec<f64>),
 }
 
+/// The place in the scene of what is here now, m.
+pub(super) fn back(placement: &Placement, at: [f64; 2]) -> [f64; 2] {
+    let moved = [0, 1].map(|d| at[d] - placement.displacement[d]);
+    match &placement.turn {
+        None => moved,
+        Some(turn) => {
+            let [x, y] = [0, 1].map(|d| moved[d] - turn.pivot[d]);
+            [turn.pivot[0] + turn.cos * x + turn.sin * y, turn.pivot[1] - turn.sin * x + turn.cos * y]
+        }
+    }
+}
+
 impl WallContact {
     /// Of a scene's solid of that index; `None` where it can touch no wall, and in space.
     ///
@@ -76,7 +88,7 @@ impl WallContact {
         if scene.dimension != 2 || scene.walls_to_touch().next().is_none() {
             return None;
         }
-        let wall = |(_, shape): (usize, &Shape)| Wall {
+        let wall = |shape: &Shape| Wall {
             surface: Surface::new(&shape.geometry, None),
             motion: shape.motion.clone(),
             belt: [shape.velocity[0], shape.velocity[1]],
@@ -173,7 +185,7 @@ impl WallContact {
         let points = || self.outline.pieces.iter().flat_map(|piece| &piece.points).filter(whole);
         for ((k, wall), placement) in self.walls.iter().enumerate().zip(placements) {
             for &point in points() {
-                let at = placement.point_at(self.placed.position[point as usize]);
+                let at = back(placement, self.placed.position[point as usize]);
                 let mut surface = 0;
                 wall.surface.nearest(at, &mut |distance, normal: [f64; 2]| {
                     if distance < 0.0 {
@@ -219,7 +231,7 @@ impl WallContact {
         }
         let (wall, placement) = (&self.walls[key[0] as usize], &placements[key[0] as usize]);
         let at = self.placed.position[key[1] as usize];
-        let below = placement.point_at(at);
+        let below = back(placement, at);
         let carried = placement.velocity_of(below);
         let slip = less(self.placed.velocity[key[1] as usize], [0, 1].map(|d| carried[d] + wall.belt[d]));
         let tangent = [-normal[1], normal[0]];
@@ -234,7 +246,7 @@ impl WallContact {
         let from = [0, 1].map(|d| at[d] - stuck[d] - wall.belt[d] * (time - touch.time));
         let (along, slipped) = self.law.along(spring, push, dot(from, tangent), dot(slip, tangent));
         if let Some(left) = slipped {
-            touch.place = placement.point_at([0, 1].map(|d| at[d] - left * tangent[d]));
+            touch.place = back(placement, [0, 1].map(|d| at[d] - left * tangent[d]));
             touch.time = time;
         }
         self.halfway.push(touch);

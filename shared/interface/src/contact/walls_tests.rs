@@ -156,11 +156,11 @@ fn walls_that_move_take_a_block_along() {
 
     let placement =
         halfstep_scene::Motion::Steady { velocity: [0.2, 0.3, 0.0], start: 0.0, end: 1e9 }.at(2.0);
-    assert_eq!(placement.point_at([0.4, 0.6]), [0.0, 0.0]);
+    assert_eq!(super::walls::back(&placement, [0.4, 0.6]), [0.0, 0.0]);
     let turn =
         halfstep_scene::Turn { pivot: [1.0, 0.0, 0.0], sin: 0.6, cos: 0.8, rate: 0.0, acceleration: 0.0 };
     let turned = halfstep_scene::Placement { turn: Some(turn), ..placement };
-    let found = turned.point_at(turned.position_of([0.3, 0.7]));
+    let found = super::walls::back(&turned, turned.position_of([0.3, 0.7]));
     assert!((found[0] - 0.3).abs() < 1e-15 && (found[1] - 0.7).abs() < 1e-15, "{found:?}");
 }
 
