@@ -121,9 +121,11 @@ price_example pyelastica-stem pyelastica stem stem.py \
 
 What accuracy costs in the shipped scenes: coarse ladders that a small machine runs in minutes. [Studies](study.md)
 explains every number. Errors and pair evaluations do not depend on what else the machine does; wall times do, and where
-more programs waited than there are processors they say little: compare pair evaluations.
+more programs waited than there are processors they say little: compare pair evaluations. These hang on the
+[instruction set level](study.md#the-numbers) and on the precision: lists of 2026-11-26 that name an Intel processor are
+of AVX-512, and AVX2, which runs take there now, has 1.15 to 1.3 times fewer pairs in the same steps.
 
-Renewed by `make prices`, which runs the commands below; do not edit. Lists without a date are of before 2026-11-24.
+Renewed by `make prices`, which runs the commands below; do not edit.
 HEAD
     for scene in $all; do
         case " $wanted " in *" $scene "*) ;; *)

@@ -2,7 +2,7 @@
 
 use halfstep_output::timeline::{HALF_STEP, Span, Timeline, Track};
 use halfstep_tests::python::python;
-use halfstep_tests::run::repository;
+use halfstep_tests::run::{repository, scene_at};
 use halfstep_tests::{Outcome, RunBuilder, scene};
 use std::ops::Range;
 use std::path::Path;
@@ -192,6 +192,9 @@ fn wrong_arguments_are_told_before_anything_starts() {
         refused(traced(gate(), &out.join(own), 1..2).out(&out), &["is a file that the run itself leaves"]);
     }
     refused(traced(gate(), &folder.path().join("gate.png"), 1..2), &["would be replaced by its picture"]);
+    let own = folder.path().join("own.toml");
+    std::fs::copy(repository().join("scenes/spring-block.toml"), &own).unwrap();
+    refused(traced(scene_at(&own), &own, 1..2).argument("--force"), &["is the scene"]);
     std::fs::write(&file, "mine").unwrap();
     refused(traced(gate(), &file, 1..2), &["the file exists; --force replaces it"]);
     assert_eq!(std::fs::read_to_string(&file).unwrap(), "mine");

@@ -7,7 +7,7 @@ use super::step::{System, Wrench};
 use crate::effects::takes_part;
 use crate::ledger::Given;
 use halfstep_scene::geometry::{self, Layout, SolidPoint, Surface};
-use halfstep_scene::{EffectName, Joint, JointKind, Phase, RigidKeys, Scene, Shape};
+use halfstep_scene::{EffectName, Joint, JointKind, Motion, Phase, RigidKeys, Scene, Shape};
 use nalgebra::Matrix3;
 
 /// Part of the spacing within which surfaces touch.
@@ -97,17 +97,20 @@ pub(super) fn system<const D: usize>(
     (system, names)
 }
 
+/// The motion of a shape, and that of the frame.
+fn motions<'s>(scene: &'s Scene, shape: &'s Shape) -> impl Iterator<Item = &'s Motion> {
+    shape.motion.iter().chain(scene.frame.as_ref().map(|frame| &frame.motion))
+}
+
 /// A bound of the speed of a shape that moves by prescription, m/s, and of what stays behind a frame that does.
 fn fastest(scene: &Scene, shape: &Shape) -> f64 {
     let around = geometry::bounding_box(shape, scene);
-    let motions = shape.motion.iter().chain(scene.frame.as_ref().map(|frame| &frame.motion));
-    motions.map(|motion| motion.fastest(&around)).fold(0.0, |sum, speed| sum + speed)
+    motions(scene, shape).map(|motion| motion.fastest(&around)).fold(0.0, |sum, speed| sum + speed)
 }
 
 /// Shortest period of a shape that swings by prescription, s, and of what stays behind a frame that does.
 fn shortest_period(scene: &Scene, shape: &Shape) -> f64 {
-    let motions = shape.motion.iter().chain(scene.frame.as_ref().map(|frame| &frame.motion));
-    motions.map(halfstep_scene::Motion::shortest_period).fold(f64::INFINITY, f64::min)
+    motions(scene, shape).map(Motion::shortest_period).fold(f64::INFINITY, f64::min)
 }
 
 fn link(joint: &Joint, ends: [usize; 2], bodies: &[Body]) -> Link {

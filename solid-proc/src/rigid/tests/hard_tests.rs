@@ -150,10 +150,10 @@ fn a_block_slides_down_a_polygon() {
 }
 
 /// With its own steps a block that rubs on a floor which swings goes to and fro as with short ones to 7 %, where the
-/// floor turns round with 16 g, and to 1 % with 0.16 g. Without its period they gave 28 times as much.
+/// floor turns round with 16 g, and to 1 % with 0.16 g.
 #[test]
 fn a_swinging_floor_takes_enough_steps() {
-    for period in [0.05, 0.5] {
+    for (period, most) in [(0.05, 0.08), (0.5, 0.01)] {
         let floor = format!("{FLOOR}motion = {{ amplitude = [0.01, 0.0], period = {period} }}\n");
         let scene = scene("contact = { friction = 0.3 }", &format!("{BOX}{floor}"));
         let range = |dt: f64| {
@@ -169,6 +169,6 @@ fn a_swinging_floor_takes_enough_steps() {
         let own = build::<2>(&scene).sub_step_limit();
         let [found, right] = [own, period / 2e4].map(range);
         println!("{period} s: steps of {own:e} s, {found:.6} m, short steps {right:.6} m");
-        assert!((found / right - 1.0).abs() < 0.08, "{found} {right}");
+        assert!((found / right - 1.0).abs() < most, "{found} {right}");
     }
 }
