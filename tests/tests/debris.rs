@@ -120,18 +120,22 @@ fn cracks_and_debris_hang_on_no_process_and_no_thread() {
 }
 
 /// A slab of weak concrete under nothing but its weight. Pair by pair, contact broke it into 49, 152 and 156 single
-/// particles.
+/// particles. An exact floor is the same at any speed.
 #[test]
 fn a_slab_that_slides_on_a_floor_stays_whole() {
     let path = repository().join("validation/tsunami-wall/sliding-slab.toml");
-    for (speed, resolution) in [(0.1, 0.005), (0.3, 0.005), (1.0, 0.005), (1.0, 0.000625)] {
-        let run = scene_at(&path).set("parameters.v", speed).set("resolution", resolution).in_process().run();
+    let mut strains = Vec::new();
+    for speed in [0.1, 0.3, 1.0] {
+        let run = scene_at(&path).set("parameters.v", speed).in_process().run();
         let last = |name: &str| *run.curve(name).values.last().expect("rows");
         assert_eq!((last("pieces.bodies"), last("pieces.loose"), last("ledger.fracture")), (1.0, 0.0, 0.0));
         let kinetic = last("ledger.kinetic") / run.curve("ledger.kinetic").at(0.0);
-        println!("{speed} m/s over {resolution} m: {:e} of the kinetic energy lost", 1.0 - kinetic);
-        assert!((kinetic - 1.0).abs() < 5e-6, "{speed} {resolution}: {kinetic}");
+        println!("{speed} m/s: {:e} of the kinetic energy lost", 1.0 - kinetic);
+        // What the slab's weight makes it swing by, 9e-10 J/m, is a part of 0.048 J/m at 0.1 m/s.
+        assert!((kinetic - 1.0).abs() < 5e-8, "{speed}: {kinetic}");
+        strains.push(last("ledger.strain"));
     }
+    assert!(strains.iter().all(|strain| (strain / strains[0] - 1.0).abs() < 1e-6), "{strains:?}");
 }
 
 /// Contact of two solids has the outlines of the start, so debris comes far into the second one, which is 30 mm thick.

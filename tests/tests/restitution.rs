@@ -51,22 +51,22 @@ fn bounce(model: &str, dx: f64) -> (f64, f64) {
     (left, contact)
 }
 
-/// The wall's spring gives back what it took, and its damping takes 2.0, 0.6, 0.3 and 0.1 % of the energy with 5, 10,
+/// The wall's spring gives back what it took, and its damping takes 3.9, 1.3, 0.6 and 0.2 % of the energy with 5, 10,
 /// 20 and 40 particles across; the rest of the loss is the solid's own: vibrations, and its artificial viscosity.
 /// Bands: a hundredth about the speed that is measured, a thousandth about the part.
 #[test]
 fn a_rubber_disc_comes_back_with_most_of_its_speed() {
     let measured = [
-        ("total-lagrangian", 0.008, 0.900, -0.020),
-        ("total-lagrangian", 0.004, 0.948, -0.006),
-        ("finite-element", 0.008, 0.869, -0.023),
-        ("finite-element", 0.004, 0.945, -0.006),
-        ("total-lagrangian", 0.002, 0.954, -0.003),
-        ("total-lagrangian", 0.001, 0.966, -0.001),
-        ("finite-element", 0.002, 0.951, -0.003),
-        ("finite-element", 0.001, 0.965, -0.001),
-        ("hypoelastic", 0.002, 0.939, -0.002),
-        ("hypoelastic", 0.001, 0.962, -0.001),
+        ("total-lagrangian", 0.008, 0.921, -0.039),
+        ("total-lagrangian", 0.004, 0.955, -0.013),
+        ("finite-element", 0.008, 0.892, -0.038),
+        ("finite-element", 0.004, 0.957, -0.012),
+        ("total-lagrangian", 0.002, 0.959, -0.006),
+        ("total-lagrangian", 0.001, 0.967, -0.002),
+        ("finite-element", 0.002, 0.958, -0.006),
+        ("finite-element", 0.001, 0.966, -0.002),
+        ("hypoelastic", 0.002, 0.944, -0.004),
+        ("hypoelastic", 0.001, 0.962, -0.002),
     ];
     let found = measured.map(|(model, dx, ..)| bounce(model, dx));
     for ((model, dx, left, taken), (found, contact)) in measured.into_iter().zip(found) {

@@ -21,6 +21,7 @@
 //!
 //! A law for leaving: Walton and Braun 1986; the spring along the surface: Cundall and Strack 1979.
 
+mod corners;
 mod law;
 mod outline;
 mod placed;

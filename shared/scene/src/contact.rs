@@ -33,10 +33,11 @@ impl PairContact {
 const STIFFNESS_SPEED: f64 = 20.0;
 
 impl Scene {
-    /// Walls that solids may touch; none where `wall-contact` is off.
-    pub fn walls_to_touch(&self) -> impl Iterator<Item = &Shape> {
+    /// Walls that solids may touch, with their index in [`Scene::shapes`]; none where `wall-contact` is off.
+    pub fn walls_to_touch(&self) -> impl Iterator<Item = (usize, &Shape)> {
         let on = self.switch(EffectName::WallContact) != Switch::Off;
-        self.shapes.iter().filter(move |shape| on && shape.phase == Phase::Wall && shape.contact)
+        let all = self.shapes.iter().enumerate();
+        all.filter(move |(_, shape)| on && shape.phase == Phase::Wall && shape.contact)
     }
 
     /// The solid of that index strains and says `contact`, so the coupler holds it against walls: its model knows no

@@ -31,6 +31,7 @@ mod sections;
 mod surface;
 #[cfg(test)]
 mod tests;
+mod wall_surface;
 
 use crate::{Block, Geometry, Lattice, Motion, Phase, Scene, Shape, dispatch};
 pub use alone::{measure_alone, places_alone};
@@ -58,6 +59,7 @@ use region::{Region, voids_before};
 pub use region::{Regions, void_meets};
 pub use sections::{Section, left_by_voids, sections};
 pub use surface::Surface;
+pub use wall_surface::{WallCorner, WallSurface, wall_corners};
 
 /// Relative tolerance of every comparison of lengths, in spacings.
 const TOLERANCE: f64 = 1e-9;
@@ -120,8 +122,6 @@ pub struct WallPoint<const D: usize> {
     pub corner: bool,
     /// Free slip (true) or no slip (false).
     pub free_slip: bool,
-    /// Whether the solid may touch it.
-    pub contact: bool,
     /// Index of its shape in [`Scene::shapes`].
     pub shape: u32,
 }
@@ -230,7 +230,6 @@ fn on_lattices<const D: usize>(scene: &Scene, phases: &[Phase]) -> Layout<D> {
                     normal: p.normal,
                     corner: p.corner,
                     free_slip: shape.free_slip,
-                    contact: shape.contact,
                     shape: index as u32,
                 })),
                 Phase::Fluid => {

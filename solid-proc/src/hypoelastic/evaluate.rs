@@ -87,7 +87,7 @@ impl<const D: usize> Hypoelastic<D> {
 
     fn touch_walls(&mut self) {
         if let Some(mut walls) = self.walls.take() {
-            walls.act(self.isa, self.touching());
+            walls.act(self.touching());
             self.pair_evaluations += walls.pairs() as u64;
             self.walls = Some(walls);
         }

@@ -93,9 +93,7 @@ impl<const D: usize> Hypoelastic<D> {
         let ModelKeys::Hypoelastic(keys) = &material.model else { return None };
         let artificial_stress =
             takes_part(scene, solid, EffectName::ArtificialStress).then_some(keys.artificial_stress);
-        let walls = touches_walls(scene, solid)
-            .then(|| Walls::new(scene, solid, &layout.wall, SKIN * h, isa))
-            .flatten();
+        let walls = touches_walls(scene, solid).then(|| Walls::new(scene, solid, SKIN * h)).flatten();
         let side_friction = takes_part(scene, solid, EffectName::SideFriction)
             .then(|| material.side_friction / material.density);
         let domain = geometry::domain(scene);
@@ -153,7 +151,7 @@ impl<const D: usize> Hypoelastic<D> {
         };
         model.sort();
         if let Some(mut walls) = model.walls.take() {
-            walls.begin(isa, model.touching());
+            walls.begin(model.touching());
             model.walls = Some(walls);
         }
         model.apply_state_equation();
@@ -180,7 +178,7 @@ impl<const D: usize> Hypoelastic<D> {
         self.neighbours.build(&self.reference, &self.reference, &self.rows, reach);
         fit(&mut self.sums, self.neighbours.fours(), SolidSum::default());
         if let Some(walls) = &mut self.walls {
-            walls.relist(&self.reference);
+            walls.relist(&self.id, &self.reference);
         }
     }
 
@@ -369,7 +367,7 @@ impl<const D: usize> SolidModel<D> for Hypoelastic<D> {
         if !first {
             self.close_account();
             self.wall_springs = self.springs_of_walls();
-            self.walls.iter_mut().for_each(|walls| walls.leave(&self.id));
+            self.walls.iter_mut().for_each(Walls::leave);
         }
         let (slot_of, now) = (&self.slot_of, &self.now);
         let place = |p: usize| vector(&now.position, slot_of[p]);

@@ -6,7 +6,7 @@ use super::joint::{Link, LinkKind};
 use super::step::{System, Wrench};
 use crate::effects::takes_part;
 use crate::ledger::Given;
-use halfstep_scene::geometry::{self, Layout, SolidPoint, Surface};
+use halfstep_scene::geometry::{self, Layout, SolidPoint, Surface, WallCorner};
 use halfstep_scene::{EffectName, Joint, JointKind, Motion, Phase, RigidKeys, Scene, Shape};
 use nalgebra::Matrix3;
 
@@ -43,6 +43,7 @@ pub(super) fn system<const D: usize>(
     let real = bodies.len();
     bodies.push(Body::frame(None));
     let touching = takes_part(scene, solid, EffectName::WallContact);
+    let corners = geometry::wall_corners(scene);
     let mut walls: Vec<&str> = Vec::new();
     for wall in scene.shapes.iter().filter(|shape| shape.phase == Phase::Wall) {
         let touched = wall.contact && touching;
@@ -52,7 +53,9 @@ pub(super) fn system<const D: usize>(
             frame.period = shortest_period(scene, wall);
             frame.surface_velocity = wall.velocity.into();
             if touched {
-                frame.surfaces.push(Surface::new(&wall.geometry, None));
+                let surface = Surface::new(&wall.geometry, None);
+                stands_out::<D>(scene, wall, &surface, &corners, &mut frame);
+                frame.surfaces.push(surface);
             }
             bodies.push(frame);
             walls.push(&wall.name);
@@ -95,6 +98,24 @@ pub(super) fn system<const D: usize>(
     };
     system.drive(0.0);
     (system, names)
+}
+
+/// Gives a wall what others' faces touch of it: its corners, or in the plane the whole of a disc.
+fn stands_out<const D: usize>(
+    scene: &Scene,
+    wall: &Shape,
+    surface: &Surface,
+    corners: &[WallCorner],
+    frame: &mut Body,
+) {
+    for corner in corners.iter().filter(|corner| std::ptr::eq(&scene.shapes[corner.shape], wall)) {
+        frame.balls.push((wide(&corner.place), 0.0, f64::INFINITY));
+    }
+    if D == 2 && surface.is_round() {
+        surface.balls::<D>(scene.resolution, &mut |place, radius| {
+            frame.balls.push((wide(&place), radius, 0.5 * surface.depth()));
+        });
+    }
 }
 
 /// The motion of a shape, and that of the frame.

@@ -1,7 +1,8 @@
 //! Where bodies touch walls and each other, and the stops of joints.
 //!
-//! Points on a body's surface, a disc as a whole, are held against the exact surfaces of walls and of other bodies: a
-//! contact does not know the spacing of particles. Of the points on one face the outermost two count in the plane.
+//! Points on a body's surface, a disc as a whole, are held against the exact surfaces of walls and of other bodies, and
+//! in the plane corners of walls against those of bodies: a contact does not know the spacing of particles. Of the
+//! points on one face the outermost two count in the plane.
 
 use super::Vec3;
 use super::body::{Body, Pose};
@@ -60,11 +61,11 @@ impl System {
     /// All contacts of the present state closer than the tolerance, and stops that are reached.
     pub(super) fn touches<const D: usize>(&self) -> Vec<Touch> {
         let mut all = Vec::new();
-        for ball in 0..self.real {
-            for surface in (0..self.bodies.len()).filter(|&surface| surface != ball) {
-                if self.may_touch(surface, ball) {
-                    self.between::<D>(surface, ball, &mut all);
-                }
+        let of_bodies = (0..self.real).flat_map(|ball| (0..self.bodies.len()).map(move |other| [other, ball]));
+        let of_walls = (self.real..self.bodies.len()).flat_map(|ball| (0..self.real).map(move |b| [b, ball]));
+        for [surface, ball] in of_bodies.chain(of_walls).filter(|[surface, ball]| surface != ball) {
+            if self.may_touch(surface, ball) {
+                self.between::<D>(surface, ball, &mut all);
             }
         }
         let mut ways = Vec::new();
@@ -113,11 +114,12 @@ impl System {
 
     fn may_touch(&self, surface: usize, ball: usize) -> bool {
         let (a, b) = (&self.bodies[surface], &self.bodies[ball]);
-        if a.surfaces.is_empty() || !(a.gives_way() || b.gives_way()) || b.tied.contains(&surface) {
+        if a.surfaces.is_empty() || b.balls.is_empty() || !(a.gives_way() || b.gives_way()) || b.tied.contains(&surface) {
             return false;
         }
         let reach = a.radius + b.radius + self.tolerance;
         surface >= self.real
+            || ball >= self.real
             || (self.poses[surface].center - self.poses[ball].center).norm_squared() < reach * reach
     }
 
@@ -130,6 +132,10 @@ impl System {
         let mut faces: Vec<(Vec3, [(f64, Touch); 2])> = Vec::new();
         for (center, radius, depth) in &b.balls {
             let at = on_b.center + on_b.turn * center;
+            let reach = a.radius + radius + self.tolerance;
+            if ball >= self.real && (at - on_a.center).norm_squared() > reach * reach {
+                continue;
+            }
             let reference = a.center + back * (at - on_a.center);
             for of in &a.surfaces {
                 of.nearest::<D>(std::array::from_fn(|d| reference[d]), &mut |distance, normal| {
@@ -172,7 +178,8 @@ impl System {
         let directions = if self.plane { vec![Vec3::new(-n[1], n[0], 0.0)] } else { across(&n).to_vec() };
         let row = |d: Vec3| Row::between(normal.ends, &self.poses, point, d, 0.0);
         let tangents: Vec<Row> = directions.into_iter().map(row).collect();
-        let surface = self.bodies[normal.ends[0]].surface_velocity;
+        let [a, b] = normal.ends.map(|end| self.bodies[end].surface_velocity);
+        let surface = a - b;
         let slide = tangents.iter().map(|row| row.linear.dot(&surface)).collect();
         Touch { slide, ..Touch::new(normal, tangents) }
     }

@@ -67,8 +67,7 @@ impl<const D: usize> Contact<D> {
     ) -> Option<Self> {
         let dx = scene.solid_spacing(solid);
         let skin = SKIN * scene.smoothing_ratio * scene.resolution;
-        let walls =
-            touches_walls(scene, solid).then(|| Walls::new(scene, solid, &layout.wall, skin, isa)).flatten();
+        let walls = touches_walls(scene, solid).then(|| Walls::new(scene, solid, skin)).flatten();
         let breaks = takes_part(scene, solid, EffectName::Fracture);
         let several = !scene.leaves_bodies_to_coupler(solid) && body.iter().any(|&b| b != body[0]);
         let id = match (&walls, several) {
@@ -111,7 +110,7 @@ impl<const D: usize> Contact<D> {
         self.look(isa);
         self.bodies.rest_since(&before);
         if let Some(mut walls) = self.walls.take() {
-            walls.begin(isa, self.touching_solid(material));
+            walls.begin(self.touching_solid(material));
             self.walls = Some(walls);
         }
     }
@@ -133,8 +132,7 @@ impl<const D: usize> Contact<D> {
     }
 
     fn row_height(&self) -> f64 {
-        let bodies = self.bodies.radius() + self.skin;
-        self.walls.as_ref().map_or(bodies, |walls| walls.reach().max(bodies))
+        self.bodies.radius() + self.skin
     }
 
     /// Lists who is near whom, from the positions at the sort.
@@ -145,7 +143,7 @@ impl<const D: usize> Contact<D> {
         let Self { id, position, body, list, several, bodies, .. } = self;
         bodies.fit(Slots { id, position, body, list: several.then_some(&*list) });
         if let Some(walls) = &mut self.walls {
-            walls.relist(&self.listed);
+            walls.relist(&self.id, &self.listed);
         }
     }
 
@@ -234,7 +232,7 @@ impl<const D: usize> Contact<D> {
     pub(crate) fn leave(&mut self) {
         self.bodies.leave();
         if let Some(walls) = &mut self.walls {
-            walls.leave(&self.id);
+            walls.leave();
         }
     }
 
@@ -281,7 +279,7 @@ impl<const D: usize> Contact<D> {
             bodies.push(isa, Slots { id, position, body, list: several.then_some(&*list) });
         }
         if let Some(mut walls) = self.walls.take() {
-            walls.act(isa, self.touching_solid(solid));
+            walls.act(self.touching_solid(solid));
             self.walls = Some(walls);
         }
     }
@@ -371,14 +369,11 @@ impl<const D: usize> Contact<D> {
         }
     }
 
-    /// Calls `visit` with particles that walls push, the acceleration, m/s², and the velocity of the surface, m/s.
-    pub(super) fn touching_walls(&self, solid: &Solid, mut visit: impl FnMut(u32, [f64; D], [f64; D])) {
-        let Some(walls) = &self.walls else { return };
-        for slot in (0..self.id.len()).filter(|&s| self.id[s] != PADDING) {
-            let push = walls.acceleration(slot);
-            if push != [0.0; D] {
-                visit(self.id[slot], push, walls.velocity_at(self.touching_solid(solid), slot));
-            }
+    /// Calls `visit` with particles that walls push, the normal out of the wall, the acceleration along that, m/s²,
+    /// and the velocity of the surface, m/s.
+    pub(super) fn touching_walls(&self, mut visit: impl FnMut(u32, [f64; D], f64, [f64; D])) {
+        if let Some(walls) = &self.walls {
+            walls.touching(|slot, normal, push, velocity| visit(self.id[slot], normal, push, velocity));
         }
     }
 

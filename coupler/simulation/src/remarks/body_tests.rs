@@ -22,8 +22,7 @@ fn rigid(shapes: &[&str]) -> Vec<String> {
 fn a_plate_in_the_floor_whose_clamp_was_forgotten() {
     let plate = |bottom: f64, lines: &str| shape("plate", "solid", [0.2, bottom], [0.22, 0.1], lines);
     let found = plain(&[TANK, WATER, &plate(-0.02, "")]);
-    let said =
-        "`plate` begins 0.02 m deep in `tank`, and no clamp holds it: a wall does not hold what begins in it";
+    let said = "`plate` begins 0.02 m deep in `tank`, and no clamp holds it: it stands loosely in a socket of the wall";
     assert!(has(&found, said) && !has(&found, "nothing is below"), "{found:?}");
     let clamp = "clamp = { min = [0.2, -0.02], max = [0.22, 0.0] }";
     let slot =

@@ -14,7 +14,7 @@ pub(super) fn sunk<const D: usize>(
     bodies: &[Body],
     all: &mut Vec<String>,
 ) {
-    let of_wall = |wall| (wall, geometry::bounding_box(wall, scene), Surface::new(&wall.geometry, None));
+    let of_wall = |(_, wall)| (wall, geometry::bounding_box(wall, scene), Surface::new(&wall.geometry, None));
     let walls: Vec<_> = scene.walls_to_touch().map(of_wall).collect();
     let held = |index: usize| bodies.iter().any(|body| body.held && body.shapes.contains(&index));
     // A void makes room in a wall.
@@ -34,9 +34,13 @@ pub(super) fn sunk<const D: usize>(
                 surface.nearest(at, &mut |distance, _| deepest = deepest.max(-distance));
             }
             if deepest > 0.0 {
+                let why = match shape.solid.is_some_and(|solid| scene.leaves_walls_to_coupler(solid)) {
+                    true => "a wall does not hold what begins in it, which falls through or is thrown out",
+                    false => "it stands loosely in a socket of the wall, which does not keep it from leaving",
+                };
                 all.push(format!(
-                    "`{}` begins {} m deep in `{}`, and no clamp holds it: a wall does not hold what begins in it, \
-                     which falls through or is thrown out (a box of `clamp` around that part roots it)",
+                    "`{}` begins {} m deep in `{}`, and no clamp holds it: {why} (a box of `clamp` around that part \
+                     roots it)",
                     shape.name,
                     length(deepest + 0.5 * scene.spacing(shape)),
                     wall.name
@@ -56,7 +60,8 @@ pub(super) fn beside_walls(scene: &Scene, bodies: &[Body], all: &mut Vec<String>
         return;
     }
     // A tank's walls have no end toward rigid bodies.
-    let tank = scene.walls_to_touch().any(|wall| matches!(wall.geometry.unmoved(), Geometry::Tank { .. }));
+    let tank =
+        scene.walls_to_touch().any(|(_, wall)| matches!(wall.geometry.unmoved(), Geometry::Tank { .. }));
     let endless = |body: &Body| tank && !strains(scene, &scene.shapes[body.shapes[0]]);
     let box_of = |k: usize| geometry::bounding_box(&scene.shapes[k], scene);
     for body in bodies.iter().filter(|body| !body.held && !on_spring(scene, body) && !endless(body)) {

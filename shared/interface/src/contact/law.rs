@@ -245,6 +245,11 @@ pub(super) fn give(outline: &Outline, point: u32, force: [f64; 2], forces: &mut 
     }
 }
 
+/// Whether a place, m, is in a piece or closer to it than `margin`, m.
+pub(super) fn is_inside(of: (&Outline, &Placed), piece: usize, at: [f64; 2], margin: f64) -> bool {
+    nearest(of, piece, at, margin).is_some()
+}
+
 /// The nearest place on a piece to a point whose surface, at a distance before it, is inside of it.
 fn nearest((outline, placed): (&Outline, &Placed), piece: usize, at: [f64; 2], radius: f64) -> Option<Foot> {
     let ends = |part: u32| outline.parts[part as usize].ends.map(|end| placed.position[end as usize]);

@@ -168,6 +168,13 @@ impl Particles {
     }
 }
 
+impl Piece {
+    /// Points without parts between them.
+    pub(super) fn of_points(points: Vec<u32>) -> Self {
+        Self { parts: 0..0, points, singles: Vec::new(), number: 0, mass: f64::INFINITY }
+    }
+}
+
 impl Outline {
     /// Of all solids of a scene, whose records were here at first, m, and have these masses.
     pub(super) fn all(scene: &Scene, first: &[(Vec<[f64; 2]>, Vec<f64>)]) -> Vec<Self> {

@@ -1,10 +1,14 @@
 //! Where an outline is, and which of its points belong together no longer.
 
+use super::law::is_inside;
 use super::outline::{Outline, Point, REACH, distance};
 use halfstep_wire::protocol::StateRecord;
 
 /// A point is torn whose particles lie farther from it than this, over [`REACH`]: they belong to different fragments.
 const TORN: f64 = 1.5;
+
+/// What is closer to a surface is on it, in spacings.
+const ON_SURFACE: f64 = 1e-6;
 
 /// An axis-parallel box.
 #[derive(Clone, Copy, Debug)]
@@ -136,6 +140,22 @@ impl Placed {
     /// The two may touch.
     pub(super) fn meets(&self, other: &Self) -> bool {
         self.around.meets(&other.around, self.margin + other.margin)
+    }
+
+    /// Puts the points of an outline of one piece without parts, m and m/s.
+    pub(super) fn put(&mut self, position: Vec<[f64; 2]>, velocity: Vec<[f64; 2]>) {
+        self.pieces.clear();
+        self.pieces.push(Around::of(position.iter().copied()));
+        (self.position, self.velocity) = (position, velocity);
+    }
+
+    /// Whether a place is in a piece of the outline or on its surface.
+    pub(super) fn holds(&self, outline: &Outline, at: [f64; 2]) -> bool {
+        let margin = ON_SURFACE * outline.spacing;
+        let holds = |(k, target): (usize, &Around)| {
+            target.holds(at, margin) && is_inside((outline, self), k, at, margin)
+        };
+        self.targets.iter().enumerate().any(holds)
     }
 
     /// Places all points.

@@ -1,5 +1,6 @@
 //! What contacts keep over an interruption.
 
+use super::corners::Corners;
 use super::law::Touch;
 use super::{Booked, Contact, Pair};
 use halfstep_wire::state::{Fields, State, StateError};
@@ -13,6 +14,33 @@ impl State for Booked {
     }
 }
 
+/// Contacts as they go on.
+pub(super) fn touch_fields(fields: &mut Fields<'_>, touches: &mut Vec<Touch>) -> Result<(), StateError> {
+    let numbers_of = |t: &Touch| [t.key[0], t.key[1], t.key[2], t.part];
+    let mut numbers: Vec<u32> = touches.iter().flat_map(numbers_of).collect();
+    let mut reals: Vec<f64> = touches.iter().flat_map(|t| [t.share, t.approach, t.rest]).collect();
+    fields.numbers("touches", &mut numbers)?;
+    fields.reals("sticking", &mut reals)?;
+    fields.length("sticking", numbers.len() / 4 * 3, reals.len())?;
+    if fields.loading() {
+        let of = |(n, r): (&[u32], &[f64])| Touch {
+            key: [n[0], n[1], n[2]],
+            part: n[3],
+            share: r[0],
+            approach: r[1],
+            rest: r[2],
+        };
+        *touches = numbers.chunks_exact(4).zip(reals.chunks_exact(3)).map(of).collect();
+    }
+    Ok(())
+}
+
+impl State for Corners {
+    fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
+        touch_fields(fields, &mut self.touches)
+    }
+}
+
 impl State for Pair {
     fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
         self.booked.fields(fields)?;
@@ -22,25 +50,7 @@ impl State for Pair {
             fields.points(&format!("{name}_along"), along)?;
             fields.length("along", normal.len(), along.len())?;
         }
-        let touches = &mut self.touches;
-        let mut numbers: Vec<u32> =
-            touches.iter().flat_map(|t| [t.key[0], t.key[1], t.key[2], t.part]).collect();
-        let mut reals: Vec<f64> = touches.iter().flat_map(|t| [t.share, t.approach, t.rest]).collect();
-        fields.numbers("touches", &mut numbers)?;
-        fields.reals("sticking", &mut reals)?;
-        fields.length("sticking", numbers.len() / 4 * 3, reals.len())?;
-        if fields.loading() {
-            let all = numbers.chunks_exact(4).zip(reals.chunks_exact(3));
-            *touches = all
-                .map(|(n, r)| Touch {
-                    key: [n[0], n[1], n[2]],
-                    part: n[3],
-                    share: r[0],
-                    approach: r[1],
-                    rest: r[2],
-                })
-                .collect();
-        }
+        touch_fields(fields, &mut self.touches)?;
         Ok(())
     }
 }

@@ -1,11 +1,13 @@
 //! Contact of a solid with the walls of a scene, from its records: of one that another program computes, or that
 //! strains and has a friction and a restitution.
 //!
-//! Points of the solid's outline are held against the walls' exact surfaces ([`Surface`]), wherever these are by now.
+//! Points of the solid's outline are held against the walls' exact surfaces ([`Surface`]), wherever these are by now, and
+//! corners of the walls against the outline (`corners`).
 //! The law is that between two solids ([`Law`]) with all of K on the points, since a wall has none of its own, and
 //! 1/m_b = 0. A point that begins inside of a wall finds its surface where the point begins: what is let into a wall is
 //! not thrown out of it.
 
+use super::corners::Corners;
 use super::law::{Law, dot, give, less};
 use super::outline::Outline;
 use super::placed::Placed;
@@ -55,6 +57,7 @@ pub struct WallContact {
     walls: Vec<Wall>,
     outline: Outline,
     placed: Placed,
+    corners: Corners,
     side: Side,
     /// How deep points begin in walls, by key, ascending.
     let_in: Vec<([u32; 3], f64)>,
@@ -68,18 +71,6 @@ pub struct WallContact {
     first: (Vec<[f64; 2]>, Vec<f64>),
 }
 
-/// The place in the scene of what is here now, m.
-pub(super) fn back(placement: &Placement, at: [f64; 2]) -> [f64; 2] {
-    let moved = [0, 1].map(|d| at[d] - placement.displacement[d]);
-    match &placement.turn {
-        None => moved,
-        Some(turn) => {
-            let [x, y] = [0, 1].map(|d| moved[d] - turn.pivot[d]);
-            [turn.pivot[0] + turn.cos * x + turn.sin * y, turn.pivot[1] - turn.sin * x + turn.cos * y]
-        }
-    }
-}
-
 impl WallContact {
     /// Of a scene's solid of that index; `None` where it can touch no wall, and in space.
     ///
@@ -88,7 +79,7 @@ impl WallContact {
         if scene.dimension != 2 || scene.walls_to_touch().next().is_none() {
             return None;
         }
-        let wall = |shape: &Shape| Wall {
+        let wall = |(_, shape): (usize, &Shape)| Wall {
             surface: Surface::new(&shape.geometry, None),
             motion: shape.motion.clone(),
             belt: [shape.velocity[0], shape.velocity[1]],
@@ -104,6 +95,7 @@ impl WallContact {
             walls: scene.walls_to_touch().map(wall).collect(),
             outline: Outline::default(),
             placed: Placed::default(),
+            corners: Corners::default(),
             side: Side { solid, ..Side::default() },
             let_in: Vec::new(),
             touches: Vec::new(),
@@ -135,6 +127,9 @@ impl WallContact {
         self.find(&self.placements(0.0));
         self.let_in = self.near.iter().map(|near| (near.key, near.depth)).collect();
         self.let_in.sort_unstable_by_key(|(key, _)| *key);
+        let touches = std::mem::take(&mut self.corners.touches);
+        self.corners = Corners::new(&self.scene, (&self.outline, &self.placed));
+        self.corners.touches = touches;
     }
 
     /// Whether there is a surface that can touch: particles lie where the scene has the solid.
@@ -185,7 +180,7 @@ impl WallContact {
         let points = || self.outline.pieces.iter().flat_map(|piece| &piece.points).filter(whole);
         for ((k, wall), placement) in self.walls.iter().enumerate().zip(placements) {
             for &point in points() {
-                let at = back(placement, self.placed.position[point as usize]);
+                let at = placement.point_at(self.placed.position[point as usize]);
                 let mut surface = 0;
                 wall.surface.nearest(at, &mut |distance, normal: [f64; 2]| {
                     if distance < 0.0 {
@@ -214,6 +209,9 @@ impl WallContact {
                 deepest = deepest.max(self.touch(self.near[k], &placements, [time, dt], records.len()));
             }
             self.halfway.sort_unstable_by_key(|touch| touch.key);
+            let solid = (&self.outline, &self.placed);
+            let on = (&mut self.side, records.len());
+            deepest = deepest.max(self.corners.act(&self.law, &placements, solid, on, (dt, whole)));
         }
         if whole {
             std::mem::swap(&mut self.touches, &mut self.halfway);
@@ -231,7 +229,7 @@ impl WallContact {
         }
         let (wall, placement) = (&self.walls[key[0] as usize], &placements[key[0] as usize]);
         let at = self.placed.position[key[1] as usize];
-        let below = back(placement, at);
+        let below = placement.point_at(at);
         let carried = placement.velocity_of(below);
         let slip = less(self.placed.velocity[key[1] as usize], [0, 1].map(|d| carried[d] + wall.belt[d]));
         let tangent = [-normal[1], normal[0]];
@@ -246,7 +244,7 @@ impl WallContact {
         let from = [0, 1].map(|d| at[d] - stuck[d] - wall.belt[d] * (time - touch.time));
         let (along, slipped) = self.law.along(spring, push, dot(from, tangent), dot(slip, tangent));
         if let Some(left) = slipped {
-            touch.place = back(placement, [0, 1].map(|d| at[d] - left * tangent[d]));
+            touch.place = placement.point_at([0, 1].map(|d| at[d] - left * tangent[d]));
             touch.time = time;
         }
         self.halfway.push(touch);
@@ -286,11 +284,14 @@ impl State for WallContact {
             };
             *touches = numbers.chunks_exact(3).zip(reals.chunks_exact(4)).map(of).collect();
         }
-        Ok(())
+        fields.part("corners", &mut self.corners)
     }
 
     fn restored(&mut self) -> Result<(), StateError> {
         self.build();
+        if !self.corners.know(&self.outline) {
+            return Err(StateError::contradiction("a contact of a wall's corner that the scene does not have"));
+        }
         let (forces, records) = (self.side.forces[0].len(), self.first.0.len());
         if forces != 0 && forces != records {
             return Err(StateError::contradiction("forces of walls on other records than the first ones"));

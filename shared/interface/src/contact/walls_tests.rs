@@ -156,11 +156,11 @@ fn walls_that_move_take_a_block_along() {
 
     let placement =
         halfstep_scene::Motion::Steady { velocity: [0.2, 0.3, 0.0], start: 0.0, end: 1e9 }.at(2.0);
-    assert_eq!(super::walls::back(&placement, [0.4, 0.6]), [0.0, 0.0]);
+    assert_eq!(placement.point_at([0.4, 0.6]), [0.0, 0.0]);
     let turn =
         halfstep_scene::Turn { pivot: [1.0, 0.0, 0.0], sin: 0.6, cos: 0.8, rate: 0.0, acceleration: 0.0 };
     let turned = halfstep_scene::Placement { turn: Some(turn), ..placement };
-    let found = super::walls::back(&turned, turned.position_of([0.3, 0.7]));
+    let found = turned.point_at(turned.position_of([0.3, 0.7]));
     assert!((found[0] - 0.3).abs() < 1e-15 && (found[1] - 0.7).abs() < 1e-15, "{found:?}");
 }
 
@@ -172,6 +172,30 @@ fn what_begins_in_a_wall_is_not_thrown_out() {
     run.until(1.0);
     println!("{:?}", run.at);
     assert!(run.at[1] < 0.0 && run.at[1] > -1.001 * run.sunk(), "{:?}", run.at);
+}
+
+/// A tip between two points, which are 5 mm apart.
+const TIP: &str = "polygon = [[0.0323, -0.1], [0.0723, -0.1], [0.0523, 0.0]]";
+
+/// The tip has 5 mm of the outline's stiffness, of which half acts at rest.
+#[test]
+fn a_tip_between_two_points_carries_a_block() {
+    let mut run = Run::of(&scene(0.01, "", TIP), [0.0; 2]);
+    run.until(1.5);
+    let depth = -0.01 - run.at[1];
+    let sunk = MASS * 10.0 / (run.walls.law().stiffness * 0.5 * 0.005);
+    println!("{depth:e} of {sunk:e}, {:?}", run.walls.booked());
+    assert!(run.velocity[1].abs() < 1e-6);
+    assert!((depth / sunk - 1.0).abs() < 1e-3, "{depth} {sunk}");
+    assert!((run.walls.booked().normal / (-MASS * 10.0 * (0.01 + depth)) - 1.0).abs() < 1e-3);
+}
+
+/// A foot that is let into the floor is not thrown out by the floor's corners beside it.
+#[test]
+fn corners_in_the_solid_at_the_start_are_left_out() {
+    let beside = "polygon = [[-1.0, -0.1], [0.0, -0.1], [0.0, -0.02], [0.05, -0.02], [0.05, 0.0], [-1.0, 0.0]]";
+    let mut run = Run::of(&scene(-0.03, "", beside), [0.0; 2]);
+    assert_eq!(run.acceleration([[0.0; 2]; 2], 0.0, true), [0.0, -10.0]);
 }
 
 #[test]
@@ -189,10 +213,14 @@ fn a_scene_says_who_touches() {
     assert!(WallContact::new(&space, 0).is_none());
 }
 
-/// Interrupted in the middle of sliding, on the same floor that moves.
+/// Interrupted in the middle of sliding, on the same floor or tip that moves.
 #[test]
 fn a_contact_goes_on_to_the_same_bits() {
-    let moving = format!("{FLOOR}\nmotion = {{ velocity = [0.2, 0.0] }}");
+    [FLOOR, TIP].into_iter().for_each(goes_on);
+}
+
+fn goes_on(wall: &str) {
+    let moving = format!("{wall}\nmotion = {{ velocity = [0.2, 0.0] }}");
     let told = scene(0.0, "friction = 0.3", &moving);
     let mut whole = Run::of(&told, [0.8, 0.0]);
     whole.until(0.1);

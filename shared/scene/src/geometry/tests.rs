@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 pub(super) const DX: f64 = 0.1;
 
-pub(super) fn scene(shapes: Vec<Shape>) -> Scene {
+pub(in crate::geometry) fn scene(shapes: Vec<Shape>) -> Scene {
     Scene {
         name: "test".into(),
         path: "test.toml".into(),

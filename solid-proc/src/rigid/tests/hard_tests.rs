@@ -172,3 +172,70 @@ fn a_swinging_floor_takes_enough_steps() {
         assert!((found / right - 1.0).abs() < most, "{found} {right}");
     }
 }
+
+/// A block of 0.22 m on a wall that ends under it, with points 20 mm apart: it stands while its centre is over the wall,
+/// and tips beyond.
+#[test]
+fn a_block_stands_to_the_edge_of_its_wall() {
+    for (over, stands) in [(-8e-3, true), (-1e-3, true), (1e-3, false)] {
+        let edge = 0.11 - over;
+        let shapes = format!(
+            "[[shape]]\nname = \"box\"\nphase = \"solid\"\nbox = {{ min = [0.0, 0.0], max = [0.22, 0.1] }}\n\
+             [[shape]]\nname = \"wall\"\nphase = \"wall\"\nbox = {{ min = [-1.0, -0.5], max = [{edge}, 0.0] }}\n"
+        );
+        let mut scene = scene("contact = { friction = 0.5 }", &shapes);
+        scene.resolution = 0.02;
+        let mut model = build::<2>(&scene);
+        let load = free(&model);
+        run(&mut model, 0.2, 1e-3, &load, |_, _| {});
+        let turned = -model.states[0].angle[2];
+        println!("centre {over} m beyond the edge: turned by {turned:.2e} rad");
+        // phi'' = g (over + h/2 phi) / (l² / 12 + h² / 3) about the edge, with sin phi = phi.
+        let inertia = 0.22_f64.powi(2) / 12.0 + 0.1_f64.powi(2) / 3.0;
+        let right = over / 0.05 * ((G * 0.05 / inertia).sqrt() * 0.2).cosh() - over / 0.05;
+        let most = if stands { turned.abs() < 1e-9 } else { (turned / right - 1.0).abs() < 0.01 };
+        assert!(most, "{over}: {turned} of {right}");
+    }
+}
+
+/// A block that falls on a post between two of its points stays on its top, and one that slides against a stop stays
+/// upright.
+#[test]
+fn posts_and_ridges_are_touched_between_points() {
+    let block = |low: [f64; 2], keys: &str| {
+        format!(
+            "[[shape]]\nname = \"box\"\nphase = \"solid\"\nbox = {{ min = [{}, {}], max = [{}, {}] }}\n{keys}",
+            low[0],
+            low[1],
+            low[0] + 0.2,
+            low[1] + 0.1
+        )
+    };
+    let wall = |name: &str, geometry: &str| {
+        format!("[[shape]]\nname = \"{name}\"\nphase = \"wall\"\n{geometry}\n")
+    };
+    let post = wall("post", "box = { min = [0.104, -0.5], max = [0.116, 0.0] }");
+    let disc = wall("post", "disc = { center = [0.11, -0.01], radius = 0.01 }");
+    let ridge = wall("post", "polygon = [[0.08, -0.1], [0.14, -0.1], [0.11, 0.0]]");
+    for (name, under) in [("post", post), ("disc", disc), ("ridge", ridge)] {
+        let mut scene = scene("contact = { friction = 0.5 }", &(block([0.01, 0.02], "") + &under));
+        scene.resolution = 0.04;
+        let mut model = build::<2>(&scene);
+        let load = free(&model);
+        let start = model.states[0].center;
+        run(&mut model, 0.3, 1e-3, &load, |_, _| {});
+        let [x, y] = model.states[0].center;
+        let off = [x - start[0], y - start[1] + 0.02];
+        println!("{name}: off by {off:?}");
+        assert!(off.iter().all(|off| off.abs() < 1e-6), "{name}: {off:?}");
+    }
+    // Its corners above and below the centre: one point of the block's face alone would let that turn.
+    let stop = wall("stop", "box = { min = [0.5, 0.03], max = [0.6, 0.07] }");
+    let mut scene = scene("", &(block([0.0, 0.0], "velocity = [1.0, 0.0]\n") + FLOOR + &stop));
+    scene.resolution = 0.05;
+    let mut model = build::<2>(&scene);
+    let load = free(&model);
+    run(&mut model, 0.6, 1e-3, &load, |_, _| {});
+    let [x, y] = model.states[0].center;
+    assert!((x - 0.4).abs() < 1e-4 && (y - 0.05).abs() < 1e-4, "{x}, {y}");
+}

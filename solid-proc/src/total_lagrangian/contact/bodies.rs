@@ -69,7 +69,7 @@ pub(super) struct Bodies<const D: usize> {
 impl<const D: usize> Bodies<D> {
     /// Of as many particles as far apart as `spacing`, m; k' is `stiffness`.
     pub(super) fn new(particles: usize, spacing: f64, stiffness: f64) -> Self {
-        let law = KernelSum::new(spacing, spacing);
+        let law = KernelSum::new(spacing);
         Self {
             law,
             stiffness,

@@ -33,7 +33,7 @@ fn bodies_push_each_other_by_their_depths() {
     let mut body = solid(&upper(0.1), &[]);
     assert!(body.accelerations().as_flattened().iter().all(|a| *a == 0.0), "side by side nothing pushes");
     body.deform(|x| [x[0], if x[1] > 0.1 { x[1] - 0.001 } else { x[1] }]);
-    let [depth, slope, _] = KernelSum::<2>::new(0.01, 0.01).over_rows(0.01, 0.009);
+    let [depth, slope, _] = KernelSum::<2>::new(0.01).over_rows(0.01, 0.009);
     let modulus = body.material.density * body.material.pressure_wave_speed().powi(2);
     let expected = 0.25 * modulus * 2.0 * depth * slope;
     let [below, above] = [0.095, 0.104].map(|y| force_at(&body, [0.155, y]));
@@ -46,40 +46,58 @@ fn bodies_push_each_other_by_their_depths() {
     assert!(sum.iter().all(|a| a.abs() * body.mass < 1e-9 * expected), "{sum:?}");
 }
 
-/// In a corner a particle sees twice as many of the wall, and one that begins a third of a spacing in a wall more, too:
-/// nothing pushes at the start, nor once it has hopped along one of the two walls. What has left both is pushed by the
-/// surface from then on, also after an interruption.
+/// k of a wall, N/m.
+fn spring(body: &TotalLagrangian<2>) -> f64 {
+    0.5 * body.material.density * body.material.pressure_wave_speed().powi(2)
+}
+
+/// The two walls of a corner push each by itself, and each from its surface on; of a block that begins in one the
+/// surface is its own side there.
 #[test]
-fn what_begins_in_a_corner_or_in_a_wall_is_pushed_once_it_has_left() {
-    let with = |left: f64| {
-        format!(
+fn a_corner_pushes_as_its_two_walls_do() {
+    for left in [0.0, -0.003] {
+        let shape = format!(
             "box = {{ min = [{left}, 0.0], max = [{}, 0.1] }}\n[[shape]]\nname = \"tank\"\nphase = \"wall\"\n\
              tank = {{ min = [0.0, 0.0], max = [0.4, 0.3], open = [\"top\"] }}\ncontact = true",
             left + 0.2
-        )
-    };
-    for left in [0.0, -0.003] {
-        let mut body = solid(&with(left), &[]);
-        let pushed = |body: &TotalLagrangian<2>| force_at(body, [left + 0.005, 0.005]);
-        assert_eq!(pushed(&body), [0.0; 2], "it begins there");
-        let go = |body: &mut TotalLagrangian<2>, by: f64| body.deform(|x| [x[0] + by, x[1] + by]);
-        go(&mut body, -1e-4);
-        let deeper = pushed(&body);
-        assert!(deeper[0] > 0.0 && deeper[1] > 0.0, "{deeper:?}");
-        body.deform(|x| [x[0], x[1] + 0.003]);
-        body.contact.iter_mut().for_each(super::Contact::leave);
-        go(&mut body, 0.0);
-        assert_eq!(pushed(&body), [0.0; 2], "it hopped");
-        go(&mut body, 0.02);
-        body.contact.iter_mut().for_each(super::Contact::leave);
-        let mut again = solid(&with(left), &[]);
-        again.load(&body.save()).expect("its own state");
-        for body in [&mut body, &mut again] {
-            go(body, -1e-4);
-            let back = pushed(body);
-            assert!(back[0] > 1.5 * deeper[0] && back[1] > 1.5 * deeper[1], "{back:?} {deeper:?}");
+        );
+        let mut body = solid(&shape, &[]);
+        assert_eq!(body.particles().len(), 200);
+        let mut pushed = |by: [f64; 2]| {
+            body.deform(|x| [x[0] + by[0], x[1] + by[1]]);
+            force_at(&body, [left + 0.005 + by[0], 0.005 + by[1]]).map(|force| force / spring(&body))
+        };
+        for (by, right) in [
+            ([0.0, 0.0], [0.0, 0.0]),
+            ([0.001, -1e-4], [0.0, 1e-4]),
+            ([-2e-4, 0.001], [2e-4, 0.0]),
+            ([-2e-4, -1e-4], [2e-4, 1e-4]),
+        ] {
+            let found = pushed(by);
+            assert!((0..2).all(|d| (found[d] - right[d]).abs() < 1e-12), "{by:?}: {found:?}");
         }
-        assert_eq!(pushed(&body), pushed(&again));
     }
-    assert!(solid(&with(0.0), &[]).particles().len() == 200);
+}
+
+/// The last row is 1 mm from the wall, d - 4 mm: it is pushed from there on until it has left the wall by more than d,
+/// and from d on afterwards, also after an interruption.
+#[test]
+fn what_begins_too_close_is_pushed_by_the_surface_once_it_has_left() {
+    let shape = "box = { min = [0.0, 0.0], max = [0.196, 0.1] }\n[[shape]]\nname = \"wall\"\nphase = \"wall\"\n\
+                 box = { min = [0.196, -0.2], max = [0.3, 0.3] }\ncontact = true";
+    let mut body = solid(shape, &[]);
+    let pushed = |body: &TotalLagrangian<2>| -force_at(body, [0.195, 0.055])[0] / spring(body);
+    let go = |body: &mut TotalLagrangian<2>, by: f64| {
+        body.deform(|x| [x[0] + by, x[1]]);
+        body.contact.iter_mut().for_each(super::Contact::leave);
+        pushed(body)
+    };
+    for (by, right) in
+        [(0.0, 0.0), (1e-4, 1e-4), (-0.0039, 0.0), (1e-4, 1e-4), (-0.0041, 0.0), (1e-4, 0.0041)]
+    {
+        assert!((go(&mut body, by) - right).abs() < 1e-12, "{by}: {}", pushed(&body));
+    }
+    let mut again = solid(shape, &[]);
+    again.load(&body.save()).expect("its own state");
+    assert!((go(&mut again, 2e-4) - 0.0042).abs() < 1e-12, "{}", pushed(&again));
 }

@@ -66,14 +66,8 @@ impl<const D: usize> TotalLagrangian<D> {
         let of = |(pair, (normal, push))| Rubbing { pair, normal, push, wall: [0.0; D] };
         let mut rubbing: Vec<_> = pairs.into_iter().map(of).collect();
         if let Some(contact) = &self.contact {
-            contact.touching_walls(&self.material, |id, push, wall| {
-                let size = length(push);
-                rubbing.push(Rubbing {
-                    pair: [slot(id); 2],
-                    normal: push.map(|a| a / size),
-                    push: size,
-                    wall,
-                });
+            contact.touching_walls(|id, normal, push, wall| {
+                rubbing.push(Rubbing { pair: [slot(id); 2], normal, push, wall });
             });
         }
         rubbing.retain(|r| r.push > 0.0 && r.pair.iter().any(|&slot| self.is_free(slot)));

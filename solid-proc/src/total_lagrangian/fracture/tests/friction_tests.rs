@@ -95,10 +95,10 @@ fn slid(friction: f64, until: f64) -> (Run<2>, f64) {
     (run, taken)
 }
 
-/// After v² / (2 mu g), 85 and 170 mm. With mu = 0.6 it chatters, and goes 5 % farther.
+/// After v² / (2 mu g), 85 and 170 mm. With mu = 0.6 it chatters, and goes 3 % farther.
 #[test]
 fn a_block_that_slides_on_a_floor_stops() {
-    for (friction, until, goes) in [(0.6, 0.3, 1.047), (0.3, 0.6, 1.003)] {
+    for (friction, until, goes, takes) in [(0.6, 0.3, 1.028, 2.409), (0.3, 0.6, 1.002, 2.470)] {
         let (run, taken) = slid(friction, until);
         let [x, v] = mean(&run, 200);
         let way = (x[0] - 0.05) / (1.0 / (2.0 * friction * 9.81));
@@ -107,7 +107,7 @@ fn a_block_that_slides_on_a_floor_stops() {
         println!("mu {friction}: way {way}, v {v:?}, taken {taken}, rest {rest}");
         assert!((way - goes).abs() < 0.005 && v[0].abs() < 0.01, "{friction}: {way} {v:?}");
         // Of the 2.5 J/m that it begins with.
-        assert!((taken - 2.41).abs() < 0.05 && rest.abs() < 2e-3, "{friction}: {taken} {rest}");
+        assert!((taken - takes).abs() < 0.01 && rest.abs() < 2e-3, "{friction}: {taken} {rest}");
     }
 }
 
