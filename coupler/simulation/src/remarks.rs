@@ -139,6 +139,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     contacts::unsaid(scene, &mut all);
     contacts::of_walls(scene, &bodies, &mut all);
     contacts::debris(scene, &mut all);
+    contacts::soft_restitutions(scene, &mut all);
     clamp_faces::clamp_faces(scene, &mut all);
     clamp_faces::sections(scene, layout, &mut all);
     shapes::sizes(scene, placed, &mut all);

@@ -12,8 +12,8 @@ const MAX_FRAMES: f64 = 1e5;
 const MAX_CHECKPOINTS: f64 = 1e5;
 const MAX_ROWS: f64 = 1e7;
 const MAX_STEPS: f64 = 1e9;
-/// Smallest resolution for pairs in single precision, m.
-const FINEST_SINGLE: f64 = 1e-6;
+/// Resolutions for pairs in single precision, m.
+const SINGLE: [f64; 2] = [1e-6, 1e6];
 
 /// The keys that can choose the phase-blind treatment.
 pub(super) const PHASE_BLIND_BY: [&str; 2] = ["interface.treatment", "preset"];
@@ -140,12 +140,12 @@ impl Check<'_> {
     /// Every shape holds at least one particle.
     /// Kernels of smaller particles leave the range of single precision.
     fn precision(&self) {
-        let numerics = &self.scene.numerics;
-        if numerics.precision == Precision::Mixed && self.scene.resolution < FINEST_SINGLE {
-            let spacing = self.scene.resolution;
+        let [finest, coarsest] = SINGLE;
+        let spacing = self.scene.resolution;
+        if self.scene.numerics.precision == Precision::Mixed && !(finest..=coarsest).contains(&spacing) {
             let reason = format!(
                 "is mixed, but with a resolution of {spacing:e} m the kernel's slopes leave the range of single \
-                precision; it goes down to {FINEST_SINGLE:e} m"
+                precision; it takes resolutions from {finest:e} to {coarsest:e} m"
             );
             self.wrong("numerics.precision", reason);
         }

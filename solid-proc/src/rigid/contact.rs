@@ -61,7 +61,8 @@ impl System {
     /// All contacts of the present state closer than the tolerance, and stops that are reached.
     pub(super) fn touches<const D: usize>(&self) -> Vec<Touch> {
         let mut all = Vec::new();
-        let of_bodies = (0..self.real).flat_map(|ball| (0..self.bodies.len()).map(move |other| [other, ball]));
+        let of_bodies =
+            (0..self.real).flat_map(|ball| (0..self.bodies.len()).map(move |other| [other, ball]));
         let of_walls = (self.real..self.bodies.len()).flat_map(|ball| (0..self.real).map(move |b| [b, ball]));
         for [surface, ball] in of_bodies.chain(of_walls).filter(|[surface, ball]| surface != ball) {
             if self.may_touch(surface, ball) {
@@ -114,7 +115,11 @@ impl System {
 
     fn may_touch(&self, surface: usize, ball: usize) -> bool {
         let (a, b) = (&self.bodies[surface], &self.bodies[ball]);
-        if a.surfaces.is_empty() || b.balls.is_empty() || !(a.gives_way() || b.gives_way()) || b.tied.contains(&surface) {
+        if a.surfaces.is_empty()
+            || b.balls.is_empty()
+            || !(a.gives_way() || b.gives_way())
+            || b.tied.contains(&surface)
+        {
             return false;
         }
         let reach = a.radius + b.radius + self.tolerance;

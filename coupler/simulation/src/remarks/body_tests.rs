@@ -153,3 +153,25 @@ fn a_body_that_is_led_through_the_floor() {
     );
     assert!(!has(&wedge(0.6), "goes through"));
 }
+
+/// K l = rho (20 U)²: with U = 1 m/s, by the block's own velocity, 0.4 MPa.
+#[test]
+fn a_restitution_that_hardly_acts() {
+    let on = |modulus: f64, contact: &str| {
+        on(&format!(
+            "resolution = 0.01\nend_time = 1.0\ngravity = [0.0, 0.0]\n[solid]\nmodel = \"total-lagrangian\"\n\
+             density = 1000.0\nyoungs_modulus = {modulus}\npoissons_ratio = 0.0\n{contact}\n{}{}",
+            shape("block", "solid", [0.0, 0.02], [0.1, 0.12], "velocity = [0.0, -1.0]"),
+            shape("floor", "wall", [-0.1, -0.04], [0.2, 0.0], "contact = true")
+        ))
+    };
+    let said = "a restitution of 0.5 hardly acts on `solid`: contact is 0.4 times as stiff";
+    let found = on(1e6, "contact = { restitution = 0.5 }");
+    assert!(has(&found, said), "{found:?}");
+    for (modulus, contact) in
+        [(1e7, "contact = { restitution = 0.5 }"), (1e6, "contact = { friction = 0.5 }")]
+    {
+        let found = on(modulus, contact);
+        assert!(!has(&found, "hardly acts"), "{found:?}");
+    }
+}

@@ -4,7 +4,7 @@ use super::shapes::length;
 use super::{meet, near};
 use halfstep_scene::geometry::{self, Cells, Layout, SolidPoint, Surface};
 use halfstep_scene::{
-    Block, Body, ContactKeys, EffectName, Geometry, Phase, Scene, Shape, SolidModelName, Switch,
+    Block, Body, ContactKeys, EffectName, Geometry, PairContact, Phase, Scene, Shape, SolidModelName, Switch,
 };
 use std::collections::HashSet;
 
@@ -254,6 +254,42 @@ pub(super) fn unsaid(scene: &Scene, all: &mut Vec<String>) {
             all.push(format!(
                 "`{a}` and `{b}` touch without friction: their own `contact` is about walls and bodies of one solid \
                  ([[contact]] with solids = [\"{a}\", \"{b}\"] says how the two touch)"
+            ));
+        }
+    }
+}
+
+/// Stiffness of contact over that of a solid's smallest side from which on restitution hardly acts.
+const SOFT: f64 = 0.3;
+
+/// Restitutions of solids that are as soft as their contact: their own strain gives the speed back.
+pub(super) fn soft_restitutions(scene: &Scene, all: &mut Vec<String>) {
+    let toward_walls = (0..scene.solids.len())
+        .filter(|&k| scene.leaves_walls_to_coupler(k) && scene.walls_to_touch().next().is_some())
+        .map(|k| {
+            let restitution = scene.solids[k].contact().unwrap_or_default().restitution;
+            PairContact { restitution, ..PairContact::unsaid([k; 2]) }
+        });
+    let mut told = HashSet::new();
+    let pairs = toward_walls.chain(scene.contacts_of_bodies()).chain(scene.contacts());
+    for contact in pairs.filter(|contact| contact.restitution > 0.0) {
+        let stiffness = contact.stiffness.unwrap_or_else(|| scene.contact_stiffness(contact.solids));
+        let over = |k: &usize| {
+            let strains = scene.solids[*k].rigid().is_none();
+            let side = scene.smallest_side([*k; 2]);
+            strains.then(|| (stiffness * side / scene.solids[*k].youngs_modulus, *k))
+        };
+        let softest = contact.solids.iter().filter_map(over).max_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((part, k)) = softest.filter(|(part, _)| *part > SOFT) else { continue };
+        if told.insert(contact.solids) {
+            let cure = match contact.solids[0] == contact.solids[1] {
+                true => "",
+                false => " (a lower `stiffness` of their [[contact]] lets it act)",
+            };
+            all.push(format!(
+                "a restitution of {} hardly acts on `{}`: contact is {part:.1} times as stiff as the solid over its \
+                 smallest side, so that its own strain takes up most of an impact and gives it back{cure}",
+                contact.restitution, scene.solids[k].name
             ));
         }
     }

@@ -1,5 +1,5 @@
-//! Corners of walls against the outline of a solid that goes over them: a ridge between two of its points is felt by none
-//! of these. The law is that of a point of another solid whose mass is infinite ([`Law::pass`]).
+//! Corners of walls against the outline of a solid that goes over them: of a ridge between two of its points none of
+//! these knows. The law is that of a point of another solid whose mass is infinite ([`Law::pass`]).
 
 use super::Side;
 use super::law::{Law, Touch};

@@ -1,8 +1,8 @@
 //! Contact of a solid with the walls of a scene, from its records: of one that another program computes, or that
 //! strains and has a friction and a restitution.
 //!
-//! Points of the solid's outline are held against the walls' exact surfaces ([`Surface`]), wherever these are by now, and
-//! corners of the walls against the outline (`corners`).
+//! Points of the solid's outline are held against the walls' exact surfaces ([`Surface`]), wherever these are by now,
+//! and corners of the walls against the outline (`corners`).
 //! The law is that between two solids ([`Law`]) with all of K on the points, since a wall has none of its own, and
 //! 1/m_b = 0. A point that begins inside of a wall finds its surface where the point begins: what is let into a wall is
 //! not thrown out of it.
@@ -290,7 +290,9 @@ impl State for WallContact {
     fn restored(&mut self) -> Result<(), StateError> {
         self.build();
         if !self.corners.know(&self.outline) {
-            return Err(StateError::contradiction("a contact of a wall's corner that the scene does not have"));
+            return Err(StateError::contradiction(
+                "a contact of a wall's corner that the scene does not have",
+            ));
         }
         let (forces, records) = (self.side.forces[0].len(), self.first.0.len());
         if forces != 0 && forces != records {

@@ -193,7 +193,8 @@ fn a_tip_between_two_points_carries_a_block() {
 /// A foot that is let into the floor is not thrown out by the floor's corners beside it.
 #[test]
 fn corners_in_the_solid_at_the_start_are_left_out() {
-    let beside = "polygon = [[-1.0, -0.1], [0.0, -0.1], [0.0, -0.02], [0.05, -0.02], [0.05, 0.0], [-1.0, 0.0]]";
+    let beside =
+        "polygon = [[-1.0, -0.1], [0.0, -0.1], [0.0, -0.02], [0.05, -0.02], [0.05, 0.0], [-1.0, 0.0]]";
     let mut run = Run::of(&scene(-0.03, "", beside), [0.0; 2]);
     assert_eq!(run.acceleration([[0.0; 2]; 2], 0.0, true), [0.0, -10.0]);
 }

@@ -173,8 +173,8 @@ fn a_swinging_floor_takes_enough_steps() {
     }
 }
 
-/// A block of 0.22 m on a wall that ends under it, with points 20 mm apart: it stands while its centre is over the wall,
-/// and tips beyond.
+/// A block of 0.22 m on a wall that ends under it, with points 20 mm apart: it stands while its centre is over the
+/// wall, and tips beyond.
 #[test]
 fn a_block_stands_to_the_edge_of_its_wall() {
     for (over, stands) in [(-8e-3, true), (-1e-3, true), (1e-3, false)] {
@@ -211,9 +211,8 @@ fn posts_and_ridges_are_touched_between_points() {
             low[1] + 0.1
         )
     };
-    let wall = |name: &str, geometry: &str| {
-        format!("[[shape]]\nname = \"{name}\"\nphase = \"wall\"\n{geometry}\n")
-    };
+    let wall =
+        |name: &str, geometry: &str| format!("[[shape]]\nname = \"{name}\"\nphase = \"wall\"\n{geometry}\n");
     let post = wall("post", "box = { min = [0.104, -0.5], max = [0.116, 0.0] }");
     let disc = wall("post", "disc = { center = [0.11, -0.01], radius = 0.01 }");
     let ridge = wall("post", "polygon = [[0.08, -0.1], [0.14, -0.1], [0.11, 0.0]]");
