@@ -30,7 +30,10 @@ fn the_wall_breaks_alike_in_processes_and_threads_and_its_ledger_is_closed() {
     let wall = || coarse().set("output.probe_interval", 0.0005).until(0.3);
     let broken = wall().run();
     assert_eq!(broken.report.status, Some(RunStatus::Finished));
-    assert!(broken.curve("pieces.bodies").peak().1 >= 2.0);
+    // The wall breaks off at its foot and slides over it and the floor in one piece; after this, at 0.335 s, it meets
+    // the far wall with 2 m/s and falls to crumbs.
+    assert_eq!(broken.curve("pieces.bodies").peak().1, 2.0);
+    assert_eq!(broken.curve("pieces.loose").peak().1, 0.0);
     let threads = wall().in_process().threads(1).run();
     assert_eq!(broken.state_hash(), threads.state_hash());
     // What nobody gave the wall, over what the water gave it.

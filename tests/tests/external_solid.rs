@@ -85,6 +85,11 @@ fn a_run_with_the_block_goes_on_after_an_interruption() {
     assert!(resumed.report.resumed[0].step > 0);
     assert_eq!(resumed.state_hash(), whole.state_hash());
     assert_eq!(resumed.probes, whole.probes, "the block's are measured from its first positions");
+    assert_eq!(resumed.report.external, whole.report.external, "its first message is that of the beginning");
+    let built_in = scene("spring-block").resume(&dir).until(0.07).outcome();
+    assert_eq!(built_in.code(), Some(1));
+    let said = "`solid` of this run was computed by another program: --solid or --await-solid";
+    assert!(built_in.stderr.contains(said), "{}", built_in.stderr);
     // The block forgets how far it was.
     let forgetful = altered("x, v = float(saved", "x, v = 1e-3 + float(saved");
     let refused = scene("spring-block")

@@ -152,7 +152,7 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
                 false => self.solids.begin(&self.states),
             }
             let first = self.solids.first_messages(&self.states);
-            course.recorder.compare_first(first, !self.resumed);
+            course.recorder.compare_first(first, self.resumed);
             for (place, walls) in self.solids.walls() {
                 walls.say(self.port.name(place), &course.recorder);
             }

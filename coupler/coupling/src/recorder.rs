@@ -212,12 +212,23 @@ impl Recorder {
         self.bar.suspend(|| say::warn(format_args!("warning: {warning}")));
     }
 
-    /// Takes what external solids published first into the report; where `told`, warns of what the scene has otherwise.
-    pub(crate) fn compare_first(&mut self, first: Vec<FirstMessage>, told: bool) {
-        let remarks = first.iter().filter(|_| told).flat_map(|message| message.remarks(self.dimension));
+    /// Takes what external solids published first into the report, and warns of what the scene has otherwise; of a run
+    /// that was `resumed` the report knows it.
+    pub(crate) fn compare_first(&mut self, first: Vec<FirstMessage>, resumed: bool) {
+        if let Some((_, report)) =
+            self.report.as_ref().filter(|(_, report)| resumed && !report.external.is_empty())
+        {
+            self.external.clone_from(&report.external);
+            return;
+        }
+        let remarks = first.iter().filter(|_| !resumed).flat_map(|message| message.remarks(self.dimension));
         remarks.for_each(|remark| self.warn(&remark));
-        if let Some((_, report)) = &mut self.report {
+        if let Some((path, report)) = &mut self.report {
             report.external.clone_from(&first);
+            // Whoever goes on from the first checkpoint has to know whose solid it is.
+            if let Err(error) = report.write(path) {
+                tracing::warn!("{error}");
+            }
         }
         self.external = first;
     }

@@ -92,8 +92,9 @@ pub fn resume(options: &RunOptions, until: Option<f64>) -> Result<(Scene, Ended)
     let directory = RunDirectory::reopen(dir)?;
     let mut scene = read_scene(dir)?;
     check_external(&scene, options)?;
-    let checkpoint = Checkpoint::newest(dir, &scene, options.isa)?;
     let earlier = RunReport::read(&dir.join("run.json")).unwrap_or_default();
+    check_sources(&earlier, options)?;
+    let checkpoint = Checkpoint::newest(dir, &scene, options.isa)?;
     match until {
         None if earlier.status == Some(RunStatus::Finished) => {
             let reason = format!(
@@ -182,6 +183,17 @@ fn check_external(scene: &Scene, options: &RunOptions) -> Result<(), RunError> {
     Ok(())
 }
 
+/// A run's solids are computed on by whom they were computed by.
+fn check_sources(earlier: &RunReport, options: &RunOptions) -> Result<(), RunError> {
+    let names = options.external_names();
+    let missing = earlier.external.iter().find(|solid| !names.iter().any(|name| name.as_str() == solid.name));
+    let Some(solid) = missing else { return Ok(()) };
+    Err(RunError::Resume(format!(
+        "`{}` of this run was computed by another program: --solid or --await-solid say by which it is from here on",
+        solid.name
+    )))
+}
+
 /// What the report of a run says at its start, and the shapes as they are computed.
 pub(crate) fn begin_report<const D: usize>(
     scene: &Scene,
@@ -227,6 +239,7 @@ fn execute_in<const D: usize>(
     let layout = geometry::layout::<D>(scene);
     let (mut report, placed) = begin_report(scene, &layout, options.isa)?;
     let checkpoint = resumed.map(|(checkpoint, earlier)| {
+        report.external = earlier.external;
         report.resumed = earlier.resumed;
         report.resumed.push(Resumption { because: earlier.error, ..checkpoint.resumption() });
         checkpoint

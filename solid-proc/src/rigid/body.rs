@@ -28,13 +28,43 @@ pub(super) struct Body {
     pub(super) period: f64,
     /// Of a wall's surface, which stays where it is, m/s: what rests on it is taken along by friction.
     pub(super) surface_velocity: Vec3,
-    /// What touches others' surfaces: balls, their centres from the centre of mass, m, their radii, m, and how
-    /// deep another surface may lie in them and be pushed out, m.
-    pub(super) balls: Vec<(Vec3, f64, f64)>,
+    /// What touches others' surfaces.
+    pub(super) balls: Vec<Ball>,
+    /// Walls that move alike, itself left out: what they cover of its surface is not touched.
+    pub(super) alike: Vec<usize>,
     /// Distance of its farthest point from the centre of mass, m.
     pub(super) radius: f64,
     /// Index of the group of bodies and walls that are tied together, and so do not touch.
     pub(super) tied: Vec<usize>,
+}
+
+/// What touches others' surfaces: a point, or a disc as a whole.
+#[derive(Clone, Debug)]
+pub(super) struct Ball {
+    /// From the centre of mass, m.
+    pub(super) arm: Vec3,
+    /// m.
+    pub(super) radius: f64,
+    /// How deep another surface may lie in it and be pushed out, m.
+    pub(super) depth: f64,
+    /// Of a wall's corner: between which normals faces lie on it.
+    pub(super) between: Option<[Vec3; 2]>,
+}
+
+/// Sine of the angle by which a face may lie on a corner from beside its normals.
+const BESIDE: f64 = 1e-3;
+
+impl Ball {
+    /// Whether a face with this normal out of its body can lie on the ball, which is turned.
+    pub(super) fn is_met_from(&self, turn: &UnitQuaternion<f64>, normal: &Vec3) -> bool {
+        let Some(between) = self.between else { return true };
+        let [before, after] = between.map(|normal| turn * normal);
+        let cross = |a: &Vec3, b: &Vec3| a[0] * b[1] - a[1] * b[0];
+        let from = -normal;
+        cross(&before, &from) >= -BESIDE
+            && cross(&from, &after) >= -BESIDE
+            && from.dot(&(before + after)) > 0.0
+    }
 }
 
 /// Where a body is, and how it moves.
@@ -102,6 +132,7 @@ impl Body {
             driven: None,
             surfaces: Vec::new(),
             balls: Vec::new(),
+            alike: Vec::new(),
             fastest: 0.0,
             period: f64::INFINITY,
             surface_velocity: Vec3::zeros(),

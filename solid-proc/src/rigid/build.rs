@@ -1,7 +1,7 @@
 //! From a scene to its bodies and what holds them.
 
 use super::Vec3;
-use super::body::{Body, Pose};
+use super::body::{Ball, Body, Pose};
 use super::joint::{Link, LinkKind};
 use super::step::{System, Wrench};
 use crate::effects::takes_part;
@@ -12,6 +12,9 @@ use nalgebra::Matrix3;
 
 /// Part of the spacing within which surfaces touch.
 const TOLERANCE: f64 = 1e-4;
+
+/// Depth in a body, in spacings, from which on what of a wall begins there does not touch it.
+const BEGUN: f64 = 0.01;
 
 /// A point or vector of the scene.
 fn wide<const D: usize>(x: &[f64; D]) -> Vec3 {
@@ -57,10 +60,18 @@ pub(super) fn system<const D: usize>(
                 stands_out::<D>(scene, wall, &surface, &corners, &mut frame);
                 frame.surfaces.push(surface);
             }
+            let moves_alike = |k: &usize| {
+                let other: &Body = &bodies[*k];
+                other.driven == frame.driven && other.surface_velocity == frame.surface_velocity
+            };
+            frame.alike = (real + 1..bodies.len()).filter(moves_alike).collect();
+            let own = bodies.len();
+            frame.alike.iter().for_each(|&k| bodies[k].alike.push(own));
             bodies.push(frame);
             walls.push(&wall.name);
         }
     }
+    leave_out_begun::<D>(&mut bodies, real, BEGUN * scene.solid_spacing(solid));
     poses.resize(bodies.len(), Pose::at(Vec3::zeros()));
     let find = |name: &str| match names.iter().position(|body| body == name) {
         Some(body) => body,
@@ -109,13 +120,30 @@ fn stands_out<const D: usize>(
     frame: &mut Body,
 ) {
     for corner in corners.iter().filter(|corner| std::ptr::eq(&scene.shapes[corner.shape], wall)) {
-        frame.balls.push((wide(&corner.place), 0.0, f64::INFINITY));
+        let between = Some(corner.normals.map(|normal| wide(&normal)));
+        frame.balls.push(Ball { arm: wide(&corner.place), radius: 0.0, depth: f64::INFINITY, between });
     }
     if D == 2 && surface.is_round() {
         surface.balls::<D>(scene.resolution, &mut |place, radius| {
-            frame.balls.push((wide(&place), radius, 0.5 * surface.depth()));
+            frame.balls.push(Ball { arm: wide(&place), radius, depth: 0.5 * surface.depth(), between: None });
         });
     }
+}
+
+/// Leaves out what of walls begins deeper in a body than this, m: a pin of a hinge.
+fn leave_out_begun<const D: usize>(bodies: &mut [Body], real: usize, deepest: f64) {
+    let (own, walls) = bodies.split_at_mut(real);
+    let begins = |ball: &Ball| {
+        own.iter().flat_map(|body| &body.surfaces).any(|surface| {
+            let mut inside = false;
+            surface.nearest::<D>(std::array::from_fn(|d| ball.arm[d]), &mut |distance, _| {
+                let gap = distance - ball.radius;
+                inside |= gap < -deepest && gap >= -ball.depth;
+            });
+            inside
+        })
+    };
+    walls.iter_mut().for_each(|wall| wall.balls.retain(|ball| !begins(ball)));
 }
 
 /// The motion of a shape, and that of the frame.
@@ -198,7 +226,7 @@ fn body<const D: usize>(
         surface.balls::<D>(dx, &mut |place, radius| {
             let arm = wide(&place) - center;
             body.radius = body.radius.max(arm.norm_squared().sqrt() + radius);
-            body.balls.push((arm, radius, 0.5 * surface.depth()));
+            body.balls.push(Ball { arm, radius, depth: 0.5 * surface.depth(), between: None });
         });
         body.surfaces.push(surface);
     }

@@ -5,10 +5,11 @@
 //! points on one face the outermost two count in the plane.
 
 use super::Vec3;
-use super::body::{Body, Pose};
+use super::body::{Ball, Body, Pose};
 use super::joint::across;
 use super::row::Row;
 use super::step::System;
+use halfstep_scene::geometry::Surface;
 
 /// A contact, or a stop that a joint has reached.
 #[derive(Clone, Debug)]
@@ -53,6 +54,9 @@ impl Remembered {
         Self { ends: touch.normal.ends, impulse: touch.impulse, friction: [of(0), of(1)] }
     }
 }
+
+/// How far beside a place a face is looked at, in tolerances of contact.
+const BESIDE: f64 = 10.0;
 
 /// Normals of one face agree to this cosine.
 const SAME_FACE: f64 = 1.0 - 1e-9;
@@ -135,20 +139,28 @@ impl System {
         let back = on_a.turn.inverse();
         // Faces: normal, and the points on it that are farthest out either way.
         let mut faces: Vec<(Vec3, [(f64, Touch); 2])> = Vec::new();
-        for (center, radius, depth) in &b.balls {
-            let at = on_b.center + on_b.turn * center;
+        for ball_of_b in &b.balls {
+            let Ball { arm, radius, depth, .. } = ball_of_b;
+            let at = on_b.center + on_b.turn * arm;
             let reach = a.radius + radius + self.tolerance;
             if ball >= self.real && (at - on_a.center).norm_squared() > reach * reach {
                 continue;
             }
             let reference = a.center + back * (at - on_a.center);
-            for of in &a.surfaces {
+            for (k, of) in a.surfaces.iter().enumerate() {
                 of.nearest::<D>(std::array::from_fn(|d| reference[d]), &mut |distance, normal| {
                     let gap = distance - radius;
                     if gap > self.tolerance || gap < -depth {
                         return;
                     }
+                    let foot = std::array::from_fn(|d| reference[d] - distance * normal[d]);
+                    if self.plane && self.is_covered::<D>(surface, k, foot, normal) {
+                        return;
+                    }
                     let normal = on_a.turn * Vec3::from_fn(|d, _| if d < D { normal[d] } else { 0.0 });
+                    if !ball_of_b.is_met_from(&on_b.turn, &normal) {
+                        return;
+                    }
                     let point = at - normal * *radius;
                     let row = Row::between([surface, ball], &self.poses, point, normal, gap);
                     let touch = self.contact(row, point);
@@ -175,6 +187,35 @@ impl System {
             all.push(low.1);
             all.extend(several.then_some(high.1));
         }
+    }
+
+    /// Whether a face of a body's surface of that number is covered all around a place on it, by other surfaces of the
+    /// body or by walls that move alike: where two are flush neither is touched at its hidden face.
+    fn is_covered<const D: usize>(&self, body: usize, own: usize, foot: [f64; D], normal: [f64; D]) -> bool {
+        let a = &self.bodies[body];
+        if a.surfaces.len() == 1 && a.alike.is_empty() {
+            return false;
+        }
+        let beside = BESIDE * self.tolerance;
+        let distance = |surface: &Surface, at: [f64; D]| {
+            let mut least = f64::INFINITY;
+            surface.nearest::<D>(at, &mut |distance, _| least = least.min(distance));
+            least
+        };
+        let of_body = a.surfaces.iter().enumerate().filter(|(k, _)| *k != own).map(|(_, surface)| surface);
+        let of_walls = a.alike.iter().flat_map(|&wall| &self.bodies[wall].surfaces);
+        let others: Vec<&Surface> = of_body.chain(of_walls).collect();
+        [-beside, beside].into_iter().all(|way| {
+            let place = |out: f64| -> [f64; D] {
+                std::array::from_fn(|d| match d {
+                    0 => foot[0] - way * normal[1] + out * normal[0],
+                    1 => foot[1] + way * normal[0] + out * normal[1],
+                    _ => foot[d],
+                })
+            };
+            let ends = distance(&a.surfaces[own], place(0.0)).abs() > 0.5 * beside;
+            ends || others.iter().any(|other| distance(other, place(beside)) < 0.5 * beside)
+        })
     }
 
     /// A contact at a point with friction across its normal.

@@ -8,6 +8,9 @@ use super::placed::Placed;
 use halfstep_scene::geometry::{WallCorner, wall_corners};
 use halfstep_scene::{Placement, Scene};
 
+/// Depth in the solid, in spacings, from which on a corner that begins there is left out.
+const BEGUN: f64 = 0.01;
+
 /// Corners of all walls that a solid may touch, as an outline of points without parts.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Corners {
@@ -15,8 +18,6 @@ pub(super) struct Corners {
     all: Vec<(usize, [f64; 2])>,
     outline: Outline,
     placed: Placed,
-    /// Velocities of the walls' surfaces, which stay where they are, m/s, by wall.
-    belts: Vec<[f64; 2]>,
     /// Contacts at n, ascending.
     pub(super) touches: Vec<Touch>,
     /// Contacts at n + 1/2.
@@ -25,23 +26,30 @@ pub(super) struct Corners {
 
 impl Corners {
     /// Of a scene's walls, beside the solid's outline at its first place: what begins in the solid, as the corner of a
-    /// wall that it is let into, is left out.
+    /// wall that it is let into, is left out. So are belts: what sticks to a corner does not go along with one.
     pub(super) fn new(scene: &Scene, solid: (&Outline, &Placed)) -> Self {
         let touched: Vec<_> = scene.walls_to_touch().collect();
+        let spacing = solid.0.spacing;
         let wall = |corner: &WallCorner| {
-            let k = touched.iter().position(|(index, _)| *index == corner.shape)?;
-            (!solid.1.holds(solid.0, corner.place)).then_some((k, corner.place))
+            let k = touched
+                .iter()
+                .position(|(index, wall)| *index == corner.shape && wall.velocity == [0.0; 3])?;
+            let begun = solid.1.depth_of(solid.0, corner.place);
+            // Twice its share of the walls' outline: in a pass between two solids half of K is the other's.
+            (begun <= BEGUN * spacing).then_some((k, corner.place, corner.length.min(spacing)))
         };
         let all: Vec<_> = wall_corners(scene).iter().filter_map(wall).collect();
-        // The other half of K, which surfaces without a point of their own leave out, is the corner's, too.
-        let length = solid.0.spacing;
-        let point = |_: &_| Point { weights: Vec::new(), offset: [0.0; 2], length, radius: 0.0 };
+        let point = |&(.., length): &(usize, [f64; 2], f64)| Point {
+            weights: Vec::new(),
+            offset: [0.0; 2],
+            length,
+            radius: 0.0,
+        };
         let points: Vec<Point> = all.iter().map(point).collect();
         let piece = Piece::of_points((0..points.len() as u32).collect());
         Self {
-            outline: Outline { points, pieces: vec![piece], spacing: length, ..Outline::default() },
-            belts: touched.iter().map(|(_, wall)| [wall.velocity[0], wall.velocity[1]]).collect(),
-            all,
+            outline: Outline { points, pieces: vec![piece], spacing, ..Outline::default() },
+            all: all.into_iter().map(|(wall, place, _)| (wall, place)).collect(),
             ..Self::default()
         }
     }
@@ -57,10 +65,7 @@ impl Corners {
         (dt, whole): (f64, bool),
     ) -> f64 {
         let at = |(k, place): &(usize, [f64; 2])| placements[*k].position_of(*place);
-        let velocity = |(k, place): &(usize, [f64; 2])| {
-            let carried = placements[*k].velocity_of(*place);
-            [0, 1].map(|d| carried[d] + self.belts[*k][d])
-        };
+        let velocity = |(k, place): &(usize, [f64; 2])| placements[*k].velocity_of(*place);
         self.placed.put(self.all.iter().map(at).collect(), self.all.iter().map(velocity).collect());
         self.halfway.clear();
         let touching = |at: &[f64; 2]| solid.1.targets.iter().any(|target| target.holds(*at, 0.0));

@@ -245,9 +245,9 @@ pub(super) fn give(outline: &Outline, point: u32, force: [f64; 2], forces: &mut 
     }
 }
 
-/// Whether a place, m, is in a piece or closer to it than `margin`, m.
-pub(super) fn is_inside(of: (&Outline, &Placed), piece: usize, at: [f64; 2], margin: f64) -> bool {
-    nearest(of, piece, at, margin).is_some()
+/// How deep a place is in a piece, m: zero outside.
+pub(super) fn depth_in(of: (&Outline, &Placed), piece: usize, at: [f64; 2]) -> f64 {
+    nearest(of, piece, at, 0.0).map_or(0.0, |foot| foot.depth)
 }
 
 /// The nearest place on a piece to a point whose surface, at a distance before it, is inside of it.

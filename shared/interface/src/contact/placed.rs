@@ -1,14 +1,11 @@
 //! Where an outline is, and which of its points belong together no longer.
 
-use super::law::is_inside;
+use super::law::depth_in;
 use super::outline::{Outline, Point, REACH, distance};
 use halfstep_wire::protocol::StateRecord;
 
 /// A point is torn whose particles lie farther from it than this, over [`REACH`]: they belong to different fragments.
 const TORN: f64 = 1.5;
-
-/// What is closer to a surface is on it, in spacings.
-const ON_SURFACE: f64 = 1e-6;
 
 /// An axis-parallel box.
 #[derive(Clone, Copy, Debug)]
@@ -149,13 +146,13 @@ impl Placed {
         (self.position, self.velocity) = (position, velocity);
     }
 
-    /// Whether a place is in a piece of the outline or on its surface.
-    pub(super) fn holds(&self, outline: &Outline, at: [f64; 2]) -> bool {
-        let margin = ON_SURFACE * outline.spacing;
-        let holds = |(k, target): (usize, &Around)| {
-            target.holds(at, margin) && is_inside((outline, self), k, at, margin)
+    /// How deep a place is in a piece of the outline, m: zero outside.
+    pub(super) fn depth_of(&self, outline: &Outline, at: [f64; 2]) -> f64 {
+        let depth = |(k, target): (usize, &Around)| match target.holds(at, 0.0) {
+            true => depth_in((outline, self), k, at),
+            false => 0.0,
         };
-        self.targets.iter().enumerate().any(holds)
+        self.targets.iter().enumerate().map(depth).fold(0.0, f64::max)
     }
 
     /// Places all points.

@@ -223,8 +223,10 @@ fn a_contact_goes_on_to_the_same_bits() {
 fn goes_on(wall: &str) {
     let moving = format!("{wall}\nmotion = {{ velocity = [0.2, 0.0] }}");
     let told = scene(0.0, "friction = 0.3", &moving);
+    let depths = |run: &Run| run.walls.booked().largest_penetration;
     let mut whole = Run::of(&told, [0.8, 0.0]);
     whole.until(0.1);
+    assert!(depths(&whole) > 0.0, "it touches");
     let saved = whole.walls.save();
     let mut other = Run::of(&told, [0.0; 2]);
     other.walls = WallContact::new(&told, 0).expect("a wall");

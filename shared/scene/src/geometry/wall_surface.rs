@@ -12,7 +12,7 @@ pub use corners::{WallCorner, wall_corners};
 
 use super::{Surface, bounding_box};
 use crate::{Block, Motion, Scene};
-use regions::{Regions, union, without_solids};
+use regions::{Places, Regions};
 
 /// Edges shorter than this are none, in spacings.
 const SHORTEST: f64 = 1e-6;
@@ -55,10 +55,10 @@ enum End {
     Corners,
     /// Where it begins.
     Closed,
-    /// It begins in a corner and goes straight on as the next one, which ends there.
-    GoesOn,
+    /// It begins in a corner and goes straight on as the next one, which ends there: from where, and to where.
+    GoesOn([[f64; 2]; 2]),
     /// It goes on from the one before.
-    ComesOn,
+    ComesOn([[f64; 2]; 2]),
 }
 
 /// Indices of the walls that solids may touch, those together that move alike.
@@ -91,7 +91,7 @@ impl WallSurface {
             let shortest = SHORTEST * scene.resolution;
             let parts = match scene.dimension {
                 2 => {
-                    let regions = without_solids(scene, union(scene, &members));
+                    let regions = Places::union(scene, &members).without_solids().regions();
                     sides_of(&regions, shortest).into_iter().map(Part::Side).collect()
                 }
                 _ => members
@@ -213,10 +213,8 @@ impl Side {
         let (k, (distance, share)) = edges.iter().map(of).min_by(|(_, a), (_, b)| a.0.total_cmp(&b.0))?;
         // Straight on there is the other one, which is nearer.
         match self.end {
-            End::GoesOn if k + 1 == self.edges() && share == 1.0 => return None,
-            End::ComesOn if k == 0 && share == 0.0 && distance > across(self.edge(0), at).abs() => {
-                return None;
-            }
+            End::GoesOn(line) if k + 1 == self.edges() && ahead(line, at) => return None,
+            End::ComesOn(line) if k == 0 && !ahead(line, at) => return None,
             _ => {}
         }
         let other = match share {
@@ -256,6 +254,11 @@ fn distance_to([from, to]: [[f64; 2]; 2], at: [f64; 2]) -> (f64, f64) {
     }
     let end = if share == 0.0 { from } else { to };
     (libm::hypot(at[0] - end[0], at[1] - end[1]), share)
+}
+
+/// Whether a point is beyond where a line begins.
+fn ahead([from, to]: [[f64; 2]; 2], at: [f64; 2]) -> bool {
+    (at[0] - from[0]) * (to[0] - from[0]) + (at[1] - from[1]) * (to[1] - from[1]) >= 0.0
 }
 
 /// How far a point is on the left of a line, m.
@@ -319,8 +322,9 @@ fn sides_of(regions: &Regions, shortest: f64) -> Vec<Side> {
                 let (mut first, mut rest) = (line(corner, longest), vec![middle]);
                 first.push(middle);
                 rest.extend(line(longest + 1, corner + n));
-                all.push(Side::new(first, End::GoesOn));
-                all.push(Side::new(rest, End::ComesOn));
+                let line = [middle, corners[(longest + 1) % n]];
+                all.push(Side::new(first, End::GoesOn(line)));
+                all.push(Side::new(rest, End::ComesOn(line)));
             }
             _ => {
                 for (i, &from) in cuts.iter().enumerate() {

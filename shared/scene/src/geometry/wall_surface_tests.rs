@@ -160,8 +160,36 @@ fn corners_of_walls_stand_out() {
     scene.shapes[2].phase = Phase::Wall;
     scene.shapes[2].geometry = Geometry::Disc { center: [1.0, 0.0, 0.0], radius: 0.2 };
     assert_eq!(corners(&scene), floor);
+    // Beside a floor that moves otherwise both have the corner.
+    scene.shapes[2].geometry = block([2.0, -0.2], [2.2, 0.0]);
+    assert!(corners(&scene).iter().all(|(_, place)| *place != [2.0, 0.0]));
+    scene.shapes[2].velocity = [1.0, 0.0, 0.0];
+    let shared = |scene: &Scene| corners(scene).into_iter().filter(|(_, place)| *place == [2.0, 0.0]).count();
+    assert_eq!(shared(&scene), 2);
+    scene.shapes[2].velocity = [0.0; 3];
+    let end = wall_corners(&scene).into_iter().find(|corner| corner.place == [2.2, 0.0]).expect("a corner");
+    assert!((end.normals[0][0] - 1.0).abs() < 1e-12 && (end.normals[1][1] - 1.0).abs() < 1e-12, "{end:?}");
+    assert!((end.length - 2.4).abs() < 1e-9, "0.2 m up and 2.2 m along: {end:?}");
     // Moved by itself, the step is another outline with all its corners.
     scene.shapes[2].geometry = block([1.2, 0.0], [1.3, 0.4]);
     scene.shapes[2].velocity = [1.0, 0.0, 0.0];
     assert_eq!(corners(&scene).len(), 8);
+}
+
+/// 0.1 + 0.1 + 0.1 is not 0.3: copies that are flush but for that are one wall.
+#[test]
+fn flush_but_for_rounding_is_flush() {
+    let row = crate::geometry::Moved {
+        geometry: Box::new(block([0.0, -0.5], [0.1, 0.0])),
+        angle: 0.0,
+        about: [0.0; 3],
+        translate: [0.0; 3],
+        count: 8,
+        step: [0.1, 0.0, 0.0],
+    };
+    let scene = scene(vec![wall(Geometry::Moved(row))]);
+    assert_eq!(wall_corners(&scene).len(), 4);
+    for k in 1..8 {
+        meets(&scene, [0.1 * f64::from(k), 0.03], &[(0.03, UP)]);
+    }
 }

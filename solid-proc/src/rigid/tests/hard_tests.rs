@@ -238,3 +238,57 @@ fn posts_and_ridges_are_touched_between_points() {
     let [x, y] = model.states[0].center;
     assert!((x - 0.4).abs() < 1e-4 && (y - 0.05).abs() < 1e-4, "{x}, {y}");
 }
+
+/// A block slides level off its table, over a floor of two flush walls, and over a table's edge with a seam between its
+/// two shapes: slowly, so that it comes within the tolerance of each corner.
+#[test]
+fn what_slides_level_stumbles_over_nothing() {
+    let wall = |name: &str, from: f64, to: f64| {
+        format!(
+            "[[shape]]\nname = \"{name}\"\nphase = \"wall\"\nbox = {{ min = [{from}, -0.5], max = [{to}, 0.0] }}\n"
+        )
+    };
+    let part = |name: &str, from: f64, to: f64| {
+        format!(
+            "[[shape]]\nname = \"{name}\"\nphase = \"solid\"\nbody = \"block\"\nvelocity = [1e-3, 0.0]\n\
+             box = {{ min = [{from}, 0.0], max = [{to}, 0.1] }}\n"
+        )
+    };
+    // The leading face is a tenth of a millimetre before the edge or the seam.
+    let whole = part("block", 0.7999, 0.9999);
+    let joined = part("left", 0.8499, 0.9999) + &part("right", 0.9999, 1.0499);
+    let table = wall("table", -1.0, 1.0);
+    let floor = wall("near", -1.0, 1.0) + &wall("far", 1.0, 2.0);
+    for (name, shapes) in
+        [("off", whole.clone() + &table), ("seam", whole + &floor), ("joined", joined + &table)]
+    {
+        let mut scene = scene("", &shapes);
+        scene.resolution = 0.02;
+        let mut model = build::<2>(&scene);
+        let start = model.states[0].center[0];
+        let load = free(&model);
+        let mut slowest = f64::INFINITY;
+        run(&mut model, 0.3, 1e-3, &load, |_, model| slowest = slowest.min(model.states[0].velocity[0]));
+        let (way, turned) = (model.states[0].center[0] - start, model.states[0].angle[2]);
+        println!("{name}: {way:.6e} m, {slowest:.6e} m/s at least, turned by {turned:.1e} rad");
+        assert!((way - 3e-4).abs() < 1e-9 && (slowest - 1e-3).abs() < 1e-9 && turned.abs() < 1e-9, "{name}");
+    }
+}
+
+/// A pin of a wall inside of a flap that hangs from it, without a word of the joint that the two are tied; and beside.
+#[test]
+fn a_pin_in_a_body_does_not_touch_it() {
+    for (x, corners) in [(0.0, 0), (0.1, 4)] {
+        let shapes = format!(
+            "[[shape]]\nname = \"flap\"\nphase = \"solid\"\nbox = {{ min = [-0.02, -0.2], max = [0.02, 0.02] }}\n\
+             [[shape]]\nname = \"pin\"\nphase = \"wall\"\ncontact = true\n\
+             box = {{ min = [{}, -0.005], max = [{}, 0.005] }}\n",
+            x - 0.005,
+            x + 0.005
+        );
+        let keys = "joints = [{ name = \"pin\", kind = \"hinge\", body = \"flap\", at = [0.0, 0.0] }]\n";
+        let model = build::<2>(&scene(keys, &shapes));
+        let walls = &model.system.bodies[model.system.real..];
+        assert_eq!(walls.iter().map(|wall| wall.balls.len()).sum::<usize>(), corners);
+    }
+}

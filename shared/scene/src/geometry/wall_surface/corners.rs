@@ -1,7 +1,7 @@
 //! Corners of walls, which others' faces touch: of a ridge between two of a body's points none of the body's own points
 //! knows.
 
-use super::regions::{regions, union};
+use super::regions::{Places, copies};
 use super::{SHORTEST, distinct, that_move_alike, turn_at};
 use crate::geometry::points::Spacing;
 use crate::{Geometry, Scene};
@@ -16,43 +16,58 @@ pub struct WallCorner {
     pub shape: usize,
     /// m.
     pub place: [f64; 2],
+    /// Normals out of the wall of the edges before and after it; a face lies on the corner from between these alone.
+    pub normals: [[f64; 2]; 2],
+    /// Length of both edges, m.
+    pub length: f64,
 }
 
 /// Where walls that solids may touch stand out: convex corners of polygons, boxes and tanks that are corners of the
-/// union of all walls that move alike, too. Where two walls are flush there is none. Circles have none. In space there
-/// are none.
+/// union of all walls that move alike, too, once for each such wall. Where two walls are flush there is none. Circles
+/// have none. In space there are none.
 pub fn wall_corners(scene: &Scene) -> Vec<WallCorner> {
     if scene.dimension != 2 {
         return Vec::new();
     }
     let near = SHORTEST * scene.resolution;
-    let mut all: Vec<WallCorner> = Vec::new();
+    let mut all = Vec::new();
     for members in that_move_alike(scene) {
-        let outlines = union(scene, &members);
+        let outlines = Places::union(scene, &members).regions();
         let contours = outlines.iter().flatten().map(|contour| distinct(contour, near));
-        let convex: Vec<[f64; 2]> = contours
-            .filter(|corners| corners.len() > 2)
-            .flat_map(|corners| {
-                let stands_out = |k: &usize| turn_at(&corners, *k).0 > STRAIGHT;
-                (0..corners.len()).filter(stands_out).map(|k| corners[k]).collect::<Vec<_>>()
-            })
-            .collect();
+        let convex: Vec<WallCorner> = contours.filter(|corners| corners.len() > 2).flat_map(convex).collect();
         // A union's own corners are rounded.
-        for &shape in &members {
+        for &shape in members.iter().filter(|&&shape| !is_round(&scene.shapes[shape].geometry)) {
             let wall = &scene.shapes[shape];
-            if is_round(&wall.geometry) {
-                continue;
-            }
-            let own = regions(&wall.geometry, Spacing::of(scene, wall));
-            for place in own.into_iter().flatten().flatten() {
-                let meets = |other: &[f64; 2]| libm::hypot(other[0] - place[0], other[1] - place[1]) < near;
-                if convex.iter().any(meets) && !all.iter().any(|corner| meets(&corner.place)) {
-                    all.push(WallCorner { shape, place });
+            let own = copies(&wall.geometry, Spacing::of(scene, wall));
+            let first = all.len();
+            for place in own.into_iter().flatten().flatten().flatten() {
+                let meets = |other: [f64; 2]| libm::hypot(other[0] - place[0], other[1] - place[1]) < near;
+                let corner = convex.iter().find(|corner| meets(corner.place));
+                let known = all[first..].iter().any(|corner: &WallCorner| meets(corner.place));
+                if let Some(corner) = corner.filter(|_| !known) {
+                    all.push(WallCorner { shape, place, ..*corner });
                 }
             }
         }
     }
     all
+}
+
+/// The corners at which a contour turns to its left.
+fn convex(corners: Vec<[f64; 2]>) -> Vec<WallCorner> {
+    let n = corners.len();
+    let edge = |k: usize| {
+        let [from, to] = [corners[k % n], corners[(k + 1) % n]];
+        let way = [to[0] - from[0], to[1] - from[1]];
+        let length = libm::hypot(way[0], way[1]);
+        ([way[1] / length, -way[0] / length], length)
+    };
+    let stands_out = |k: &usize| turn_at(&corners, *k).0 > STRAIGHT;
+    let corner = |k: usize| {
+        let [(before, one), (after, other)] = [edge(k + n - 1), edge(k)];
+        WallCorner { shape: 0, place: corners[k], normals: [before, after], length: one + other }
+    };
+    (0..n).filter(stands_out).map(corner).collect()
 }
 
 /// It is bounded by circles.

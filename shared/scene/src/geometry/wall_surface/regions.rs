@@ -7,46 +7,105 @@ use crate::{Block, Geometry, Phase, Scene, Shape};
 use i_overlay::core::fill_rule::FillRule;
 use i_overlay::core::overlay_rule::OverlayRule;
 use i_overlay::float::single::SingleFloatOverlay;
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 /// How far the chords of a circle are from it at most, in spacings.
 const SAGITTA: f64 = 1e-4;
 
+/// Grid of corners, in spacings.
+const GRID: f64 = 1e-9;
+
 /// Regions of the plane: outlines counter-clockwise, each with its holes, clockwise.
 pub(super) type Regions = Vec<Vec<Vec<[f64; 2]>>>;
 
-/// The shapes of those indices without voids before them.
-pub(super) fn union(scene: &Scene, members: &[usize]) -> Regions {
-    members.iter().fold(Regions::new(), |all, &index| {
-        all.overlay_as::<i64>(&own_places(scene, index), OverlayRule::Union, FillRule::EvenOdd)
-    })
+/// Regions on a grid, on which walls that are flush but for rounding are joined.
+pub(super) struct Places<'s> {
+    scene: &'s Scene,
+    /// In units of the grid: whole numbers.
+    regions: Regions,
+    /// The corners before they were put on the grid, m.
+    exact: BTreeMap<[i64; 2], [f64; 2]>,
 }
 
-/// Regions without the solids that begin in them.
-pub(super) fn without_solids(scene: &Scene, regions: Regions) -> Regions {
-    let solids = scene.shapes.iter().enumerate().filter(|(_, shape)| shape.phase == Phase::Solid);
-    solids.fold(regions, |all, (index, _)| {
-        all.overlay_as::<i64>(&own_places(scene, index), OverlayRule::Difference, FillRule::EvenOdd)
-    })
-}
-
-/// The region of a shape less the voids before it.
-fn own_places(scene: &Scene, index: usize) -> Regions {
-    let shape: &Shape = &scene.shapes[index];
-    let spacing = Spacing::of(scene, shape);
-    let mut own = regions(&shape.geometry, spacing);
-    for void in voids_before(scene, index) {
-        own = own.overlay_as::<i64>(
-            &regions(&void.geometry, spacing),
-            OverlayRule::Difference,
-            FillRule::EvenOdd,
-        );
+impl<'s> Places<'s> {
+    /// Of the shapes of those indices, without voids before them.
+    pub(super) fn union(scene: &'s Scene, members: &[usize]) -> Self {
+        let mut all = Self { scene, regions: Regions::new(), exact: BTreeMap::new() };
+        for &index in members {
+            let own = all.of_shape(index);
+            all.regions = combined(&all.regions, &own, OverlayRule::Union);
+        }
+        all
     }
-    own
+
+    /// Without the solids that begin in them.
+    pub(super) fn without_solids(mut self) -> Self {
+        for (index, shape) in self.scene.shapes.iter().enumerate() {
+            if shape.phase == Phase::Solid {
+                let own = self.of_shape(index);
+                self.regions = combined(&self.regions, &own, OverlayRule::Difference);
+            }
+        }
+        self
+    }
+
+    /// What they are, m.
+    pub(super) fn regions(self) -> Regions {
+        let Self { scene, mut regions, exact } = self;
+        for corner in regions.iter_mut().flatten().flatten() {
+            let known = exact.get(&corner.map(|x| x.round() as i64));
+            *corner = known.copied().unwrap_or_else(|| corner.map(|x| x * GRID * scene.resolution));
+        }
+        regions
+    }
+
+    /// The region of a shape less the voids before it.
+    fn of_shape(&mut self, index: usize) -> Regions {
+        let shape: &Shape = &self.scene.shapes[index];
+        let spacing = Spacing::of(self.scene, shape);
+        let mut own = self.on_grid(copies(&shape.geometry, spacing));
+        for void in voids_before(self.scene, index) {
+            let void = self.on_grid(copies(&void.geometry, spacing));
+            own = combined(&own, &void, OverlayRule::Difference);
+        }
+        own
+    }
+
+    /// The union of regions.
+    fn on_grid(&mut self, all: Vec<Regions>) -> Regions {
+        let grid = GRID * self.scene.resolution;
+        let mut union = Regions::new();
+        for mut one in all {
+            for corner in one.iter_mut().flatten().flatten() {
+                let exact = *corner;
+                *corner = exact.map(|x| (x / grid).round());
+                self.exact.entry(corner.map(|x| x as i64)).or_insert(exact);
+            }
+            union = combined(&union, &one, OverlayRule::Union);
+        }
+        union
+    }
 }
 
-/// What a geometry holds.
-pub(super) fn regions(geometry: &Geometry, spacing: Spacing) -> Regions {
+fn combined(one: &Regions, other: &Regions, rule: OverlayRule) -> Regions {
+    one.overlay_as::<i64>(other, rule, FillRule::EvenOdd)
+}
+
+/// What the copies of a geometry hold, m.
+pub(super) fn copies(geometry: &Geometry, spacing: Spacing) -> Vec<Regions> {
+    let Geometry::Moved(moved) = geometry else { return vec![unmoved(geometry, spacing)] };
+    let one = unmoved(&moved.geometry, spacing);
+    let place = |copy: u32| {
+        let mut placed = one.clone();
+        placed.iter_mut().flatten().flatten().for_each(|corner| *corner = moved.place(copy, *corner));
+        placed
+    };
+    moved.copies().map(place).collect()
+}
+
+/// What a geometry holds, m.
+fn unmoved(geometry: &Geometry, spacing: Spacing) -> Regions {
     match geometry {
         Geometry::Box(block) => vec![vec![around_block(block)]],
         Geometry::Disc { center, radius } => vec![vec![circle(center, *radius, spacing.dx)]],
@@ -63,22 +122,14 @@ pub(super) fn regions(geometry: &Geometry, spacing: Spacing) -> Regions {
                 (outer.min[axis], outer.max[axis]) = (cavity.min[axis] - low, cavity.max[axis] + high);
             }
             let (outer, cavity) = (vec![vec![around_block(&outer)]], vec![vec![around_block(cavity)]]);
-            outer.overlay_as::<i64>(&cavity, OverlayRule::Difference, FillRule::EvenOdd)
+            combined(&outer, &cavity, OverlayRule::Difference)
         }
         Geometry::Polygon(polygon) => {
             let Polygon { outline, holes } = polygon;
             vec![std::iter::once(outline).chain(holes).cloned().collect()]
         }
-        Geometry::Moved(moved) => {
-            let one = regions(&moved.geometry, spacing);
-            let mut all = Regions::new();
-            for copy in moved.copies() {
-                let mut placed = one.clone();
-                placed.iter_mut().flatten().flatten().for_each(|corner| *corner = moved.place(copy, *corner));
-                all = all.overlay_as::<i64>(&placed, OverlayRule::Union, FillRule::EvenOdd);
-            }
-            all
-        }
+        // A geometry is moved once.
+        Geometry::Moved(moved) => unmoved(&moved.geometry, spacing),
     }
 }
 
