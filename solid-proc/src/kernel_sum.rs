@@ -25,8 +25,8 @@ pub(crate) struct KernelSum<const D: usize> {
 }
 
 impl<const D: usize> KernelSum<D> {
-    /// R over dx. S differs along a square lattice at the depths 0, 0.1 and
-    /// 0.3 dx by 0.0003, 0.0006 and 0.0023 sigma dx, along a cubic one by 0.0015, 0.0021 and 0.0012.
+    /// R over dx. S differs along a square lattice at the depths 0, 0.1 and 0.3 dx by 0.0003, 0.0006
+    /// and 0.0023 sigma dx, along a cubic one by 0.0015, 0.0021 and 0.0012.
     const RADIUS: f64 = if D == 2 { 1.8 } else { 1.9 };
 
     /// Of particles dx, m, apart.

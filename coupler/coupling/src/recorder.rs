@@ -223,7 +223,7 @@ impl Recorder {
         }
         let remarks = first.iter().filter(|_| !resumed).flat_map(|message| message.remarks(self.dimension));
         remarks.for_each(|remark| self.warn(&remark));
-        if let Some((path, report)) = &mut self.report {
+        if let Some((path, report)) = self.report.as_mut().filter(|_| !first.is_empty()) {
             report.external.clone_from(&first);
             // Whoever goes on from the first checkpoint has to know whose solid it is.
             if let Err(error) = report.write(path) {

@@ -56,14 +56,18 @@ impl Scene {
 
     /// Contact between the bodies of each solid that leaves it to the coupler.
     pub fn contacts_of_bodies(&self) -> impl Iterator<Item = PairContact> {
-        (0..self.solids.len()).filter(|&solid| self.leaves_bodies_to_coupler(solid)).map(|solid| {
-            let own = self.solids[solid].contact().unwrap_or_default();
-            PairContact {
-                friction: own.friction,
-                restitution: own.restitution,
-                ..PairContact::unsaid([solid; 2])
-            }
-        })
+        let left = (0..self.solids.len()).filter(|&solid| self.leaves_bodies_to_coupler(solid));
+        left.map(|solid| self.own_contact(solid))
+    }
+
+    /// What the `contact` of the solid of that index says of what the coupler holds: walls and its own bodies.
+    pub fn own_contact(&self, solid: usize) -> PairContact {
+        let own = self.solids[solid].contact().unwrap_or_default();
+        PairContact {
+            friction: own.friction,
+            restitution: own.restitution,
+            ..PairContact::unsaid([solid; 2])
+        }
     }
 
     /// Contact of each pair of solids that feel each other, in ascending order; in space there is none.

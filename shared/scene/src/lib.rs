@@ -420,6 +420,11 @@ impl Shape {
         if self.body.is_empty() { &self.name } else { &self.body }
     }
 
+    /// A wall moves as another one does, and so does its surface.
+    pub fn moves_like(&self, other: &Self) -> bool {
+        self.motion == other.motion && self.velocity == other.velocity
+    }
+
     /// Its geometry where that is a box along the axes.
     pub(crate) fn block(&self) -> Option<Block> {
         match self.geometry {
@@ -436,6 +441,11 @@ impl Geometry {
             Self::Moved(moved) => moved.geometry.unmoved(),
             _ => self,
         }
+    }
+
+    /// Circles bound it.
+    pub fn is_round(&self) -> bool {
+        matches!(self.unmoved(), Self::Disc { .. } | Self::Ring { .. })
     }
 
     /// How often it is there: what is repeated is there several times.

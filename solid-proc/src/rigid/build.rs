@@ -47,8 +47,8 @@ pub(super) fn system<const D: usize>(
     bodies.push(Body::frame(None));
     let touching = takes_part(scene, solid, EffectName::WallContact);
     let corners = geometry::wall_corners(scene);
-    let mut walls: Vec<&str> = Vec::new();
-    for wall in scene.shapes.iter().filter(|shape| shape.phase == Phase::Wall) {
+    let mut walls: Vec<&Shape> = Vec::new();
+    for (index, wall) in scene.shapes.iter().enumerate().filter(|(_, shape)| shape.phase == Phase::Wall) {
         let touched = wall.contact && touching;
         if touched || keys.joints.iter().any(|joint| joint.with == wall.name) {
             let mut frame = Body::frame(wall.motion.clone());
@@ -57,25 +57,26 @@ pub(super) fn system<const D: usize>(
             frame.surface_velocity = wall.velocity.into();
             if touched {
                 let surface = Surface::new(&wall.geometry, None);
-                stands_out::<D>(scene, wall, &surface, &corners, &mut frame);
+                let own = corners.iter().filter(|corner| corner.shape == index);
+                frame.balls.extend(own.map(corner_ball));
+                if D == 2 && wall.geometry.is_round() {
+                    balls::<D>(&surface, &frame.center, scene.resolution, |ball| frame.balls.push(ball));
+                }
                 frame.surfaces.push(surface);
             }
-            let moves_alike = |k: &usize| {
-                let other: &Body = &bodies[*k];
-                other.driven == frame.driven && other.surface_velocity == frame.surface_velocity
-            };
-            frame.alike = (real + 1..bodies.len()).filter(moves_alike).collect();
             let own = bodies.len();
+            let alike = walls.iter().zip(real + 1..).filter(|(other, _)| other.moves_like(wall));
+            frame.alike = alike.map(|(_, k)| k).collect();
             frame.alike.iter().for_each(|&k| bodies[k].alike.push(own));
             bodies.push(frame);
-            walls.push(&wall.name);
+            walls.push(wall);
         }
     }
     leave_out_begun::<D>(&mut bodies, real, BEGUN * scene.solid_spacing(solid));
     poses.resize(bodies.len(), Pose::at(Vec3::zeros()));
     let find = |name: &str| match names.iter().position(|body| body == name) {
         Some(body) => body,
-        None => walls.iter().position(|wall| *wall == name).map_or(real, |wall| real + 1 + wall),
+        None => walls.iter().position(|wall| wall.name == name).map_or(real, |wall| real + 1 + wall),
     };
     let mut links = Vec::new();
     for joint in &keys.joints {
@@ -111,23 +112,17 @@ pub(super) fn system<const D: usize>(
     (system, names)
 }
 
-/// Gives a wall what others' faces touch of it: its corners, or in the plane the whole of a disc.
-fn stands_out<const D: usize>(
-    scene: &Scene,
-    wall: &Shape,
-    surface: &Surface,
-    corners: &[WallCorner],
-    frame: &mut Body,
-) {
-    for corner in corners.iter().filter(|corner| std::ptr::eq(&scene.shapes[corner.shape], wall)) {
-        let between = Some(corner.normals.map(|normal| wide(&normal)));
-        frame.balls.push(Ball { arm: wide(&corner.place), radius: 0.0, depth: f64::INFINITY, between });
-    }
-    if D == 2 && surface.is_round() {
-        surface.balls::<D>(scene.resolution, &mut |place, radius| {
-            frame.balls.push(Ball { arm: wide(&place), radius, depth: 0.5 * surface.depth(), between: None });
-        });
-    }
+/// The corner of a wall, as faces of bodies touch it.
+fn corner_ball(corner: &WallCorner) -> Ball {
+    let between = Some(corner.normals.map(|normal| wide(&normal)));
+    Ball { arm: wide(&corner.place), radius: 0.0, depth: f64::INFINITY, between }
+}
+
+/// Calls `visit` with the balls of a surface about a centre of the scene, with points at most `spacing`, m, apart.
+fn balls<const D: usize>(surface: &Surface, center: &Vec3, spacing: f64, mut visit: impl FnMut(Ball)) {
+    surface.balls::<D>(spacing, &mut |place, radius| {
+        visit(Ball { arm: wide(&place) - center, radius, depth: 0.5 * surface.depth(), between: None });
+    });
 }
 
 /// Leaves out what of walls begins deeper in a body than this, m: a pin of a hinge.
@@ -223,10 +218,9 @@ fn body<const D: usize>(
     shapes.dedup();
     for (shape, copy) in shapes {
         let surface = Surface::new(&scene.shapes[shape as usize].geometry, Some(copy));
-        surface.balls::<D>(dx, &mut |place, radius| {
-            let arm = wide(&place) - center;
-            body.radius = body.radius.max(arm.norm_squared().sqrt() + radius);
-            body.balls.push(Ball { arm, radius, depth: 0.5 * surface.depth(), between: None });
+        balls::<D>(&surface, &center, dx, |ball| {
+            body.radius = body.radius.max(ball.arm.norm_squared().sqrt() + ball.radius);
+            body.balls.push(ball);
         });
         body.surfaces.push(surface);
     }

@@ -139,8 +139,8 @@ impl System {
         let back = on_a.turn.inverse();
         // Faces: normal, and the points on it that are farthest out either way.
         let mut faces: Vec<(Vec3, [(f64, Touch); 2])> = Vec::new();
-        for ball_of_b in &b.balls {
-            let Ball { arm, radius, depth, .. } = ball_of_b;
+        for touching in &b.balls {
+            let Ball { arm, radius, depth, .. } = touching;
             let at = on_b.center + on_b.turn * arm;
             let reach = a.radius + radius + self.tolerance;
             if ball >= self.real && (at - on_a.center).norm_squared() > reach * reach {
@@ -154,11 +154,11 @@ impl System {
                         return;
                     }
                     let foot = std::array::from_fn(|d| reference[d] - distance * normal[d]);
-                    if self.plane && self.is_covered::<D>(surface, k, foot, normal) {
-                        return;
-                    }
-                    let normal = on_a.turn * Vec3::from_fn(|d, _| if d < D { normal[d] } else { 0.0 });
-                    if !ball_of_b.is_met_from(&on_b.turn, &normal) {
+                    let own = normal;
+                    let normal = on_a.turn * Vec3::from_fn(|d, _| if d < D { own[d] } else { 0.0 });
+                    if !touching.is_met_from(&on_b.turn, &normal)
+                        || (self.plane && self.is_covered::<D>(surface, k, foot, own))
+                    {
                         return;
                     }
                     let point = at - normal * *radius;
@@ -204,7 +204,7 @@ impl System {
         };
         let of_body = a.surfaces.iter().enumerate().filter(|(k, _)| *k != own).map(|(_, surface)| surface);
         let of_walls = a.alike.iter().flat_map(|&wall| &self.bodies[wall].surfaces);
-        let others: Vec<&Surface> = of_body.chain(of_walls).collect();
+        let others = of_body.chain(of_walls);
         [-beside, beside].into_iter().all(|way| {
             let place = |out: f64| -> [f64; D] {
                 std::array::from_fn(|d| match d {
@@ -214,7 +214,7 @@ impl System {
                 })
             };
             let ends = distance(&a.surfaces[own], place(0.0)).abs() > 0.5 * beside;
-            ends || others.iter().any(|other| distance(other, place(beside)) < 0.5 * beside)
+            ends || others.clone().any(|other| distance(other, place(beside)) < 0.5 * beside)
         })
     }
 

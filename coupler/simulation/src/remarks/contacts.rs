@@ -4,7 +4,7 @@ use super::shapes::length;
 use super::{meet, near};
 use halfstep_scene::geometry::{self, Cells, Layout, SolidPoint, Surface};
 use halfstep_scene::{
-    Block, Body, ContactKeys, EffectName, Geometry, PairContact, Phase, Scene, Shape, SolidModelName, Switch,
+    Block, Body, ContactKeys, EffectName, Geometry, Phase, Scene, Shape, SolidModelName, Switch,
 };
 use std::collections::HashSet;
 
@@ -264,15 +264,10 @@ const SOFT: f64 = 0.3;
 
 /// Restitutions of solids that are as soft as their contact: their own strain gives the speed back.
 pub(super) fn soft_restitutions(scene: &Scene, all: &mut Vec<String>) {
-    let toward_walls = (0..scene.solids.len())
-        .filter(|&k| scene.leaves_walls_to_coupler(k) && scene.walls_to_touch().next().is_some())
-        .map(|k| {
-            let restitution = scene.solids[k].contact().unwrap_or_default().restitution;
-            PairContact { restitution, ..PairContact::unsaid([k; 2]) }
-        });
-    let mut told = HashSet::new();
-    let pairs = toward_walls.chain(scene.contacts_of_bodies()).chain(scene.contacts());
-    for contact in pairs.filter(|contact| contact.restitution > 0.0) {
+    let walls = scene.walls_to_touch().next().is_some();
+    let held = |&k: &usize| scene.leaves_bodies_to_coupler(k) || (walls && scene.leaves_walls_to_coupler(k));
+    let own = (0..scene.solids.len()).filter(held).map(|k| scene.own_contact(k));
+    for contact in own.chain(scene.contacts()).filter(|contact| contact.restitution > 0.0) {
         let stiffness = contact.stiffness.unwrap_or_else(|| scene.contact_stiffness(contact.solids));
         let over = |k: &usize| {
             let strains = scene.solids[*k].rigid().is_none();
@@ -281,16 +276,14 @@ pub(super) fn soft_restitutions(scene: &Scene, all: &mut Vec<String>) {
         };
         let softest = contact.solids.iter().filter_map(over).max_by(|a, b| a.0.total_cmp(&b.0));
         let Some((part, k)) = softest.filter(|(part, _)| *part > SOFT) else { continue };
-        if told.insert(contact.solids) {
-            let cure = match contact.solids[0] == contact.solids[1] {
-                true => "",
-                false => " (a lower `stiffness` of their [[contact]] lets it act)",
-            };
-            all.push(format!(
-                "a restitution of {} hardly acts on `{}`: contact is {part:.1} times as stiff as the solid over its \
-                 smallest side, so that its own strain takes up most of an impact and gives it back{cure}",
-                contact.restitution, scene.solids[k].name
-            ));
-        }
+        let cure = match contact.solids[0] == contact.solids[1] {
+            true => "",
+            false => " (a lower `stiffness` of their [[contact]] lets it act)",
+        };
+        all.push(format!(
+            "a restitution of {} hardly acts on `{}`: contact is {part:.1} times as stiff as the solid over its \
+             smallest side, so that its own strain takes up most of an impact and gives it back{cure}",
+            contact.restitution, scene.solids[k].name
+        ));
     }
 }

@@ -87,9 +87,7 @@ pub(super) fn hidden(scene: &Scene, all: &mut Vec<String>) {
                 | ProbeKind::Pressure { shape: Some(k), .. } if k == index)
         });
         let alike = |tank: &Shape| {
-            shape.motion == tank.motion
-                && shape.velocity == tank.velocity
-                && (shape.contact, shape.free_slip) == (tank.contact, tank.free_slip)
+            shape.moves_like(tank) && (shape.contact, shape.free_slip) == (tank.contact, tank.free_slip)
         };
         let within = tanks.iter().find(|tank| {
             tank.shape.name != shape.name

@@ -66,15 +66,15 @@ impl Corners {
     ) -> f64 {
         let at = |(k, place): &(usize, [f64; 2])| placements[*k].position_of(*place);
         let velocity = |(k, place): &(usize, [f64; 2])| placements[*k].velocity_of(*place);
-        self.placed.put(self.all.iter().map(at).collect(), self.all.iter().map(velocity).collect());
         self.halfway.clear();
-        let touching = |at: &[f64; 2]| solid.1.targets.iter().any(|target| target.holds(*at, 0.0));
-        if !self.placed.position.iter().any(touching) {
+        let touching = |at: [f64; 2]| solid.1.targets.iter().any(|target| target.holds(at, 0.0));
+        if !self.all.iter().map(at).any(touching) {
             if whole {
                 self.touches.clear();
             }
             return 0.0;
         }
+        self.placed.put(self.all.iter().map(at).collect(), self.all.iter().map(velocity).collect());
         on.forces.iter_mut().for_each(|forces| forces.resize(records, [0.0; 2]));
         let mut walls = Side { solid: usize::MAX, ..Side::default() };
         let own = (&self.outline, &self.placed);

@@ -15,7 +15,7 @@ impl State for Booked {
 }
 
 /// Contacts as they go on.
-pub(super) fn touch_fields(fields: &mut Fields<'_>, touches: &mut Vec<Touch>) -> Result<(), StateError> {
+fn touch_fields(fields: &mut Fields<'_>, touches: &mut Vec<Touch>) -> Result<(), StateError> {
     let numbers_of = |t: &Touch| [t.key[0], t.key[1], t.key[2], t.part];
     let mut numbers: Vec<u32> = touches.iter().flat_map(numbers_of).collect();
     let mut reals: Vec<f64> = touches.iter().flat_map(|t| [t.share, t.approach, t.rest]).collect();

@@ -13,7 +13,7 @@ use super::outline::Outline;
 use super::placed::Placed;
 use super::{Booked, Side};
 use halfstep_scene::geometry::{self, Surface};
-use halfstep_scene::{Motion, PairContact, Placement, Scene, Shape};
+use halfstep_scene::{Motion, Placement, Scene, Shape};
 use halfstep_wire::protocol::StateRecord;
 use halfstep_wire::state::{Fields, State, StateError};
 
@@ -84,14 +84,8 @@ impl WallContact {
             motion: shape.motion.clone(),
             belt: [shape.velocity[0], shape.velocity[1]],
         };
-        let own = scene.solids[solid].contact().unwrap_or_default();
-        let law = PairContact {
-            friction: own.friction,
-            restitution: own.restitution,
-            ..PairContact::unsaid([solid, solid])
-        };
         Some(Self {
-            law: Law::of(&law),
+            law: Law::of(&scene.own_contact(solid)),
             walls: scene.walls_to_touch().map(wall).collect(),
             outline: Outline::default(),
             placed: Placed::default(),

@@ -67,11 +67,6 @@ impl Surface {
         }
     }
 
-    /// Circles bound it.
-    pub fn is_round(&self) -> bool {
-        matches!(self.part, Part::Ring { .. })
-    }
-
     /// How far a ball of [`Self::balls`] is of the shape below its surface, m: a ring is hollow.
     pub fn depth(&self) -> f64 {
         match self.part {

@@ -65,10 +65,7 @@ enum End {
 fn that_move_alike(scene: &Scene) -> Vec<Vec<usize>> {
     let mut all: Vec<Vec<usize>> = Vec::new();
     for (index, wall) in scene.walls_to_touch() {
-        let alike = |members: &&mut Vec<usize>| {
-            let other = &scene.shapes[members[0]];
-            other.motion == wall.motion && other.velocity == wall.velocity
-        };
+        let alike = |members: &&mut Vec<usize>| wall.moves_like(&scene.shapes[members[0]]);
         match all.iter_mut().find(alike) {
             Some(members) => members.push(index),
             None => all.push(vec![index]),
@@ -176,14 +173,6 @@ impl Side {
         [self.corners[k], self.corners[k + 1]]
     }
 
-    /// Out of the wall.
-    fn normal(&self, k: usize) -> [f64; 2] {
-        let [from, to] = self.edge(k);
-        let [x, y] = [to[0] - from[0], to[1] - from[1]];
-        let length = libm::hypot(x, y);
-        [y / length, -x / length]
-    }
-
     /// The edge before or after one where they meet in a corner.
     fn beside(&self, k: usize, after: bool) -> Option<usize> {
         let closed = self.end == End::Closed;
@@ -222,9 +211,9 @@ impl Side {
             1.0 => self.beside(k, true),
             _ => None,
         };
-        let own = self.normal(k);
+        let own = normal(self.edge(k));
         let out = other.map_or(own, |other| {
-            let beside = self.normal(other);
+            let beside = normal(self.edge(other));
             let sum = [own[0] + beside[0], own[1] + beside[1]];
             let length = libm::hypot(sum[0], sum[1]);
             if length > 0.0 { sum.map(|x| x / length) } else { own }
@@ -233,15 +222,28 @@ impl Side {
         let away = [0, 1].map(|a| at[a] - (from[a] + share * (to[a] - from[a])));
         let way = if away[0] * out[0] + away[1] * out[1] < 0.0 { -1.0 } else { 1.0 };
         // On the surface, and along an edge, the normal is the edge's.
-        let normal = if distance == 0.0 {
+        let out = if distance == 0.0 {
             out
         } else if other.is_none() && share > 0.0 && share < 1.0 {
             own
         } else {
             away.map(|a| way * a / distance)
         };
-        Some((way * distance, normal))
+        Some((way * distance, out))
     }
+}
+
+/// Unit vector along a straight line, and its length, m.
+fn direction([from, to]: [[f64; 2]; 2]) -> ([f64; 2], f64) {
+    let way = [to[0] - from[0], to[1] - from[1]];
+    let length = libm::hypot(way[0], way[1]);
+    (way.map(|x| x / length), length)
+}
+
+/// Unit normal out of the wall on a line's left.
+fn normal(ends: [[f64; 2]; 2]) -> [f64; 2] {
+    let ([x, y], _) = direction(ends);
+    [y, -x]
 }
 
 /// Distance of a point from a straight line, m, and where its foot is along the line, 0 to 1.
@@ -285,11 +287,8 @@ fn distinct(contour: &[[f64; 2]], shortest: f64) -> Vec<[f64; 2]> {
 /// Sine and cosine of the angle by which a contour turns to its left in a corner.
 fn turn_at(corners: &[[f64; 2]], k: usize) -> (f64, f64) {
     let n = corners.len();
-    let way = |a: [f64; 2], b: [f64; 2]| {
-        let length = libm::hypot(b[0] - a[0], b[1] - a[1]);
-        [(b[0] - a[0]) / length, (b[1] - a[1]) / length]
-    };
-    let (before, after) = (way(corners[(k + n - 1) % n], corners[k]), way(corners[k], corners[(k + 1) % n]));
+    let [before, here, after] = [k + n - 1, k, k + 1].map(|k| corners[k % n]);
+    let [(before, _), (after, _)] = [[before, here], [here, after]].map(direction);
     (before[0] * after[1] - before[1] * after[0], before[0] * after[0] + before[1] * after[1])
 }
 
@@ -312,10 +311,7 @@ fn sides_of(regions: &Regions, shortest: f64) -> Vec<Side> {
             [] => all.push(Side::new(line(0, n), End::Closed)),
             // Both its ends meet in the corner, which has two sides.
             [corner] => {
-                let length = |k: usize| {
-                    let [from, to] = [corners[k % n], corners[(k + 1) % n]];
-                    libm::hypot(to[0] - from[0], to[1] - from[1])
-                };
+                let length = |k: usize| direction([corners[k % n], corners[(k + 1) % n]]).1;
                 let longest = (corner..corner + n).max_by(|a, b| length(*a).total_cmp(&length(*b)));
                 let longest = longest.unwrap_or(corner);
                 let middle = [0, 1].map(|a| 0.5 * (corners[longest % n][a] + corners[(longest + 1) % n][a]));

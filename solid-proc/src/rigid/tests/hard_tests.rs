@@ -193,8 +193,8 @@ fn a_block_stands_to_the_edge_of_its_wall() {
         // phi'' = g (over + h/2 phi) / (l² / 12 + h² / 3) about the edge, with sin phi = phi.
         let inertia = 0.22_f64.powi(2) / 12.0 + 0.1_f64.powi(2) / 3.0;
         let right = over / 0.05 * ((G * 0.05 / inertia).sqrt() * 0.2).cosh() - over / 0.05;
-        let most = if stands { turned.abs() < 1e-9 } else { (turned / right - 1.0).abs() < 0.01 };
-        assert!(most, "{over}: {turned} of {right}");
+        let holds = if stands { turned.abs() < 1e-9 } else { (turned / right - 1.0).abs() < 0.01 };
+        assert!(holds, "{over}: {turned} of {right}");
     }
 }
 

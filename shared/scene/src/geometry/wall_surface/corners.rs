@@ -2,9 +2,9 @@
 //! knows.
 
 use super::regions::{Places, copies};
-use super::{SHORTEST, distinct, that_move_alike, turn_at};
+use super::{SHORTEST, direction, distinct, normal, that_move_alike, turn_at};
+use crate::Scene;
 use crate::geometry::points::Spacing;
-use crate::{Geometry, Scene};
 
 /// Sine of the angle from which on an outline has a corner.
 const STRAIGHT: f64 = 1e-6;
@@ -36,7 +36,7 @@ pub fn wall_corners(scene: &Scene) -> Vec<WallCorner> {
         let contours = outlines.iter().flatten().map(|contour| distinct(contour, near));
         let convex: Vec<WallCorner> = contours.filter(|corners| corners.len() > 2).flat_map(convex).collect();
         // A union's own corners are rounded.
-        for &shape in members.iter().filter(|&&shape| !is_round(&scene.shapes[shape].geometry)) {
+        for &shape in members.iter().filter(|&&shape| !scene.shapes[shape].geometry.is_round()) {
             let wall = &scene.shapes[shape];
             let own = copies(&wall.geometry, Spacing::of(scene, wall));
             let first = all.len();
@@ -57,10 +57,8 @@ pub fn wall_corners(scene: &Scene) -> Vec<WallCorner> {
 fn convex(corners: Vec<[f64; 2]>) -> Vec<WallCorner> {
     let n = corners.len();
     let edge = |k: usize| {
-        let [from, to] = [corners[k % n], corners[(k + 1) % n]];
-        let way = [to[0] - from[0], to[1] - from[1]];
-        let length = libm::hypot(way[0], way[1]);
-        ([way[1] / length, -way[0] / length], length)
+        let ends = [corners[k % n], corners[(k + 1) % n]];
+        (normal(ends), direction(ends).1)
     };
     let stands_out = |k: &usize| turn_at(&corners, *k).0 > STRAIGHT;
     let corner = |k: usize| {
@@ -68,13 +66,4 @@ fn convex(corners: Vec<[f64; 2]>) -> Vec<WallCorner> {
         WallCorner { shape: 0, place: corners[k], normals: [before, after], length: one + other }
     };
     (0..n).filter(stands_out).map(corner).collect()
-}
-
-/// It is bounded by circles.
-fn is_round(geometry: &Geometry) -> bool {
-    match geometry {
-        Geometry::Disc { .. } | Geometry::Ring { .. } => true,
-        Geometry::Moved(moved) => is_round(&moved.geometry),
-        Geometry::Box(_) | Geometry::Tank { .. } | Geometry::Polygon(_) => false,
-    }
 }

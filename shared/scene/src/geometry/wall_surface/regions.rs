@@ -1,8 +1,8 @@
 //! What walls fill in the plane.
 
-use crate::geometry::Polygon;
-use crate::geometry::points::{Spacing, sides};
+use crate::geometry::points::Spacing;
 use crate::geometry::region::voids_before;
+use crate::geometry::{Polygon, outline};
 use crate::{Block, Geometry, Phase, Scene, Shape};
 use i_overlay::core::fill_rule::FillRule;
 use i_overlay::core::overlay_rule::OverlayRule;
@@ -114,14 +114,9 @@ fn unmoved(geometry: &Geometry, spacing: Spacing) -> Regions {
             hole.reverse();
             vec![vec![circle(center, *outer, spacing.dx), hole]]
         }
-        Geometry::Tank { cavity, open } => {
-            let mut outer = *cavity;
-            for axis in 0..2 {
-                let [low, high] =
-                    sides(axis).map(|side| if open.contains(&side) { 0.0 } else { spacing.thickness() });
-                (outer.min[axis], outer.max[axis]) = (cavity.min[axis] - low, cavity.max[axis] + high);
-            }
-            let (outer, cavity) = (vec![vec![around_block(&outer)]], vec![vec![around_block(cavity)]]);
+        Geometry::Tank { cavity, .. } => {
+            let outer = outline::bounding_box(geometry, 2, spacing.thickness());
+            let [outer, cavity] = [&outer, cavity].map(|block| vec![vec![around_block(block)]]);
             combined(&outer, &cavity, OverlayRule::Difference)
         }
         Geometry::Polygon(polygon) => {
