@@ -114,16 +114,33 @@ pub(crate) fn of_solid<const D: usize>(
     scene.probes.iter().filter(|p| p.solid == Some(solid)).filter_map(|p| measurement(&p.kind)).collect()
 }
 
+/// What probes see of a solid: the present state, under the load of the last exchange.
+#[derive(Clone, Copy)]
+pub(crate) struct Measured<'a, const D: usize> {
+    pub(crate) model: &'a dyn SolidModel<D>,
+    pub(crate) load: &'a Load<D>,
+    pub(crate) ledger: Option<&'a Ledger>,
+    /// Force of contacts on each particle that stands for the model's after a resume; empty: the model's counts.
+    pub(crate) contact: &'a [[f64; D]],
+}
+
+/// Force of contacts on each particle of a model, by number, N (2D: N/m).
+pub(crate) fn contact_forces<const D: usize>(model: &dyn SolidModel<D>) -> Vec<[f64; D]> {
+    let mut force = vec![[0.0; D]; model.particles().len()];
+    model.contact_forces(&mut |p, given| force[p as usize] = given);
+    force
+}
+
 impl<const D: usize> Measurement<D> {
-    /// Appends the values on the present state, under the load of the last exchange.
-    pub(crate) fn measure(
-        &self,
-        model: &dyn SolidModel<D>,
-        load: &Load<D>,
-        ledger: Option<&Ledger>,
-        out: &mut Vec<f64>,
-    ) {
-        if let (Self::Energy(part), Some(ledger)) = (self, ledger) {
+    /// Asks for forces of contacts on particles.
+    pub(crate) fn asks_for_contact(&self) -> bool {
+        matches!(self, Self::OfParticles(_, BodyQuantity::ContactForce | BodyQuantity::ContactMoment))
+    }
+
+    /// Appends the values.
+    pub(crate) fn measure(&self, of: Measured<'_, D>, out: &mut Vec<f64>) {
+        let Measured { model, load, .. } = of;
+        if let (Self::Energy(part), Some(ledger)) = (self, of.ledger) {
             return ledger.measure(*part, out);
         }
         let mut put = |value: f64| out.push(value);
@@ -206,9 +223,7 @@ impl<const D: usize> Measurement<D> {
                 put(particles.iter().map(of).sum());
             }
             Self::EnergyOf(particles) => put(model.energy_of(particles)),
-            Self::OfParticles(particles, quantity) => {
-                of_particles(model, load, particles, *quantity, &mut put)
-            }
+            Self::OfParticles(particles, quantity) => of_particles(of, particles, *quantity, &mut put),
             Self::Body(body, quantity) => of_body(model, load, *body, *quantity, &mut put),
             Self::Energy(_) => {}
         }
@@ -237,12 +252,12 @@ fn mean<const D: usize>(model: &dyn SolidModel<D>, particles: &[u32], of: &[[f64
 
 /// Puts the components of something of a body that strains: of its centre of mass, or of the forces on its particles.
 fn of_particles<const D: usize>(
-    model: &dyn SolidModel<D>,
-    load: &Load<D>,
+    of: Measured<'_, D>,
     particles: &[u32],
     quantity: BodyQuantity,
     put: &mut impl FnMut(f64),
 ) {
+    let Measured { model, load, .. } = of;
     let state = model.particles();
     let mean = |of| mean(model, particles, of);
     // Forces on particles, by number.
@@ -253,10 +268,9 @@ fn of_particles<const D: usize>(
         let all = particles.iter().map(|&p| (&force[p as usize], &state.position[p as usize]));
         about(mean(state.position), all, put);
     };
-    let of_contact = || {
-        let mut force = vec![[0.0; D]; state.len()];
-        model.contact_forces(&mut |p, given| force[p as usize] = given);
-        force
+    let of_contact = || match of.contact {
+        [] => contact_forces(model),
+        resumed => resumed.to_vec(),
     };
     let vector = match quantity {
         BodyQuantity::Position => mean(state.position),

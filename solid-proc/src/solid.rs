@@ -4,7 +4,7 @@ use crate::effects::takes_part;
 use crate::ledger::SolidLedger;
 use crate::model::{Load, OutOfBounds, OuterRates, SolidModel};
 use crate::models;
-use crate::probes::{self, Measurement};
+use crate::probes::{self, Measured, Measurement};
 use crate::sleep::{Rest, Sleep};
 use crate::sub_steps::SubStepping;
 use halfstep_interface::{Interface, Parameters};
@@ -36,6 +36,8 @@ pub struct Solid<const D: usize> {
     /// Number of each particle's body at the start; empty where the model's particles are not the scene's.
     bodies: Vec<u32>,
     probes: Vec<Measurement<D>>,
+    /// Force of contacts on each particle when the run was stopped, N (2D: N/m); empty once the model has gone on.
+    contact_at_stop: Vec<[f64; D]>,
     sub_steps: SubStepping,
     taken: u32,
     density: f64,
@@ -90,6 +92,7 @@ impl<const D: usize> Solid<D> {
             model,
             interface,
             probes,
+            contact_at_stop: Vec::new(),
             sub_steps: SubStepping::of(scene, solid),
             taken: 1,
             density: material.map_or(1.0, |s| s.density),
@@ -104,7 +107,18 @@ impl<const D: usize> Solid<D> {
         if self.interface.is_some() {
             self.model.take_outer_rates(&self.outer);
         }
+        self.contact_at_stop.clear();
         self.model.advance(half_step, self.taken, &self.load)
+    }
+
+    /// What probes see.
+    fn measured(&self) -> Measured<'_, D> {
+        Measured {
+            model: self.model.as_ref(),
+            load: &self.load,
+            ledger: self.ledger.as_ref().map(|own| &own.ledger),
+            contact: &self.contact_at_stop,
+        }
     }
 }
 
@@ -128,6 +142,18 @@ impl<const D: usize> State for Solid<D> {
         }
         if let Some(own) = &mut self.ledger {
             fields.part("energy", &mut own.ledger)?;
+        }
+        if self.probes.iter().any(Measurement::asks_for_contact) {
+            // Models evaluate contacts within a sub-step: no state at its end has them.
+            let mut force = match &self.contact_at_stop[..] {
+                [] => probes::contact_forces(self.model.as_ref()),
+                resumed => resumed.to_vec(),
+            };
+            fields.points("contact_force", &mut force)?;
+            fields.length("contact_force", self.all.len(), force.len())?;
+            if fields.loading() {
+                self.contact_at_stop = force;
+            }
         }
         match self.model.state() {
             Some(model) => fields.part("model", model),
@@ -240,8 +266,7 @@ impl<const D: usize> Role for Solid<D> {
     }
 
     fn probes(&self, out: &mut Vec<f64>) {
-        let ledger = self.ledger.as_ref().map(|own| &own.ledger);
-        self.probes.iter().for_each(|probe| probe.measure(self.model.as_ref(), &self.load, ledger, out));
+        self.probes.iter().for_each(|probe| probe.measure(self.measured(), out));
         self.probes.iter().for_each(|probe| probe.accompany(self.model.as_ref(), out));
     }
 

@@ -60,9 +60,15 @@ fn a_solid_that_fails_says_why() {
         for step in solid:\n    if step.number == 3: raise ValueError('no convergence')\n\
         \x20   step.publish(points.position, 0.0)\n";
     std::fs::write(&script, text).unwrap();
+    let jumping = folder.path().join("jumping.py");
+    // 0.1 m in no time, and no velocity.
+    let jumps = text.replace("raise ValueError('no convergence')", "points.position[5] += 0.1");
+    std::fs::write(&jumping, jumps).unwrap();
     let line = format!("{} {}", python().display(), script.display());
+    let jumping = format!("{} {}", python().display(), jumping.display());
     for (line, more, reason) in [
         (line.as_str(), &["--force=1,0"][..], "the solid failed at step 3: ValueError: no convergence"),
+        (&jumping, &["--force=1,0"], "the solid moved its particle 5 by 1.414e-1 m at step 3, although"),
         ("exit 3", &["--force=1,0"], "before the run had begun"),
         (&line, &["--force=1,0", "--within=5,5,6,6"], "none of the solid's particles begins in the box"),
         (

@@ -1,10 +1,11 @@
 //! Walls that move by prescription and touch solids: a floor that holds a block and is taken away, and one that throws
 //! it up.
 
-use halfstep_scene::{Scene, parse};
+use halfstep_role::role::Role;
+use halfstep_scene::{BodyQuantity, Probe, ProbeKind, Scene, parse};
 use halfstep_solid::hypoelastic::Hypoelastic;
 use halfstep_solid::total_lagrangian::TotalLagrangian;
-use halfstep_solid::{Load, SolidModel};
+use halfstep_solid::{Load, Solid, SolidModel};
 use halfstep_sph::lane::Isa;
 use halfstep_wire::half_step::HalfStep;
 use std::path::Path;
@@ -133,5 +134,40 @@ fn an_interruption_changes_no_bit() {
         second.state().expect("can be loaded").load(&saved).expect("the same scene");
         run(&mut second, at, 0.05, |_, _, _| ());
         assert_eq!(whole.particles().position, second.particles().position, "{name}");
+    }
+}
+
+/// The first row after a stop has the forces of the last evaluation before it.
+#[test]
+fn probes_of_contact_go_on_after_an_interruption() {
+    for name in ["total-lagrangian", "hypoelastic", "finite-element"] {
+        let mut scene = block(name, "velocity = [0.3, -0.5], start = 0.01");
+        let force = ProbeKind::Body { body: "block".into(), quantity: BodyQuantity::ContactForce };
+        scene.probes.push(Probe { name: "floor".into(), kind: force, solid: Some(0) });
+        let [mut whole, mut resumed] =
+            [0; 2].map(|_| Solid::<2>::new(&scene, 0, Isa::detect()).expect("a solid"));
+        let measured = |solid: &Solid<2>| {
+            let mut row = Vec::new();
+            solid.probes(&mut row);
+            row
+        };
+        let dt = 0.5 * whole.dt_limit();
+        let go_on = |solid: &mut Solid<2>, step: u64| {
+            for half_step in HalfStep::begin(step, step as f64 * dt).lasting(dt).both() {
+                solid.advance(&half_step, &[]).expect("within bounds");
+            }
+        };
+        (0..400).for_each(|step| go_on(&mut whole, step));
+        let first = measured(&whole);
+        assert!(first[1] > 1.0, "{name}: the floor carries {first:?} N/m");
+        let saved = whole.state().expect("can be saved").save();
+        resumed.state().expect("can be loaded").load(&saved).expect("the same scene");
+        assert_eq!(measured(&resumed), first, "{name}: at the stop");
+        assert_eq!(resumed.state().expect("can be saved").save(), saved, "{name}: stopped twice at one step");
+        for solid in [&mut whole, &mut resumed] {
+            go_on(solid, 400);
+        }
+        assert_ne!(measured(&whole), first, "{name}: it goes on");
+        assert_eq!(measured(&resumed), measured(&whole), "{name}: a step later");
     }
 }

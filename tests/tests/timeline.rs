@@ -191,7 +191,7 @@ fn wrong_arguments_are_told_before_anything_starts() {
     for own in ["run.json", "scene.json", "probes.csv", "frames", "checkpoint-a"] {
         refused(traced(gate(), &out.join(own), 1..2).out(&out), &["is a file that the run itself leaves"]);
     }
-    refused(traced(gate(), &folder.path().join("gate.png"), 1..2), &["would be replaced by its picture"]);
+    refused(traced(gate(), &folder.path().join("gate.png"), 1..2), &["their picture is trace.png"]);
     let own = folder.path().join("own.toml");
     std::fs::copy(repository().join("scenes/spring-block.toml"), &own).unwrap();
     refused(traced(scene_at(&own), &own, 1..2).argument("--force"), &["is the scene"]);

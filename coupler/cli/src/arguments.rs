@@ -126,7 +126,7 @@ pub(crate) struct ResumeArguments {
 /// How the participants are run.
 #[derive(clap::Args)]
 pub(crate) struct HowArguments {
-    /// Worker threads of the fluid process
+    /// Worker threads of the fluid process; of a scene without fluid, of its solids
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..=1024))]
     pub(crate) threads: Option<u64>,
     /// Runs the roles as threads of one process

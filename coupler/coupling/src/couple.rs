@@ -7,7 +7,7 @@ use crate::error::RunError;
 use crate::external::ExternalSolid;
 use crate::recorder::Measured;
 pub use crate::solids::{ContactSummary, Done};
-use crate::solids::{External, Jump, Solids, Work};
+use crate::solids::{External, Solids, Work};
 use halfstep_link::{CouplerPort, Expect, StateMessage};
 use halfstep_output::run_json::{ForceKind, RoleSeconds};
 use halfstep_role::balance::Balance;
@@ -325,21 +325,8 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
             return Ok(());
         }
         let _phase = timeline::phase("checks");
-        let (step, name) = (expect.step, |place| self.port.name(place));
-        if let Some((place, first, now)) = self.solids.recounted(&self.states) {
-            let solid = name(place);
-            return Err(match first {
-                0 => RunError::NoParticles { solid },
-                _ => RunError::SolidCount { solid, first, now, step },
-            });
-        }
         let dt = self.tick.and_then(|tick| tick.dt).unwrap_or_default();
-        match self.solids.jumped(&self.states, dt) {
-            None => Ok(()),
-            Some(Jump { place, particle, distance, speed }) => {
-                Err(RunError::Jump { solid: name(place), particle, distance, speed, dt, step })
-            }
-        }
+        self.solids.check(&self.states, dt, expect.step)
     }
 
     fn reject_failure(&self, place: usize, header: &StateHeader) -> Result<(), RunError> {

@@ -1,8 +1,10 @@
 //! What the coupler does for a solid process that only exchanges states: its frames and probes, from its records.
 
 mod body;
+mod continuity;
 
 use crate::roles::probes_of;
+pub use continuity::Continuity;
 pub use halfstep_interface::contact::WallContact;
 use halfstep_output::{Frame, FramePoint, FrameWriter, OutputError};
 use halfstep_scene::geometry::{self, holds, nearest};

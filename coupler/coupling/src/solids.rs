@@ -7,7 +7,7 @@ mod touched;
 mod walls;
 
 use crate::error::RunError;
-use crate::external::ExternalSolid;
+use crate::external::{Continuity, ExternalSolid};
 use expected::Expected;
 use halfstep_interface::contact::{Booked, Contact, PairLaw, WallContact};
 use halfstep_interface::cross_viscosity::CrossViscosity;
@@ -27,18 +27,6 @@ use kinds::ByKind;
 pub use kinds::Done;
 use touched::Touched;
 use xxhash_rust::xxh3::Xxh3;
-
-/// Part of the smoothing length that a particle of a solid may move between two states: more, and the fluid's interface
-/// particles would no longer cover it.
-const REACH: f64 = 0.6;
-
-/// A particle that is somewhere else from one state to the next, although its solid says that it is slow.
-pub(crate) struct Jump {
-    pub(crate) place: usize,
-    pub(crate) particle: u32,
-    pub(crate) distance: f64,
-    pub(crate) speed: f64,
-}
 
 /// What stands in for a solid of another program.
 pub(crate) struct External<'s> {
@@ -91,12 +79,7 @@ struct CoupledSolid<const D: usize> {
     by_kind: ByKind,
     /// Positions at n, m.
     at_n: Vec<[f64; 3]>,
-    /// Number of its interface particles, once known.
-    count: Option<u64>,
-    /// Positions of the state before, m: of an external solid.
-    before: Vec<[f64; 3]>,
-    /// How far a particle may come between two states whatever its velocity, m.
-    reach: f64,
+    continuity: Continuity,
     /// Hash of the state that a checkpoint was made of, as the solid published it.
     saved: u64,
     external: Option<ExternalSolid>,
@@ -136,9 +119,7 @@ impl<const D: usize> Solids<D> {
                 forces: Vec::new(),
                 by_kind: ByKind::default(),
                 at_n: Vec::new(),
-                count: None,
-                before: Vec::new(),
-                reach: REACH * scene.smoothing_ratio * scene.resolution,
+                continuity: Continuity::new(scene, solid, external.is_some()),
                 saved: 0,
                 touches_walls,
                 walls,
@@ -230,35 +211,13 @@ impl<const D: usize> Solids<D> {
         Some(self.first + solid)
     }
 
-    /// Place of a solid that has no interface particles, or not as many as it had; with their number at first and now.
-    pub(crate) fn recounted(&mut self, states: &[impl StateMessage]) -> Option<(usize, u64, u64)> {
-        let all = self.solids.iter_mut().zip(&states[self.first..]).enumerate();
-        let mut counts = all.map(|(solid, (side, state))| {
-            let now = state.records().len() as u64;
-            (self.first + solid, *side.count.get_or_insert(now), now)
-        });
-        counts.find(|(_, first, now)| first != now || *now == 0)
-    }
-
-    /// A particle of an external solid that has come farther since the state before than the solid's velocities and the
-    /// time step, s, explain. The fluid would take it for one that is too fast.
-    pub(crate) fn jumped(&mut self, states: &[impl StateMessage], dt: f64) -> Option<Jump> {
-        let all = self.solids.iter_mut().zip(&states[self.first..]).enumerate();
-        all.filter(|(_, (side, _))| side.external.is_some()).find_map(|(solid, (side, state))| {
-            let (records, reach) = (state.records(), side.reach);
-            let length = |v: [f64; 3]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
-            let way =
-                |(r, x): (&StateRecord, &[f64; 3])| length(std::array::from_fn(|d| r.position[d] - x[d]));
-            let speed = records.iter().map(|r| length(r.velocity)).fold(0.0, f64::max);
-            let far = records.iter().zip(&side.before).map(|pair| (pair.0.id, way(pair)));
-            let jump = far
-                .max_by(|a, b| a.1.total_cmp(&b.1))
-                .filter(|(_, distance)| *distance > reach + 2.0 * speed * dt);
-            side.before.clear();
-            side.before.extend(records.iter().map(|r| r.position));
-            let place = self.first + solid;
-            jump.map(|(particle, distance)| Jump { place, particle, distance, speed })
-        })
+    /// Checks that each state, of step n, goes on from the one before, after a time step of at most `dt`, s.
+    ///
+    /// # Errors
+    /// What does not belong together.
+    pub(crate) fn check(&mut self, states: &[impl StateMessage], dt: f64, step: u64) -> Result<(), RunError> {
+        let mut all = self.solids.iter_mut().zip(&states[self.first..]);
+        all.try_for_each(|(side, state)| side.continuity.check(state.records(), dt, step))
     }
 
     /// Another program computes this participant.
@@ -467,7 +426,7 @@ impl<const D: usize> State for Solids<D> {
 impl<const D: usize> State for CoupledSolid<D> {
     fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
         fields.part("by_kind", &mut self.by_kind)?;
-        fields.optional_count("count", &mut self.count)?;
+        fields.optional_count("count", &mut self.continuity.count)?;
         fields.count("published", &mut self.saved)?;
         fields.points("position", &mut self.at_n)?;
         let mut cross_viscosity = self.forces.iter().map(|f| f.cross_viscosity).collect();

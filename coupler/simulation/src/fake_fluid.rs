@@ -6,7 +6,7 @@ use crate::particles::{self, PARTICLES_VARIABLE};
 use crate::run::check_gravity;
 use crate::session::watch;
 use halfstep_coupling::error::RunError;
-use halfstep_coupling::external::{ExternalSolid, WallContact};
+use halfstep_coupling::external::{Continuity, ExternalSolid, WallContact};
 use halfstep_coupling::roles::probes_of;
 use halfstep_coupling::supervise::{Children, StopFlags};
 use halfstep_link::{
@@ -116,6 +116,7 @@ pub fn run(scene: &Scene, trial: &Trial) -> Result<Tried, RunError> {
         scene,
         trial,
         solid: stand_in,
+        continuity: Continuity::new(scene, place - 1, true),
         walls: WallContact::new(scene, place - 1),
         log: ProbeLog::create(&path, &columns)?,
         clock: (0, 0.0),
@@ -218,6 +219,7 @@ struct Pusher<'a> {
     scene: &'a Scene,
     trial: &'a Trial,
     solid: ExternalSolid,
+    continuity: Continuity,
     /// Contact with walls, unless the solid evaluates it itself.
     walls: Option<WallContact>,
     log: ProbeLog,
@@ -232,6 +234,7 @@ struct Pusher<'a> {
 impl Pusher<'_> {
     fn run(&mut self, mut link: CouplerLink<Processes>) -> Result<(), RunError> {
         let mut sent: Option<Instant> = None;
+        let mut last_dt = 0.0;
         loop {
             let (step, time) = self.clock;
             let stops = time >= self.scene.end_time || self.trial.stop.stop.load(Ordering::Relaxed);
@@ -247,6 +250,7 @@ impl Pusher<'_> {
                 }
                 drop(link.receive_state(FLUID, &expect)?);
                 let records = state.records();
+                self.continuity.check(records, if stage == 0 { last_dt } else { dt }, step)?;
                 if step == 0 && stage == 0 {
                     if state.header().holds_own_walls() {
                         self.walls = None;
@@ -280,13 +284,11 @@ impl Pusher<'_> {
                 }
             }
             self.clock = (step + 1, next_time);
+            last_dt = dt;
         }
     }
 
     fn begin(&mut self, records: &[StateRecord]) -> Result<(), RunError> {
-        if records.is_empty() {
-            return Err(RunError::NoParticles { solid: self.trial.solid });
-        }
         self.solid.begin(records);
         if let Some(walls) = &mut self.walls {
             walls.begin(records);

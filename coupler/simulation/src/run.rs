@@ -238,6 +238,8 @@ fn execute_in<const D: usize>(
 ) -> Result<Ended, RunError> {
     let layout = geometry::layout::<D>(scene);
     let (mut report, placed) = begin_report(scene, &layout, options.isa)?;
+    let cores = std::thread::available_parallelism().map_or(usize::MAX, usize::from);
+    report.warnings.extend(crowded(scene, options.threads, cores));
     let checkpoint = resumed.map(|(checkpoint, earlier)| {
         report.external = earlier.external;
         report.resumed = earlier.resumed;
@@ -302,6 +304,21 @@ pub(crate) fn threads(scene: &Scene, wanted: Option<usize>) -> usize {
     wanted.unwrap_or(own)
 }
 
+/// Participants with many more worker threads than the machine has cores.
+fn crowded(scene: &Scene, wanted: Option<usize>, cores: usize) -> Vec<String> {
+    let fluid = scene.fluid.as_ref().map(|_| ("fluid", wanted.unwrap_or(scene.numerics.threads.fluid)));
+    let of_solid = if scene.fluid.is_some() { None } else { wanted };
+    let solids = scene.solids.iter().map(|solid| (&*solid.name, of_solid.unwrap_or(solid.threads)));
+    let many = |(_, threads): &(&str, usize)| *threads > cores.saturating_mul(2);
+    let all = fluid.into_iter().chain(solids).filter(many);
+    all.map(|(name, threads)| {
+        format!(
+            "{threads} worker threads of the {name} share the {cores} cores of this machine and take turns"
+        )
+    })
+    .collect()
+}
+
 /// A course that has ended, with whether it was stopped.
 type LocalEnd = (Course, Result<bool, RunError>);
 
@@ -325,4 +342,32 @@ fn local<const D: usize>(
         let result = run.run().map(|ended| course::report_local(scene, &options.external, ended, report));
         Ok((run.into_course(), result))
     })?
+}
+
+#[cfg(test)]
+mod tests {
+    use super::crowded;
+    use std::path::Path;
+
+    #[test]
+    fn many_more_threads_than_cores_are_told() {
+        let solid = "[solid]\ndensity = 2000.0\nyoungs_modulus = 1e7\npoissons_ratio = 0.2\nthreads = 4\n\
+                     [[shape]]\nname = \"wall\"\nphase = \"solid\"\nbox = { min = [0.0, 0.0], max = [0.1, 0.2] }\n";
+        let fluid = "[fluid]\ndensity = 1000.0\n[numerics]\nthreads = { fluid = 5 }\n[[shape]]\nname = \"water\"\n\
+                     phase = \"fluid\"\nbox = { min = [0.1, 0.0], max = [0.3, 0.1] }\n";
+        let top = "resolution = 0.01\nend_time = 1.0\ngravity = [0.0, -10.0]\n";
+        let parsed = |text: String| halfstep_scene::parse(&text, Path::new("x.toml"), &[]);
+        let [wet, dry] = [format!("{top}{fluid}{solid}"), format!("{top}{solid}")]
+            .map(|text| parsed(text).unwrap_or_else(|e| panic!("{e:?}")));
+        let line = |threads: usize, name: &str, cores: usize| {
+            format!(
+                "{threads} worker threads of the {name} share the {cores} cores of this machine and take turns"
+            )
+        };
+        assert_eq!(crowded(&wet, None, 3), [""; 0]);
+        assert_eq!(crowded(&wet, None, 2), [line(5, "fluid", 2)]);
+        assert_eq!(crowded(&wet, Some(1024), 1), [line(1024, "fluid", 1), line(4, "solid", 1)]);
+        assert_eq!(crowded(&dry, Some(1024), 2), [line(1024, "solid", 2)]);
+        assert_eq!(crowded(&dry, None, 2), [""; 0]);
+    }
 }

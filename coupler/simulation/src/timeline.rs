@@ -25,7 +25,6 @@ pub(crate) fn check(trace: &Trace, scene: &Path, out: &Path, force: bool) -> Res
     }
     match file.metadata() {
         Ok(found) if !found.is_file() => return refused("is no regular file".into()),
-        Ok(_) if !force => return refused("the file exists; --force replaces it".into()),
         _ => {}
     }
     let folder = match file.parent() {
@@ -41,8 +40,10 @@ pub(crate) fn check(trace: &Trace, scene: &Path, out: &Path, force: bool) -> Res
     if same(file, scene) {
         return refused("is the scene".into());
     }
-    if name.ends_with(".png") {
-        return refused("would be replaced by its picture".into());
+    if Path::new(&name).extension().is_some_and(|end| end.eq_ignore_ascii_case("png")) {
+        return refused(
+            "the file has trace events (JSON); their picture is trace.png in the run's folder".into(),
+        );
     }
     if same(folder, out) {
         if run_dir::is_of_run(&name) && name != "trace.json" {
@@ -51,6 +52,9 @@ pub(crate) fn check(trace: &Trace, scene: &Path, out: &Path, force: bool) -> Res
         if !folder.exists() {
             return Ok(());
         }
+    }
+    if file.exists() && !force {
+        return refused("the file exists; --force replaces it".into());
     }
     if !folder.is_dir() {
         return refused(format!("there is no folder {}", folder.display()));

@@ -2,7 +2,7 @@
 //!
 //! Points on a body's surface, a disc as a whole, are held against the exact surfaces of walls and of other bodies, and
 //! in the plane corners of walls against those of bodies: a contact does not know the spacing of particles. Of the
-//! points on one face the outermost two count in the plane.
+//! points on one face the outermost two count in the plane, and one between them that is deeper than both.
 
 use super::Vec3;
 use super::body::{Ball, Body, Pose};
@@ -54,6 +54,46 @@ impl Remembered {
         Self { ends: touch.normal.ends, impulse: touch.impulse, friction: [of(0), of(1)] }
     }
 }
+
+/// The points of one body on one face of another in the plane, each with its place along the face, m.
+struct OnFace {
+    /// n.
+    normal: Vec3,
+    low: (f64, Touch),
+    high: (f64, Touch),
+    deepest: (f64, Touch),
+}
+
+impl OnFace {
+    fn of(normal: Vec3, along: f64, touch: &Touch) -> Self {
+        let [low, high, deepest] = [0; 3].map(|_| (along, touch.clone()));
+        Self { normal, low, high, deepest }
+    }
+
+    fn add(&mut self, along: f64, touch: Touch) {
+        if touch.normal.gap < self.deepest.1.normal.gap {
+            self.deepest = (along, touch.clone());
+        }
+        if along < self.low.0 {
+            self.low = (along, touch);
+        } else if along > self.high.0 {
+            self.high = (along, touch);
+        }
+    }
+
+    /// Those that count; `rounding`, m, is no depth.
+    fn counting(self, rounding: f64, all: &mut Vec<Touch>) {
+        let several = self.high.0 > self.low.0;
+        let least = self.low.1.normal.gap.min(self.high.1.normal.gap);
+        let hump = several && self.deepest.1.normal.gap < least - rounding;
+        all.push(self.low.1);
+        all.extend(hump.then_some(self.deepest.1));
+        all.extend(several.then_some(self.high.1));
+    }
+}
+
+/// What is no depth of one point below others, in tolerances of contact.
+const ROUNDING: f64 = 0.1;
 
 /// How far beside a place a face is looked at, in tolerances of contact.
 const BESIDE: f64 = 10.0;
@@ -137,8 +177,7 @@ impl System {
         let (a, b): (&Body, &Body) = (&self.bodies[surface], &self.bodies[ball]);
         let (on_a, on_b): (&Pose, &Pose) = (&self.poses[surface], &self.poses[ball]);
         let back = on_a.turn.inverse();
-        // Faces: normal, and the points on it that are farthest out either way.
-        let mut faces: Vec<(Vec3, [(f64, Touch); 2])> = Vec::new();
+        let mut faces: Vec<OnFace> = Vec::new();
         for touching in &b.balls {
             let Ball { arm, radius, depth, .. } = touching;
             let at = on_b.center + on_b.turn * arm;
@@ -169,23 +208,15 @@ impl System {
                         return;
                     }
                     let along = point[1] * normal[0] - point[0] * normal[1];
-                    match faces.iter_mut().find(|(other, _)| other.dot(&normal) > SAME_FACE) {
-                        None => faces.push((normal, [(along, touch.clone()), (along, touch)])),
-                        Some((_, [low, high])) => {
-                            if along < low.0 {
-                                *low = (along, touch);
-                            } else if along > high.0 {
-                                *high = (along, touch);
-                            }
-                        }
+                    match faces.iter_mut().find(|face| face.normal.dot(&normal) > SAME_FACE) {
+                        None => faces.push(OnFace::of(normal, along, &touch)),
+                        Some(face) => face.add(along, touch),
                     }
                 });
             }
         }
-        for (_, [low, high]) in faces {
-            let several = high.0 > low.0;
-            all.push(low.1);
-            all.extend(several.then_some(high.1));
+        for face in faces {
+            face.counting(ROUNDING * self.tolerance, all);
         }
     }
 

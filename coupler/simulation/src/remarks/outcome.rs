@@ -129,8 +129,8 @@ fn rubble(scene: &Scene, report: &RunReport) -> Vec<String> {
         let Some((bodies, loose)) = end("bodies").zip(end("loose")) else { continue };
         if loose >= RUBBLE && loose > 0.5 * bodies {
             all.push(format!(
-                "{loose} of the {bodies} bodies of the {} are single particles: how many, and where they go, depends \
-                 on the spacing",
+                "{loose} particles of the {} are debris of one particle or one row, and it has {bodies} bodies: how \
+                 many, and where they go, depends on the spacing",
                 scene.solids[probe.solid.unwrap_or(0)].name
             ));
         }
@@ -225,8 +225,8 @@ mod tests {
         };
         assert_eq!(of(12.0, 9.0), [""; 0], "few");
         assert_eq!(of(20.0, 10.0), [""; 0], "half of them");
-        let said = "10 of the 19 bodies of the solid are single particles: how many, and where they go, depends on the \
-                    spacing";
+        let said = "10 particles of the solid are debris of one particle or one row, and it has 19 bodies: how many, \
+                    and where they go, depends on the spacing";
         assert_eq!(of(19.0, 10.0), [said]);
     }
 

@@ -239,6 +239,25 @@ fn posts_and_ridges_are_touched_between_points() {
     assert!((x - 0.4).abs() < 1e-4 && (y - 0.05).abs() < 1e-4, "{x}, {y}");
 }
 
+/// A plate that falls on three teeth of one wall between two of its own points stays on top of the middle one, which is
+/// higher.
+#[test]
+fn the_highest_of_three_teeth_carries() {
+    let plate = "[[shape]]\nname = \"plate\"\nphase = \"solid\"\nvelocity = [0.0, -2.0]\n\
+                 box = { min = [-0.375, 0.003], max = [0.375, 0.253] }\n";
+    let teeth = "[[shape]]\nname = \"teeth\"\nphase = \"wall\"\npolygon = [[-0.09, -0.5], [0.09, -0.5], \
+                 [0.06, -5e-4], [0.03, -0.05], [0.0, 0.0], [-0.03, -0.05], [-0.06, -5e-4]]\n";
+    let mut scene = scene("", &(plate.to_owned() + teeth));
+    scene.resolution = 0.25;
+    let mut model = build::<2>(&scene);
+    let load = free(&model);
+    let mut lowest = f64::INFINITY;
+    run(&mut model, 0.3, 1e-3, &load, |_, model| lowest = lowest.min(model.states[0].center[1] - 0.125));
+    let last = model.states[0].center[1] - 0.125;
+    println!("the plate lies at {last:.2e} m, {lowest:.2e} m at least");
+    assert!(lowest > -2.5e-5 && last.abs() < 2.5e-5, "{lowest} {last}");
+}
+
 /// A block slides level off its table, over a floor of two flush walls, and over a table's edge with a seam between its
 /// two shapes: slowly, so that it comes within the tolerance of each corner.
 #[test]
