@@ -42,6 +42,16 @@ enum Half {
     Second,
 }
 
+/// An impact.
+struct Approach {
+    /// Place among the touches.
+    touch: usize,
+    /// When in the drift before it the surfaces met, over its length.
+    instant: f64,
+    /// Speed along the normal after it, m/s.
+    bounce: f64,
+}
+
 /// What a kick did.
 pub(super) struct Kick {
     /// s.
@@ -163,18 +173,29 @@ impl System {
 
     /// Impacts of the present state. Those that approach bounce together, and what they push against others bounces in
     /// turn (generalised reflections, Smith, Kaufman, Vouga, Tamstorf and Grinspun 2012), until nothing approaches.
-    fn collide(&mut self, touches: &[Touch], dt: f64) -> Met {
+    /// Returns the touches that approached, too, by their place.
+    fn collide(&mut self, touches: &[Touch], dt: f64) -> (Met, Vec<Approach>) {
         let mut met = Met::default();
         if self.restitution == 0.0 || touches.is_empty() {
-            return met;
+            return (met, Vec::new());
         }
         let speed = |pose: &Pose| pose.velocity.norm_squared().sqrt();
         let fastest = self.poses.iter().map(speed).fold(0.0, f64::max);
         let creep = (CREEP[0] * fastest).max(CREEP[1] * dt * self.gravity.norm_squared().sqrt());
         let mut hit = self.approaching(touches, creep);
         if hit.is_empty() {
-            return met;
+            return (met, Vec::new());
         }
+        let approach = |(touch, one): (usize, &Touch)| {
+            let speed = -self.rate(one);
+            let left = (-one.normal.gap).max(0.0) / (speed * dt);
+            (speed > creep && one.is_contact()).then_some(Approach {
+                touch,
+                instant: 1.0 - left.min(1.0),
+                bounce: 0.0,
+            })
+        };
+        let mut approached: Vec<Approach> = touches.iter().enumerate().filter_map(approach).collect();
         let rows = self.joint_rows();
         let factors = Factors::of(&rows, &self.bodies, &self.poses);
         let held = Held { rows: &rows, factors: &factors, rates: &vec![0.0; rows.len()] };
@@ -187,13 +208,21 @@ impl System {
                 break;
             }
         }
-        met
+        for one in &mut approached {
+            one.bounce = self.rate(&touches[one.touch]);
+        }
+        (met, approached)
+    }
+
+    /// Speed of a touch along its normal, m/s.
+    fn rate(&self, touch: &Touch) -> f64 {
+        touch.normal.rate(&self.bodies, &self.poses)
     }
 
     /// Those touches that approach faster than `creep`, m/s; contacts have the speed of the bounce as their target.
     fn approaching(&self, touches: &[Touch], creep: f64) -> Vec<Touch> {
         let hit = |touch: &Touch| {
-            let rate = touch.normal.rate(&self.bodies, &self.poses);
+            let rate = self.rate(touch);
             let target = if touch.is_contact() { -self.restitution * rate } else { touch.target };
             (rate < -creep).then(|| Touch { target, ..touch.clone() })
         };
@@ -306,17 +335,23 @@ impl System {
         let energy = self.kinetic_energy();
         // Impacts whose bodies the last sub-step pushed apart and against others.
         let resting = self.touches::<D>();
-        let met = self.collide(&resting, dt);
+        let (met, _) = self.collide(&resting, dt);
         let kick = self.kick(half, Half::First);
         let met = met.and(self.meet(resting));
         let driven = self.drift(dt, time + dt);
         let drifting = self.kinetic_energy();
         self.book_kick(&kick);
         self.book_contacts(&met, drifting - energy - driven - self.work(&kick, &self.poses));
-        let touches = self.touches::<D>();
+        let mut touches = self.touches::<D>();
         let halfway = self.poses.clone();
-        let met = self.collide(&touches, dt);
+        let (met, approached) = self.collide(&touches, dt);
         let kick = self.kick(half, Half::Second);
+        // What bounces has on the surface, to which it is moved, the speed that it has there: of the drift's, which is
+        // that of the sub-step's middle, and of what it fell between that and its impact.
+        for Approach { touch, instant, bounce } in approached {
+            let kicked = self.rate(&touches[touch]) - bounce;
+            touches[touch].target = (bounce + self.restitution * (1.0 - 2.0 * instant) * kicked).max(0.0);
+        }
         let met = met.and(self.meet(touches.clone()));
         let end = std::mem::replace(&mut self.poses, halfway);
         self.book_kick(&kick);

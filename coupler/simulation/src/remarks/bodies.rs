@@ -1,5 +1,6 @@
 //! Remarks on bodies: what holds them, what they stand on, what they touch.
 
+use super::joints;
 use super::meet;
 use super::reached::by_place;
 use super::shapes::length;
@@ -230,6 +231,9 @@ pub(super) fn touching<const D: usize>(
 ) {
     for (a, b) in geometry::touching(scene, layout) {
         let (a, b) = (&scene.shapes[a], &scene.shapes[b]);
+        if joints::tie(scene, a, b) {
+            continue;
+        }
         let said = match [a, b].map(|shape| !shape.body.is_empty()) {
             // Whoever names both knows.
             [true, true] => continue,

@@ -31,6 +31,20 @@ fn hinged(keys: &str) -> Vec<String> {
 
 const FOOT: &str = "at = [0.5, 0.02]";
 
+/// Two floats that touch, and a hinge between them.
+#[test]
+fn what_a_hinge_ties_does_not_part() {
+    let second =
+        "[[shape]]\nname = \"arm\"\nphase = \"solid\"\nbox = { min = [0.52, 0.22], max = [0.72, 0.26] }\n";
+    let parts = "`flap` and `arm` touch and are bodies of their own, which repel each other and may part";
+    let foot = joint("foot", "hinge", FOOT);
+    let found = jointed(&[foot.clone()], second);
+    assert!(has(&found, parts), "{found:?}");
+    let elbow = joint("elbow", "hinge", "with = \"arm\", at = [0.52, 0.24]");
+    let found = jointed(&[foot, elbow], second);
+    assert!(!has(&found, "may part"), "{found:?}");
+}
+
 #[test]
 fn masses_of_another_unit() {
     assert_eq!(given("mass = 5.0"), [""; 0]);

@@ -29,6 +29,15 @@ fn shapes<'s>(scene: &'s Scene, solid: usize, body: &'s str) -> impl Iterator<It
     scene.shapes.iter().filter(move |shape| shape.solid == Some(solid) && shape.body() == body)
 }
 
+/// A joint keeps the bodies of two shapes together.
+pub(super) fn tie(scene: &Scene, a: &Shape, b: &Shape) -> bool {
+    let of = |joint: &Joint| {
+        let ends = [joint.body.as_str(), joint.with.as_str()];
+        joint.holds() && (ends == [a.body(), b.body()] || ends == [b.body(), a.body()])
+    };
+    a.solid == b.solid && rigid(scene).any(|(k, keys)| a.solid == Some(k) && keys.joints.iter().any(of))
+}
+
 /// What a joint ties its body to keeps its place.
 fn is_grounded(scene: &Scene, joint: &Joint) -> bool {
     let rests = |s: &Shape| s.phase == Phase::Wall && s.name == joint.with && s.motion.is_none();
