@@ -191,10 +191,14 @@ fn wrong_arguments_are_told_before_anything_starts() {
     for own in ["run.json", "scene.json", "probes.csv", "frames", "checkpoint-a"] {
         refused(traced(gate(), &out.join(own), 1..2).out(&out), &["is a file that the run itself leaves"]);
     }
-    refused(traced(gate(), &folder.path().join("gate.png"), 1..2), &["their picture is trace.png"]);
+    let picture = folder.path().join("gate.png");
+    refused(traced(gate(), &picture, 1..2), &["their picture is trace.png"]);
+    std::fs::write(&picture, "mine").unwrap();
+    refused(traced(gate(), &picture, 1..2), &["their picture is trace.png"]);
     let own = folder.path().join("own.toml");
     std::fs::copy(repository().join("scenes/spring-block.toml"), &own).unwrap();
     refused(traced(scene_at(&own), &own, 1..2).argument("--force"), &["is the scene"]);
+    refused(traced(scene_at(&own), &own, 1..2), &["is the scene"]);
     std::fs::write(&file, "mine").unwrap();
     refused(traced(gate(), &file, 1..2), &["the file exists; --force replaces it"]);
     assert_eq!(std::fs::read_to_string(&file).unwrap(), "mine");

@@ -239,7 +239,7 @@ fn execute_in<const D: usize>(
     let layout = geometry::layout::<D>(scene);
     let (mut report, placed) = begin_report(scene, &layout, options.isa)?;
     let cores = std::thread::available_parallelism().map_or(usize::MAX, usize::from);
-    report.warnings.extend(crowded(scene, options.threads, cores));
+    report.warnings.extend(crowded(scene, options, cores));
     let checkpoint = resumed.map(|(checkpoint, earlier)| {
         report.external = earlier.external;
         report.resumed = earlier.resumed;
@@ -304,17 +304,22 @@ pub(crate) fn threads(scene: &Scene, wanted: Option<usize>) -> usize {
     wanted.unwrap_or(own)
 }
 
-/// Participants with many more worker threads than the machine has cores.
-fn crowded(scene: &Scene, wanted: Option<usize>, cores: usize) -> Vec<String> {
-    let fluid = scene.fluid.as_ref().map(|_| ("fluid", wanted.unwrap_or(scene.numerics.threads.fluid)));
-    let of_solid = if scene.fluid.is_some() { None } else { wanted };
-    let solids = scene.solids.iter().map(|solid| (&*solid.name, of_solid.unwrap_or(solid.threads)));
-    let many = |(_, threads): &(&str, usize)| *threads > cores.saturating_mul(2);
-    let all = fluid.into_iter().chain(solids).filter(many);
-    all.map(|(name, threads)| {
-        format!(
-            "{threads} worker threads of the {name} share the {cores} cores of this machine and take turns"
-        )
+/// Participants of this program with many more worker threads than the machine has cores.
+fn crowded(scene: &Scene, options: &RunOptions, cores: usize) -> Vec<String> {
+    let external = options.external_names();
+    let pools: Vec<(&str, usize)> = match scene.fluid {
+        // One pool for all.
+        None => vec![("solid", threads(scene, options.threads))],
+        Some(_) => {
+            let own = |name: &str| !external.iter().any(|other| other.as_str() == name);
+            let solids = scene.solids.iter().filter(|solid| own(&solid.name));
+            let fluid = ("fluid", options.threads.unwrap_or(scene.numerics.threads.fluid));
+            std::iter::once(fluid).chain(solids.map(|solid| (&*solid.name, solid.threads))).collect()
+        }
+    };
+    let many = pools.into_iter().filter(|(_, threads)| *threads > cores.saturating_mul(2));
+    many.map(|(name, threads)| {
+        format!("{threads} worker threads of the {name} take turns on this machine's processors ({cores})")
     })
     .collect()
 }
@@ -347,6 +352,8 @@ fn local<const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::crowded;
+    use crate::options::{RunOptions, SolidSource};
+    use halfstep_wire::Name;
     use std::path::Path;
 
     #[test]
@@ -361,13 +368,16 @@ mod tests {
             .map(|text| parsed(text).unwrap_or_else(|e| panic!("{e:?}")));
         let line = |threads: usize, name: &str, cores: usize| {
             format!(
-                "{threads} worker threads of the {name} share the {cores} cores of this machine and take turns"
+                "{threads} worker threads of the {name} take turns on this machine's processors ({cores})"
             )
         };
-        assert_eq!(crowded(&wet, None, 3), [""; 0]);
-        assert_eq!(crowded(&wet, None, 2), [line(5, "fluid", 2)]);
-        assert_eq!(crowded(&wet, Some(1024), 1), [line(1024, "fluid", 1), line(4, "solid", 1)]);
-        assert_eq!(crowded(&dry, Some(1024), 2), [line(1024, "solid", 2)]);
-        assert_eq!(crowded(&dry, None, 2), [""; 0]);
+        let with = |threads| RunOptions { threads, ..RunOptions::new("out".into()) };
+        assert_eq!(crowded(&wet, &with(None), 3), [""; 0]);
+        assert_eq!(crowded(&wet, &with(None), 2), [line(5, "fluid", 2)]);
+        assert_eq!(crowded(&wet, &with(Some(1024)), 1), [line(1024, "fluid", 1), line(4, "solid", 1)]);
+        let foreign = RunOptions { external: vec![(Name::SOLID, SolidSource::ByHand)], ..with(Some(1024)) };
+        assert_eq!(crowded(&wet, &foreign, 1), [line(1024, "fluid", 1)]);
+        assert_eq!(crowded(&dry, &with(Some(1024)), 2), [line(1024, "solid", 2)]);
+        assert_eq!(crowded(&dry, &with(None), 2), [""; 0]);
     }
 }

@@ -11,6 +11,7 @@ mod body;
 mod build;
 mod contact;
 mod decide;
+mod impact;
 mod joint;
 mod limit;
 mod model;

@@ -11,10 +11,6 @@ use nalgebra::Matrix3;
 
 /// Newton steps that bring joints together; each of them wins as many digits as the sub-step is short.
 const JOINT_STEPS: usize = 30;
-/// Most rounds of impacts that follow from each other at one instant.
-const IMPACTS: usize = 1000;
-/// An approach of less than this part of the fastest body's speed, or of what gravity adds in a sub-step, is none.
-const CREEP: [f64; 2] = [1e-6, 1e-3];
 /// Part of a body's size, 1 m or rad, to which joints hold.
 const JOINT_GAP: f64 = 1e-14;
 
@@ -40,16 +36,6 @@ impl Wrench {
 enum Half {
     First,
     Second,
-}
-
-/// An impact.
-struct Approach {
-    /// Place among the touches.
-    touch: usize,
-    /// When in the drift before it the surfaces met, over its length.
-    instant: f64,
-    /// Speed along the normal after it, m/s.
-    bounce: f64,
 }
 
 /// What a kick did.
@@ -92,7 +78,7 @@ pub(super) struct System {
 
 impl System {
     /// Rows of all joints.
-    fn joint_rows(&self) -> Vec<Row> {
+    pub(super) fn joint_rows(&self) -> Vec<Row> {
         let mut rows = Vec::new();
         self.links.iter().for_each(|link| link.rows(self.plane, &self.bodies, &self.poses, &mut rows));
         rows
@@ -108,28 +94,15 @@ impl System {
     /// A kick by loads, gravity and springs over `dt`, s. Dampers take the velocities before the first kick of a
     /// sub-step and after the second: both together are of second order.
     fn kick(&mut self, dt: f64, half: Half) -> Kick {
-        let mut springs = Vec::new();
-        let mut pushes = Vec::new();
-        let mut ways = Vec::new();
-        for link in self.links.iter().filter(|link| link.stiffness > 0.0 || link.damping > 0.0) {
-            ways.clear();
-            link.ways(self.plane, &self.bodies, &self.poses, &mut ways);
-            for row in &ways {
-                let damper = match half {
-                    Half::First => -link.damping * row.rate(&self.bodies, &self.poses),
-                    Half::Second => 0.0,
-                };
-                springs.push((*row, damper - link.stiffness * (row.gap - link.rest), damper, link.damping));
-            }
-        }
-        for k in (0..self.real).filter(|&k| self.bodies[k].gives_way()) {
-            let (wrench, pose) = (self.wrenches[k], &mut self.poses[k]);
-            pose.velocity += (wrench.force / self.bodies[k].mass + self.gravity) * dt;
-            let moment = wrench.moment(&pose.rotation());
-            let moment = if self.plane { Vec3::new(0.0, 0.0, moment[2]) } else { moment };
-            pose.spin += moment * dt;
-            pushes.push((k, wrench.force + self.gravity * self.bodies[k].mass, moment));
-        }
+        let of = |(row, elastic, damping): (Row, f64, f64)| {
+            let damper = match half {
+                Half::First => -damping * row.rate(&self.bodies, &self.poses),
+                Half::Second => 0.0,
+            };
+            (row, damper + elastic, damper, damping)
+        };
+        let mut springs: Vec<(Row, f64, f64, f64)> = self.springs().into_iter().map(of).collect();
+        let pushes = self.fall(dt);
         for (row, force, ..) in &springs {
             row.push(&self.bodies, &mut self.poses, force * dt);
         }
@@ -158,6 +131,33 @@ impl System {
         Kick { dt, pushes, springs, driven }
     }
 
+    /// Springs and dampers: rows, with the force of the spring along each, N, and its damping, kg/s (N m and kg m²/s of
+    /// those that turn).
+    pub(super) fn springs(&self) -> Vec<(Row, f64, f64)> {
+        let mut all = Vec::new();
+        let mut ways = Vec::new();
+        for link in self.links.iter().filter(|link| link.stiffness > 0.0 || link.damping > 0.0) {
+            ways.clear();
+            link.ways(self.plane, &self.bodies, &self.poses, &mut ways);
+            all.extend(ways.iter().map(|row| (*row, -link.stiffness * (row.gap - link.rest), link.damping)));
+        }
+        all
+    }
+
+    /// Velocities by loads and gravity over `dt`, s. Returns bodies, forces and moments.
+    pub(super) fn fall(&mut self, dt: f64) -> Vec<(usize, Vec3, Vec3)> {
+        let mut pushes = Vec::new();
+        for k in (0..self.real).filter(|&k| self.bodies[k].gives_way()) {
+            let (wrench, pose) = (self.wrenches[k], &mut self.poses[k]);
+            pose.velocity += (wrench.force / self.bodies[k].mass + self.gravity) * dt;
+            let moment = wrench.moment(&pose.rotation());
+            let moment = if self.plane { Vec3::new(0.0, 0.0, moment[2]) } else { moment };
+            pose.spin += moment * dt;
+            pushes.push((k, wrench.force + self.gravity * self.bodies[k].mass, moment));
+        }
+        pushes
+    }
+
     /// Impulses of joints that leave no velocity along their rows. Returns the work of what is driven through them, J.
     fn hold(&mut self, rows: &[Row], factors: &Factors) -> f64 {
         let mut impulses: Vec<f64> = rows.iter().map(|row| -row.rate(&self.bodies, &self.poses)).collect();
@@ -171,66 +171,8 @@ impl System {
         driven
     }
 
-    /// Impacts of the present state. Those that approach bounce together, and what they push against others bounces in
-    /// turn (generalised reflections, Smith, Kaufman, Vouga, Tamstorf and Grinspun 2012), until nothing approaches.
-    /// Returns the touches that approached, too, by their place.
-    fn collide(&mut self, touches: &[Touch], dt: f64) -> (Met, Vec<Approach>) {
-        let mut met = Met::default();
-        if self.restitution == 0.0 || touches.is_empty() {
-            return (met, Vec::new());
-        }
-        let speed = |pose: &Pose| pose.velocity.norm_squared().sqrt();
-        let fastest = self.poses.iter().map(speed).fold(0.0, f64::max);
-        let creep = (CREEP[0] * fastest).max(CREEP[1] * dt * self.gravity.norm_squared().sqrt());
-        let mut hit = self.approaching(touches, creep);
-        if hit.is_empty() {
-            return (met, Vec::new());
-        }
-        let approach = |(touch, one): (usize, &Touch)| {
-            let speed = -self.rate(one);
-            let left = (-one.normal.gap).max(0.0) / (speed * dt);
-            (speed > creep && one.is_contact()).then_some(Approach {
-                touch,
-                instant: 1.0 - left.min(1.0),
-                bounce: 0.0,
-            })
-        };
-        let mut approached: Vec<Approach> = touches.iter().enumerate().filter_map(approach).collect();
-        let rows = self.joint_rows();
-        let factors = Factors::of(&rows, &self.bodies, &self.poses);
-        let held = Held { rows: &rows, factors: &factors, rates: &vec![0.0; rows.len()] };
-        for _ in 0..IMPACTS {
-            let impulses = solve(&self.bodies, &mut self.poses, &held, &mut hit, self.friction);
-            self.note(&hit);
-            met = met.and(self.book_meeting(&rows, &impulses, &hit));
-            hit = self.approaching(touches, creep);
-            if hit.is_empty() {
-                break;
-            }
-        }
-        for one in &mut approached {
-            one.bounce = self.rate(&touches[one.touch]);
-        }
-        (met, approached)
-    }
-
-    /// Speed of a touch along its normal, m/s.
-    fn rate(&self, touch: &Touch) -> f64 {
-        touch.normal.rate(&self.bodies, &self.poses)
-    }
-
-    /// Those touches that approach faster than `creep`, m/s; contacts have the speed of the bounce as their target.
-    fn approaching(&self, touches: &[Touch], creep: f64) -> Vec<Touch> {
-        let hit = |touch: &Touch| {
-            let rate = self.rate(touch);
-            let target = if touch.is_contact() { -self.restitution * rate } else { touch.target };
-            (rate < -creep).then(|| Touch { target, ..touch.clone() })
-        };
-        touches.iter().filter_map(hit).collect()
-    }
-
     /// Adds the impulses of contacts to what the bodies feel in this stage.
-    fn note(&mut self, touches: &[Touch]) {
+    pub(super) fn note(&mut self, touches: &[Touch]) {
         for touch in touches.iter().filter(|touch| touch.is_contact()) {
             let all = std::iter::once((&touch.normal, touch.impulse));
             for (row, impulse) in all.chain(touch.tangents.iter().zip(touch.friction.iter().copied())) {
@@ -335,23 +277,17 @@ impl System {
         let energy = self.kinetic_energy();
         // Impacts whose bodies the last sub-step pushed apart and against others.
         let resting = self.touches::<D>();
-        let (met, _) = self.collide(&resting, dt);
+        let met = self.collide(&resting, dt, None);
         let kick = self.kick(half, Half::First);
         let met = met.and(self.meet(resting));
         let driven = self.drift(dt, time + dt);
         let drifting = self.kinetic_energy();
         self.book_kick(&kick);
         self.book_contacts(&met, drifting - energy - driven - self.work(&kick, &self.poses));
-        let mut touches = self.touches::<D>();
+        let touches = self.touches::<D>();
         let halfway = self.poses.clone();
-        let (met, approached) = self.collide(&touches, dt);
+        let met = self.collide(&touches, dt, Some(half));
         let kick = self.kick(half, Half::Second);
-        // What bounces has on the surface, to which it is moved, the speed that it has there: of the drift's, which is
-        // that of the sub-step's middle, and of what it fell between that and its impact.
-        for Approach { touch, instant, bounce } in approached {
-            let kicked = self.rate(&touches[touch]) - bounce;
-            touches[touch].target = (bounce + self.restitution * (1.0 - 2.0 * instant) * kicked).max(0.0);
-        }
         let met = met.and(self.meet(touches.clone()));
         let end = std::mem::replace(&mut self.poses, halfway);
         self.book_kick(&kick);

@@ -1,6 +1,7 @@
 //! Rigid bodies by hand.
 
 mod hard_tests;
+mod impact_tests;
 mod joint_tests;
 
 use super::Rigid;

@@ -32,7 +32,7 @@ impl Continuity {
         Self { solid, count: None, reach, before: Vec::new() }
     }
 
-    /// Takes the next state, of step n, over, after a time step of at most `dt`, s.
+    /// Looks at the next state, of step n, after a time step of at most `dt`, s.
     ///
     /// # Errors
     /// It has no particles, not as many as the states before, or one that came farther than velocities and time step

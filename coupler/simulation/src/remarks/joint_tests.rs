@@ -38,7 +38,7 @@ fn what_a_hinge_ties_does_not_part() {
         "[[shape]]\nname = \"arm\"\nphase = \"solid\"\nbox = { min = [0.52, 0.22], max = [0.72, 0.26] }\n";
     let parts = "`flap` and `arm` touch and are bodies of their own, which repel each other and may part";
     let foot = joint("foot", "hinge", FOOT);
-    let found = jointed(&[foot.clone()], second);
+    let found = jointed(std::slice::from_ref(&foot), second);
     assert!(has(&found, parts), "{found:?}");
     let elbow = joint("elbow", "hinge", "with = \"arm\", at = [0.52, 0.24]");
     let found = jointed(&[foot, elbow], second);

@@ -118,7 +118,7 @@ fn beside_cracks(scene: &Scene, report: &RunReport) -> Vec<String> {
     all
 }
 
-/// Solids that fell to single particles, of those with a probe for it.
+/// Solids that fell to single particles and rows, of those with a probe for it: more than one for two bodies.
 fn rubble(scene: &Scene, report: &RunReport) -> Vec<String> {
     let mut all = Vec::new();
     for probe in scene.probes.iter().filter(|probe| matches!(probe.kind, ProbeKind::Bodies)) {

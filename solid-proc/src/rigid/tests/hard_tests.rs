@@ -258,40 +258,6 @@ fn the_highest_of_three_teeth_carries() {
     assert!(lowest > -2.5e-5 && last.abs() < 2.5e-5, "{lowest} {last}");
 }
 
-/// A disc and a box fall on a floor without loss, in the program's own steps: ten bounces of 1 m, and of e^2 of that
-/// with e = 0.8. Where in a step they land is another place each time.
-#[test]
-fn what_bounces_keeps_its_height() {
-    let disc = "disc = { center = [0.0, 1.1], radius = 0.1 }";
-    let block = "box = { min = [-0.1, 1.0], max = [0.1, 1.2] }";
-    for (geometry, restitution) in [(disc, 1.0), (block, 1.0), (disc, 0.8_f64)] {
-        let shapes = format!("[[shape]]\nname = \"body\"\nphase = \"solid\"\n{geometry}\n{FLOOR}");
-        let mut scene = scene(&format!("contact = {{ restitution = {restitution} }}"), &shapes);
-        scene.resolution = 0.02;
-        let mut model = build::<2>(&scene);
-        let load = free(&model);
-        let (mut time, mut rising, mut tops, mut top) = (0.0, false, Vec::new(), 0.0_f64);
-        while tops.len() < 10 {
-            let dt = model.sub_step_limit();
-            for stage in HalfStep::begin(0, time).lasting(dt).both() {
-                model.advance(&stage, 1, &load).expect("within bounds");
-            }
-            time += dt;
-            let state = &model.states[0];
-            let up = state.velocity[1] > 0.0;
-            top = if up { state.center[1] - 0.1 + state.velocity[1].powi(2) / (2.0 * G) } else { top };
-            if rising && !up {
-                tops.push(top);
-            }
-            rising = up;
-        }
-        let height = |k: usize| restitution.powi(2 * (k as i32 + 1));
-        let off: Vec<f64> = tops.iter().enumerate().map(|(k, top)| top - height(k)).collect();
-        println!("{geometry}, {restitution}: {off:?}");
-        assert!(off.iter().all(|off| off.abs() < 1e-4), "{geometry}, {restitution}: {off:?}");
-    }
-}
-
 /// A block slides level off its table, over a floor of two flush walls, and over a table's edge with a seam between its
 /// two shapes: slowly, so that it comes within the tolerance of each corner.
 #[test]
