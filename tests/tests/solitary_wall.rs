@@ -53,13 +53,19 @@ fn a_solitary_wave_breaks_a_wall_at_the_depth_of_beam_theory() {
     let through = |run: &Finished| run.curve("breach.flux").mean() * TO;
     println!("{:e} m² through the breach, {:e} past a wall that holds", through(&broken), through(&whole));
     assert!(through(&broken) > 3.0 * through(&whole).max(1e-4));
-    // Wall and water.
-    let largest = |name: &str| broken.curve(name).values.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
-    let rest = [largest("ledger.integration"), largest("water-ledger.integration")];
-    let (moves, holds) = (largest("ledger.kinetic"), largest("water-ledger.kinetic"));
-    println!("rests {rest:?} J/m, kinetic energy of the wall up to {moves}, of the water {holds} J/m");
-    // 0.012 and 0.099 % measured.
-    assert!(rest[0] < 5e-4 * moves && rest[1] < 2e-3 * holds, "{rest:?}");
+    // Of wall and water, over the most kinetic energy: until the strike 0.010 and 0.018 % measured, among the rubble
+    // 0.025 and 0.20 %, with other digits of its contact 0.012 and 0.10 %.
+    let largest = |name: &str, until: f64| {
+        let values = broken.curve(name).between(0.0, until).values;
+        values.iter().fold(0.0, |most: f64, v| most.max(v.abs()))
+    };
+    for (until, bounds) in [(1.9, [2e-4, 4e-4]), (TO, [1e-3, 5e-3])] {
+        let rest = ["ledger", "water-ledger"].map(|name| {
+            largest(&format!("{name}.integration"), until) / largest(&format!("{name}.kinetic"), until)
+        });
+        println!("rests until {until} s: {rest:?} of the most kinetic energy");
+        assert!(rest[0] < bounds[0] && rest[1] < bounds[1], "{until} s: {rest:?}");
+    }
     let energy = broken.report.energy.as_ref().expect("ledgers");
     let fracture = energy.joules("first", EnergyPart::Fracture).expect("its part");
     assert!((fracture + taken.at(TO)).abs() < 1e-9 * taken.at(TO), "{fracture} in run.json");
