@@ -111,17 +111,17 @@ fn a_block_that_slides_on_a_floor_stops() {
     }
 }
 
-/// The rows of a floor of the block's own spacing do not: pair by pair they would, by 0.75 m/s².
+/// A floor is a surface: contact pair by pair with its particles would brake by 0.75 m/s².
 #[test]
-fn nothing_but_friction_brakes_a_block_on_a_floor_of_particles() {
+fn nothing_but_friction_brakes_a_block_on_a_floor() {
     let (run, taken) = slid(0.0, 0.3);
     let [_, v] = mean(&run, 200);
     let brakes = (1.0 - v[0]) / 0.3;
     println!("{brakes} m/s²");
-    assert!(taken == 0.0 && brakes.abs() < 1e-3, "{brakes} {taken}");
+    assert!(taken == 0.0 && brakes.abs() < 1e-12, "{brakes} {taken}");
 }
 
-/// A slab of weak concrete that slides on a floor of particles at 1 m/s under its weight alone. Where pairs push it
+/// A slab of weak concrete that slides on a floor at 1 m/s under its weight alone. Where pairs of particles push it
 /// climbs from row to row, strikes, and 156 of its 160 particles are single after 0.1 s.
 #[test]
 fn a_brittle_slab_slides_in_one_piece() {
@@ -136,7 +136,7 @@ fn a_brittle_slab_slides_in_one_piece() {
     assert!((x[0] - 0.07).abs() < 1e-6 && (v[0] - 1.0).abs() < 1e-5, "{x:?} {v:?}");
 }
 
-/// On a slope below mu it stays where it is, but for the time in which it leans on the floor's particles.
+/// On a slope below mu it stays where it is, but for the way that it leans.
 #[test]
 fn a_block_on_a_slope_below_the_angle_of_friction_stays() {
     let (sine, cosine) = (0.31_f64.atan().sin(), 0.31_f64.atan().cos());
