@@ -124,11 +124,16 @@ pub(crate) struct Measured<'a, const D: usize> {
     pub(crate) contact: &'a [[f64; D]],
 }
 
-/// Force of contacts on each particle of a model, by number, N (2D: N/m).
-pub(crate) fn contact_forces<const D: usize>(model: &dyn SolidModel<D>) -> Vec<[f64; D]> {
-    let mut force = vec![[0.0; D]; model.particles().len()];
-    model.contact_forces(&mut |p, given| force[p as usize] = given);
-    force
+impl<const D: usize> Measured<'_, D> {
+    /// Force of contacts on each particle, by number, N (2D: N/m).
+    pub(crate) fn contact_forces(&self) -> Vec<[f64; D]> {
+        if !self.contact.is_empty() {
+            return self.contact.to_vec();
+        }
+        let mut force = vec![[0.0; D]; self.model.particles().len()];
+        self.model.contact_forces(&mut |p, given| force[p as usize] = given);
+        force
+    }
 }
 
 impl<const D: usize> Measurement<D> {
@@ -268,17 +273,13 @@ fn of_particles<const D: usize>(
         let all = particles.iter().map(|&p| (&force[p as usize], &state.position[p as usize]));
         about(mean(state.position), all, put);
     };
-    let of_contact = || match of.contact {
-        [] => contact_forces(model),
-        resumed => resumed.to_vec(),
-    };
     let vector = match quantity {
         BodyQuantity::Position => mean(state.position),
         BodyQuantity::Velocity => mean(state.velocity),
         BodyQuantity::Force => sum(&load.force),
-        BodyQuantity::ContactForce => sum(&of_contact()),
+        BodyQuantity::ContactForce => sum(&of.contact_forces()),
         BodyQuantity::Moment => return moment(&load.force, put),
-        BodyQuantity::ContactMoment => return moment(&of_contact(), put),
+        BodyQuantity::ContactMoment => return moment(&of.contact_forces(), put),
         // A scene cannot ask for the others.
         BodyQuantity::Angle | BodyQuantity::AngularVelocity | BodyQuantity::Energy => [f64::NAN; D],
     };

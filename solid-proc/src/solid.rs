@@ -145,10 +145,7 @@ impl<const D: usize> State for Solid<D> {
         }
         if self.probes.iter().any(Measurement::asks_for_contact) {
             // Models evaluate contacts within a sub-step: no state at its end has them.
-            let mut force = match &self.contact_at_stop[..] {
-                [] => probes::contact_forces(self.model.as_ref()),
-                resumed => resumed.to_vec(),
-            };
+            let mut force = self.measured().contact_forces();
             fields.points("contact_force", &mut force)?;
             fields.length("contact_force", self.all.len(), force.len())?;
             if fields.loading() {

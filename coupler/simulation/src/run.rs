@@ -307,17 +307,15 @@ pub(crate) fn threads(scene: &Scene, wanted: Option<usize>) -> usize {
 /// Participants of this program with many more worker threads than the machine has cores.
 fn crowded(scene: &Scene, options: &RunOptions, cores: usize) -> Vec<String> {
     let external = options.external_names();
-    let pools: Vec<(&str, usize)> = match scene.fluid {
-        // One pool for all.
-        None => vec![("solid", threads(scene, options.threads))],
-        Some(_) => {
-            let own = |name: &str| !external.iter().any(|other| other.as_str() == name);
-            let solids = scene.solids.iter().filter(|solid| own(&solid.name));
-            let fluid = ("fluid", options.threads.unwrap_or(scene.numerics.threads.fluid));
-            std::iter::once(fluid).chain(solids.map(|solid| (&*solid.name, solid.threads))).collect()
-        }
+    // Without fluid one pool serves all.
+    let (first, solids) = match scene.fluid {
+        Some(_) => ("fluid", &scene.solids[..]),
+        None => ("solid", &[][..]),
     };
-    let many = pools.into_iter().filter(|(_, threads)| *threads > cores.saturating_mul(2));
+    let own = |name: &str| !external.iter().any(|other| other.as_str() == name);
+    let solids = solids.iter().filter(|solid| own(&solid.name)).map(|solid| (&*solid.name, solid.threads));
+    let pools = std::iter::once((first, threads(scene, options.threads))).chain(solids);
+    let many = pools.filter(|(_, threads)| *threads > cores.saturating_mul(2));
     many.map(|(name, threads)| {
         format!("{threads} worker threads of the {name} take turns on this machine's processors ({cores})")
     })

@@ -23,9 +23,8 @@ pub(crate) fn check(trace: &Trace, scene: &Path, out: &Path, force: bool) -> Res
     if file.file_name().is_none() || file.is_dir() {
         return refused("is a folder; it must be a file".into());
     }
-    match file.metadata() {
-        Ok(found) if !found.is_file() => return refused("is no regular file".into()),
-        _ => {}
+    if file.metadata().is_ok_and(|found| !found.is_file()) {
+        return refused("is no regular file".into());
     }
     let folder = match file.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,

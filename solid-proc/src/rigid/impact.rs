@@ -34,19 +34,20 @@ impl System {
         if rates.iter().all(|rate| *rate >= -creep) {
             return met;
         }
-        // What each bounce has more than e v; nothing once it had it.
-        let mut more = vec![0.0; touches.len()];
-        if let Some(half) = half {
-            let kicked = self.kicked(touches, |k| rates[k] < -creep, half);
-            for (k, more) in more.iter_mut().enumerate() {
-                let left = (-touches[k].normal.gap).max(0.0) / (-rates[k] * dt);
-                let instant = if rates[k] < -creep { 1.0 - left.min(1.0) } else { MIDDLE };
-                *more = (self.restitution * (1.0 - 2.0 * instant) - 1.0) * kicked[k];
-            }
-        }
         let rows = self.joint_rows();
         let factors = Factors::of(&rows, &self.bodies, &self.poses);
         let held = Held { rows: &rows, factors: &factors, rates: &vec![0.0; rows.len()] };
+        // What each bounce has more than e v; nothing once it had it.
+        let mut more = vec![0.0; touches.len()];
+        if let Some(half) = half {
+            let is_hit: Vec<bool> = rates.iter().map(|rate| *rate < -creep).collect();
+            let kicked = self.kicked(touches, &rates, &is_hit, &held, half);
+            for (k, more) in more.iter_mut().enumerate() {
+                let left = (-touches[k].normal.gap).max(0.0) / (-rates[k] * dt);
+                let instant = if is_hit[k] { 1.0 - left.min(1.0) } else { MIDDLE };
+                *more = (self.restitution * (1.0 - 2.0 * instant) - 1.0) * kicked[k];
+            }
+        }
         for _ in 0..IMPACTS {
             let mut hit = Vec::new();
             for (touch, more) in touches.iter().zip(&mut more) {
@@ -72,21 +73,24 @@ impl System {
         touch.normal.rate(&self.bodies, &self.poses)
     }
 
-    /// Speeds of touches, m/s, by a kick of `dt`, s, while joints and the touches that are not hit hold. Dampers are
-    /// left out: they turn with the velocity.
-    fn kicked(&mut self, touches: &[Touch], is_hit: impl Fn(usize) -> bool, dt: f64) -> Vec<f64> {
-        let before: Vec<f64> = touches.iter().map(|touch| self.rate(touch)).collect();
+    /// What a kick of `dt`, s, adds to the speeds of touches, m/s, while joints and the touches that are not hit hold.
+    /// Dampers are left out: they turn with the velocity.
+    fn kicked(
+        &mut self,
+        touches: &[Touch],
+        rates: &[f64],
+        is_hit: &[bool],
+        held: &Held<'_>,
+        dt: f64,
+    ) -> Vec<f64> {
         let from = self.poses.clone();
         let springs = self.springs();
         self.fall(dt);
         springs.iter().for_each(|(row, force, _)| row.push(&self.bodies, &mut self.poses, force * dt));
-        let rows = self.joint_rows();
-        let factors = Factors::of(&rows, &self.bodies, &self.poses);
-        let held = Held { rows: &rows, factors: &factors, rates: &vec![0.0; rows.len()] };
-        let mut others: Vec<Touch> =
-            touches.iter().enumerate().filter(|(k, _)| !is_hit(*k)).map(|(_, touch)| touch.clone()).collect();
-        solve(&self.bodies, &mut self.poses, &held, &mut others, self.friction);
-        let kicked = touches.iter().zip(before).map(|(touch, before)| self.rate(touch) - before).collect();
+        let others = touches.iter().zip(is_hit).filter(|(_, hit)| !**hit);
+        let mut others: Vec<Touch> = others.map(|(touch, _)| touch.clone()).collect();
+        solve(&self.bodies, &mut self.poses, held, &mut others, self.friction);
+        let kicked = touches.iter().zip(rates).map(|(touch, before)| self.rate(touch) - before).collect();
         self.poses = from;
         kicked
     }
