@@ -7,7 +7,7 @@
 //! plate is too soft: 83 mm @ 0.28 s with six.
 //!
 //! The paper's scheme (`preset = "kayaki"`) has a plate of five rows, 10 mm. Its time step of 1e-5 s is 1.77 dx / c_P
-//! for E = 0.22 GPa, where the plate blows up (`tests/tests/divergence.rs`): 5e-6 s there.
+//! for E = 0.22 GPa, where the plate blows up (`tests/tests/in_process/divergence.rs`): 5e-6 s there.
 
 use halfstep_tests::{Curve, Finished, RunBuilder, scene};
 use std::ops::Range;

@@ -223,6 +223,8 @@ mod beam_tests;
 #[cfg(test)]
 mod body_tests;
 #[cfg(test)]
+mod contact_tests;
+#[cfg(test)]
 mod curve_tests;
 #[cfg(test)]
 mod gap_tests;

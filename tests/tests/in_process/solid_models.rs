@@ -52,7 +52,7 @@ macro_rules! conformance {
             conformance!(whole plane 2: $model, $keys);
             conformance!(whole space 3: $model, $keys);
             // All but `interface_set`, which counts particles within reach of the fluid's kernel, and `wall_contact`,
-            // whose wall has the body's spacing: `tests/tests/moving_stop.rs` has a finer body.
+            // whose wall has the body's spacing: `tests/tests/in_process/moving_stop.rs` has a finer body.
             conformance!(finer_than_the_fluid 2: $model, $keys, finer_than_the_rest; identity rest uniform_force
                 stage_0_is_forgotten sub_steps clamps conservation bodies_collide bounds threads interruption);
         })*
