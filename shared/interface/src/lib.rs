@@ -94,6 +94,8 @@ pub struct Parameters<const D: usize> {
     pub spacing: f64,
     /// The plates whose faces are kept apart.
     pub thin_plates: Vec<Plate<D>>,
+    /// Stretch of two nearest particles of a solid that can break from which on a crack is between them.
+    pub torn: Option<f64>,
     /// Kayaki's C between particles near each other.
     pub cross_viscosity: f64,
     /// C beyond that.
@@ -136,6 +138,7 @@ impl<const D: usize> Parameters<D> {
             resolution: scene.resolution,
             spacing: scene.interface_spacing(index),
             thin_plates: thin_plate::screened(scene, index),
+            torn: solid.fracture().map(|fracture| fracture.torn(scene.solid_spacing(index))),
             cross_viscosity: scene.interface.cross_viscosity,
             cross_viscosity_far: scene.interface.cross_viscosity_far,
             viscosity: interface_viscosity(scene).on.then_some(fluid.viscosity),

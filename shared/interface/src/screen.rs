@@ -11,8 +11,12 @@
 //! now of the plate's particles j within 2h,
 //!   n_s = F^-T N_s / |F^-T N_s|,  F = A M^-1,
 //!   A = sum_j (x_j - x_s) (X_j - X_s)^T,  M = sum_j (X_j - X_s) (X_j - X_s)^T.
+//! Where the plate can break, j are the particles of the same piece, and one on a line (in space in a plane) has no
+//! normal.
 //! Fluid and coupler have the same records, so they have the same normals without a message. Solid particles of no thin
 //! plate have n = 0, o = 0: half of everything on either side, which is the one state that they show.
+
+mod pieces;
 
 use super::faces::{Faces, between};
 use super::moving_wall::{WallPressure, extrapolated, extrapolation};
@@ -26,6 +30,10 @@ use halfstep_sph::tensor;
 use halfstep_sph::with_kernel;
 use halfstep_wire::protocol::StateRecord;
 use nalgebra::{SMatrix, SVector};
+use pieces::Pieces;
+
+/// det M over that of an even arrangement below which particles lie on a line (in space in a plane).
+const FLAT: f64 = 1e-6;
 
 /// One face of the plates: pressures there, by slot of the solid.
 #[derive(Clone, Debug, Default)]
@@ -41,6 +49,8 @@ pub(super) struct Face {
 pub(super) struct Screen<const D: usize> {
     material: Vec<Material<D>>,
     neighbours: Vec<u32>,
+    /// Of a solid that can break.
+    pieces: Option<Pieces<D>>,
     /// n_s by slot.
     pub(super) normal: [Vec<f64>; D],
     /// o_s by slot, m.
@@ -54,6 +64,8 @@ pub(super) struct Screen<const D: usize> {
 #[derive(Clone, Copy, Debug)]
 struct Material<const D: usize> {
     position: SVector<f64, D>,
+    /// N_s.
+    across: SVector<f64, D>,
     /// M N_s; zero where there is no thin plate.
     normal: SVector<f64, D>,
     before: f64,
@@ -90,10 +102,22 @@ impl<const D: usize> Screen<D> {
                 }
             }
             let end = neighbours.len() as u32;
-            material.push(Material { position, normal: moment * SVector::from(normal), before, end });
+            let across = SVector::from(normal);
+            material.push(Material { position, across, normal: moment * across, before, end });
         }
-        let normal = std::array::from_fn(|_| Vec::new());
-        Self { material, neighbours, normal, before: Vec::new(), faces: Default::default(), sums: Vec::new() }
+        let pieces = parameters.torn.map(|torn| {
+            let first = material.iter().map(|material| material.position).collect();
+            Pieces::new(first, torn, reach, |record| &neighbours[range(&material, record)])
+        });
+        Self {
+            material,
+            neighbours,
+            pieces,
+            normal: std::array::from_fn(|_| Vec::new()),
+            before: Vec::new(),
+            faces: Default::default(),
+            sums: Vec::new(),
+        }
     }
 
     /// Positions of the solid's records at the first half-step.
@@ -107,18 +131,36 @@ impl<const D: usize> Screen<D> {
     }
 
     /// The unit normal of a record's plate; zero where it has none.
-    fn normal(&self, record: usize, records: &[StateRecord]) -> SVector<f64, D> {
+    fn normal(&mut self, record: usize, records: &[StateRecord]) -> SVector<f64, D> {
         let own = &self.material[record];
-        let start = if record == 0 { 0 } else { self.material[record - 1].end };
         let at = |j: usize| SVector::from(std::array::from_fn::<_, D, _>(|d| records[j].position[d]));
         let here = at(record);
-        let mut moment = SMatrix::<f64, D, D>::zeros();
-        for &j in &self.neighbours[start as usize..own.end as usize] {
-            let j = j as usize;
-            moment += (at(j) - here) * (self.material[j].position - own.position).transpose();
+        let neighbours = &self.neighbours[range(&self.material, record)];
+        let mut piece = self.pieces.as_mut().filter(|_| !neighbours.is_empty());
+        if let Some(pieces) = &mut piece {
+            pieces.gather(record, at);
         }
+        let mut moment = SMatrix::<f64, D, D>::zeros();
+        let mut first = SMatrix::<f64, D, D>::zeros();
+        let mut left = false;
+        for j in neighbours.iter().map(|&j| j as usize) {
+            let apart = self.material[j].position - own.position;
+            if piece.as_ref().is_some_and(|pieces| !pieces.holds(j)) {
+                left = true;
+                continue;
+            }
+            moment += (at(j) - here) * apart.transpose();
+            if piece.is_some() {
+                first += apart * apart.transpose();
+            }
+        }
+        let even = (first.trace() / D as f64).powi(D as i32);
+        if left && tensor::determinant(&first) <= FLAT * even {
+            return SVector::zeros();
+        }
+        let carried = if left { first * own.across } else { own.normal };
         let inverse = tensor::inverse(&moment, tensor::determinant(&moment));
-        let normal = inverse.map_or_else(SVector::zeros, |inverse| inverse.transpose() * own.normal);
+        let normal = inverse.map_or_else(SVector::zeros, |inverse| inverse.transpose() * carried);
         let length = normal.norm();
         if length > 0.0 { normal / length } else { SVector::zeros() }
     }
@@ -149,6 +191,12 @@ impl<const D: usize> Screen<D> {
         let sharpness = 1.0 / interface.parameters.resolution;
         TwoFaces { normal: &self.normal, before: &self.before, faces: &self.faces, sharpness }
     }
+}
+
+/// Where the neighbours of a record are.
+fn range<const D: usize>(material: &[Material<D>], record: usize) -> std::ops::Range<usize> {
+    let start = if record == 0 { 0 } else { material[record - 1].end };
+    start as usize..material[record].end as usize
 }
 
 /// The axis along which points spread most.

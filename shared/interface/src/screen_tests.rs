@@ -11,8 +11,8 @@ const DX: f64 = 0.01;
 const ROWS: usize = 2;
 const LENGTH: usize = 30;
 
-fn scene(effects: &str) -> Scene {
-    let text = format!(
+fn text(effects: &str) -> String {
+    format!(
         "resolution = {DX}\nsmoothing_ratio = 1.33\nend_time = 1.0\ngravity = [0.0, 0.0]\n\
          numerics.kernel = \"cubic-spline\"\n{effects}\n[fluid]\ndensity = 1000.0\n\
          sound_speed = 20.0\n[solid]\nmodel = \"hypoelastic\"\ndensity = 2000.0\nyoungs_modulus = 1e6\n\
@@ -20,8 +20,11 @@ fn scene(effects: &str) -> Scene {
          box = {{ min = [0.0, 0.0], max = [{}, 0.3] }}\n[[shape]]\nname = \"water\"\nphase = \"fluid\"\n\
          box = {{ min = [0.1, 0.0], max = [0.2, 0.1] }}\n",
         DX * ROWS as f64
-    );
-    parse(&text, Path::new("s.toml"), &[]).unwrap()
+    )
+}
+
+fn scene(effects: &str) -> Scene {
+    parse(&text(effects), Path::new("s.toml"), &[]).unwrap()
 }
 
 fn interface(effects: &str) -> Interface<2> {
@@ -156,6 +159,76 @@ fn the_normal_goes_with_the_material() {
             assert!(sine.abs() < 1e-3, "{record}: {sine}");
         }
     }
+}
+
+/// The plate of a solid that breaks.
+fn brittle() -> Interface<2> {
+    let keys = "model = \"total-lagrangian\"\nfracture = { strength = 1e5, energy = 20.0 }\n";
+    let text = text("").replace("model = \"hypoelastic\"\n", keys).replace("1e6", "1e8");
+    let scene = parse(&text, Path::new("s.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}"));
+    Interface::new(Parameters::new(&scene, 0, Isa::detect()).unwrap())
+}
+
+/// The plate after its upper half has gone sideways without turning, m.
+fn severed(slide: f64) -> Vec<StateRecord> {
+    let mut plate = plate();
+    plate[ROWS * LENGTH / 2..].iter_mut().for_each(|r| r.position[0] += slide);
+    plate
+}
+
+#[test]
+fn a_broken_plates_pieces_have_normals_of_their_own() {
+    let slant = |interface: &mut Interface<2>, plate: &[StateRecord]| {
+        interface.update(&water(), plate, 1);
+        let slants = (0..ROWS * LENGTH).map(|record| {
+            let [x, y] = normal(interface, record);
+            y.atan2(x).abs().to_degrees()
+        });
+        slants.fold(0.0, f64::max)
+    };
+    // A plate that holds is bent as its particles lie, also one that cannot break where it lies far apart.
+    for breaks in [false, true] {
+        let mut held = if breaks { brittle() } else { interface("") };
+        assert!(slant(&mut held, &plate()) < 1e-12);
+        assert!(slant(&mut held, &severed(0.7 * DX)) > 5.0);
+        assert_eq!(slant(&mut held, &severed(5.0 * DX)) > 40.0, !breaks);
+    }
+    for slide in [0.8, 1.0, 2.0, 3.0, 5.0, 14.0] {
+        let mut screened = brittle();
+        assert!(slant(&mut screened, &plate()) < 1e-12);
+        let found = slant(&mut screened, &severed(slide * DX));
+        assert!(found < 1e-12, "{slide} spacings: {found} degrees");
+    }
+}
+
+#[test]
+fn crumbs_of_a_plate_hold_nothing() {
+    let mut screened = brittle();
+    screened.update(&water(), &plate(), 1);
+    // The three upper rows have come off: two as a piece that has turned by 90 degrees, the third as a row.
+    let mut broken = plate();
+    let (piece, row) = (ROWS * (LENGTH - 3), ROWS * (LENGTH - 1));
+    for r in &mut broken[piece..row] {
+        let [x, y] = [r.position[0], r.position[1]];
+        r.position = [0.5 - y, 0.05 + x, 0.0];
+    }
+    broken[row..].iter_mut().for_each(|r| r.position[1] += 0.1);
+    // A single particle of the left row.
+    broken[ROWS * 4].position[0] -= 0.03;
+    screened.update(&water(), &broken, 1);
+    for record in 0..ROWS * LENGTH {
+        let [x, y] = normal(&screened, record);
+        let expected = match record {
+            r if r == ROWS * 4 || r >= row => [0.0, 0.0],
+            r if r >= piece => [0.0, 1.0],
+            _ => [1.0, 0.0],
+        };
+        let off = (x - expected[0]).hypot(y - expected[1]);
+        assert!(off < 1e-12, "{record}: {x} {y}");
+    }
+    // It shows one state, a mean of what is on both sides.
+    let [against, along] = shown(&screened, ROWS * 4);
+    assert!((against - along).abs() < 1e-9 && against > 300.0 && against < 1000.0, "{against} {along}");
 }
 
 /// Acceleration of each fluid record by the plate.
