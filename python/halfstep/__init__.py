@@ -9,6 +9,6 @@ docs/protocol.md of halfstep has the rules, python/examples complete solids.
 """
 
 from . import integrate, mapping
-from .solid import Solid, Step, description, folder, particles, saved
+from .solid import Solid, Step, description, folder, material, particles, saved
 
-__all__ = ["Solid", "Step", "description", "folder", "integrate", "mapping", "particles", "saved"]
+__all__ = ["Solid", "Step", "description", "folder", "integrate", "mapping", "material", "particles", "saved"]

@@ -54,8 +54,8 @@ def advance_once(solid, mapping, body, means=None, **fields):
 
     `body.u`, `body.v`: its unknowns and their rates now. `body.advance(load, dt)` goes on by dt (s) under constant
     forces on the unknowns. `body.acceleration(load)`, if it has that: rates of `v` now, its own forces included.
-    `means`: a `Means` that `save` keeps (`last`, `velocity`), so that a run that goes on from a checkpoint is the one that
-    was interrupted; only for a body without `acceleration`.
+    `means`: a `Means` that `save` keeps (`last`, `velocity`), so that a run that goes on from a checkpoint is the one
+    that was interrupted; only for a body without `acceleration`.
     `fields`: functions of the body for more fields of `Step.publish`, `stress` for instance.
     """
     if hasattr(body, "acceleration"):

@@ -11,6 +11,7 @@ import iceoryx2 as iox2
 import numpy as np
 
 from . import wire
+from .answer import EPOCH, Sent, check
 
 # Nothing wakes a process when another one opens its services.
 HANDSHAKE_MS = 5
@@ -35,7 +36,8 @@ class Environment:
             )
         for key, own in (("PROTOCOL", wire.PROTOCOL), ("SCHEMA", wire.schema())):
             if self.number(key) != own:
-                sys.exit(f"the run has HALFSTEP_{key}={self[key]}, this package speaks {own}: both must be of one version")
+                told = f"the run has HALFSTEP_{key}={self[key]}, this package speaks {own}"
+                sys.exit(f"{told}: both must be of one version")
 
     def __getitem__(self, key):
         return self.values[key]
@@ -58,6 +60,7 @@ class Link:
         self.environment = environment
         self.name = environment["NAME"]
         self.capacity = environment.number("CAPACITY")
+        self.identity = {key: environment.number(key.upper()) for key in ("run_id", "protocol", "schema")}
         self.parent = os.getppid()
         self.claim = Claim(environment)
         self._handshake()
@@ -146,23 +149,22 @@ class Link:
     def send(self, records, **header):
         """Publishes a state: an array of records, and fields of the header by name."""
         count = len(records)
+        ids = records["id"].copy()
+        self.sent = Sent(header["step"], header["stage"], header["time"], header.get("dt", 0.0), ids)
         sample = self.outbox.loan_slice_uninit(count)
         ctypes.memset(sample.user_header_ptr, 0, wire.STATE_HEADER.dtype.itemsize)
         if count:
             target = wire.STATE_RECORD.view(sample.payload_ptr, count)
             target[:] = records
         head = wire.STATE_HEADER.view(sample.user_header_ptr)
-        for key in ("run_id", "schema", "protocol"):
-            head[key] = self.environment.number(key.upper())
-        head["count"] = count
-        for field, value in header.items():
+        for field, value in (self.identity | {"count": count, "epoch": EPOCH} | header).items():
             head[field] = value
         sample.assume_init().send()
         for notifier in self.notifiers:
             notifier.notify()
 
     def receive(self):
-        """The next answer: its header and its records, copied."""
+        """The answer to the state that was sent last: its header and its records, copied, then checked."""
         # Longer than the coupler, which knows who is silent and names it.
         patience = 1.5 * float(self.environment["PATIENCE_SECONDS"]) + 1.0
         sample = self._wait(self.inbox.receive, SILENCE_MS, patience)
@@ -170,9 +172,7 @@ class Link:
         # `len` counts bytes in iceoryx2 0.10.
         count = sample.header.number_of_elements
         records = wire.FORCE_RECORD.view(sample.payload_ptr, count).copy() if count else _NO_FORCES
-        for key in ("run_id", "schema", "protocol"):
-            if header[key] != self.environment.number(key.upper()):
-                raise RunEnded(f"an answer has {key} {header[key]}, expected {self.environment[key.upper()]}")
+        check(self.identity, self.sent, header, records)
         return header, records
 
     def close(self):

@@ -12,6 +12,13 @@ def read(environment):
         return json.load(file)
 
 
+def material(environment, scene):
+    """What the scene says of the solid of this name: its `[solid]`, or the one of its `[[solid]]`."""
+    told = scene["solid"]
+    sections = told if isinstance(told, list) else [told]
+    return next(section for section in sections if section["name"] == environment["NAME"])
+
+
 @dataclass
 class Particles:
     """The particles that the program itself would give this solid, in the order of their numbers.

@@ -97,9 +97,6 @@ class Solid:
         while True:
             self._publish(dt)
             answer, forces = self.link.receive()
-            if (answer["step"], answer["stage"]) != (self.step, self.stage):
-                found = f"step {answer['step']}, stage {answer['stage']}"
-                raise RuntimeError(f"an answer to {found} came instead of one to step {self.step}, stage {self.stage}")
             if answer["order"] & wire.WRITE_CHECKPOINT and self.save:
                 self.safe = int(answer["checkpoint"])
                 own = {"halfstep.step": self.step, "halfstep.time": self.time}
@@ -172,6 +169,12 @@ def saved():
 def description():
     """The scene as a dictionary: every default filled in, SI units."""
     return scene.read(Environment())
+
+
+def material():
+    """What the scene says of this solid: the model, density and elastic constants of its section, a dictionary."""
+    own = Environment()
+    return scene.material(own, scene.read(own))
 
 
 def particles():

@@ -11,7 +11,7 @@ fn output(command: &mut Command) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// Mappings and the integration that advances a solver once a step.
+/// Checks of answers, tables of the protocol page, mappings, and the integration that advances a solver once a step.
 #[test]
 fn the_packages_own_tests_pass() {
     let tests = repository().join("python/tests");

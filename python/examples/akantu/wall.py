@@ -13,7 +13,7 @@ import scipy.sparse as sparse
 
 scene, points = halfstep.description(), halfstep.particles()
 across = int(sys.argv[1]) if len(sys.argv) > 1 else 8
-shape, material = scene["shapes"][points.shape[0]], scene["solid"]
+shape, material = scene["shapes"][points.shape[0]], halfstep.material()
 box, foot = shape["geometry"]["box"], shape["clamp"][0]["max"][1]
 (x0, _), (x1, top), size = box["min"][:2], box["max"][:2], (box["max"][0] - box["min"][0]) / across
 

@@ -13,7 +13,7 @@ import scipy.sparse as sparse
 from ngsolve.meshes import MakeStructured2DMesh
 
 scene, points = halfstep.description(), halfstep.particles()
-shape, material = scene["shapes"][points.shape[0]], scene["solid"]
+shape, material = scene["shapes"][points.shape[0]], halfstep.material()
 box, clamp = shape["geometry"]["box"], shape["clamp"][0]
 # The mesh covers what the clamp leaves; the side at the clamp does not move.
 low, high = np.array([box["min"][:2], box["max"][:2]])

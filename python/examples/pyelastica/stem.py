@@ -12,7 +12,7 @@ import numpy as np
 
 scene, points = halfstep.description(), halfstep.particles()
 count = int(sys.argv[1]) if len(sys.argv) > 1 else 16
-shape, material = scene["shapes"][points.shape[0]], scene["solid"]
+shape, material = scene["shapes"][points.shape[0]], halfstep.material()
 low, high = np.array(shape["geometry"]["box"]["min"]), np.array(shape["geometry"]["box"]["max"])
 foot, thickness = shape["clamp"][0]["max"][1], high[0] - low[0]
 # The first element is held: the stem's clamped end is its middle, where its direction is.

@@ -4,7 +4,6 @@ any other plate that is a box, alone or one of several solids.
 Large rotations, St. Venant-Kirchhoff in plane strain: S = lambda tr(E) I + 2 mu E. Explicit, in sub-steps.
 """
 
-import os
 import sys
 
 import halfstep
@@ -40,10 +39,7 @@ B = sparse.csr_matrix(
 B.eliminate_zeros()
 BT = B.T.tocsr()
 weights = basis.dx.ravel()
-# One solid, or one of several.
-material = scene["solid"]
-if isinstance(material, list):
-    material = next(solid for solid in material if solid["name"] == os.environ["HALFSTEP_NAME"])
+material = halfstep.material()
 young, poisson, density = material["youngs_modulus"], material["poissons_ratio"], material["density"]
 lame, shear = young * poisson / ((1 + poisson) * (1 - 2 * poisson)), young / (2 * (1 + poisson))
 inertia = skfem.BilinearForm(lambda u, v, w: density * (u[0] * v[0] + u[1] * v[1])).assemble(basis)
