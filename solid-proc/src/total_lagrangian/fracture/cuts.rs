@@ -13,7 +13,8 @@ const STRETCHED: f64 = 0.5;
 /// deformation gradient, over that of a corner of the lattice.
 const SMALLEST: f64 = 0.5;
 /// Largest volume of a damaged particle over its reference volume, and of the latter over the former: half of what ends
-/// a run. A crack that opens is cut at less than twice its volume.
+/// a run. A crack that opens is cut at less than twice its volume; beside a rigid clamp, whose band is half as wide, at
+/// less than three times.
 const VOLUME_CHANGE: f64 = 5.0;
 /// Longest pair over dx whose cells share a face.
 pub(super) const STRAIGHT: f64 = 1.05;
