@@ -65,21 +65,41 @@ fn the_wall_breaks_alike_in_processes_and_threads_and_its_ledger_is_closed() {
     assert!((ratio - 1.113).abs() < 0.02, "{ratio}");
 }
 
-/// What flows past a wall's place, x = 0.32 m, until 0.3 s, m²: through the breach, and over one that holds.
+/// Momentum along x of what has come off above the floor, N s/m, in a frame.
+fn momentum(frame: &halfstep_output::Frame, mass: f64) -> f64 {
+    let free = |k: &usize| frame.points[*k][1] - frame.displacement[*k][1] > 0.0;
+    (0..frame.len()).filter(free).map(|k| mass * f64::from(frame.velocity[k][0])).sum()
+}
+
+/// What flows past a wall's place, x = 0.32 m, until 0.3 s, m²: through the breach, and over one that holds. And the
+/// momentum that the water gives the fragment.
 #[test]
 #[ignore = "half a minute"]
 fn water_goes_through_the_breach() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("wall.toml");
     let text = std::fs::read_to_string(repository().join("scenes/breaking-wall.toml")).expect("a scene");
-    let through = "\n[[probe]]\nname = \"through\"\nkind = \"flux\"\nfrom = [0.32, 0.0]\nto = [0.32, 0.3]\n";
-    std::fs::write(&path, text + through).expect("a scene");
+    let more = "\n[[probe]]\nname = \"through\"\nkind = \"flux\"\nfrom = [0.32, 0.0]\nto = [0.32, 0.3]\n\
+                [[probe]]\nname = \"push\"\nkind = \"force\"\nshape = \"wall\"\n\
+                within = { min = [0.28, 0.0], max = [0.3, 0.1] }\n";
+    std::fs::write(&path, text + more).expect("a scene");
     let wall = || scene_at(&path).set("resolution", 0.004).set("output.probe_interval", 0.001).until(0.3);
     let volume = |run: halfstep_tests::run::Finished| {
         let flux = run.curve("through.flux");
         flux.mean() * 0.3
     };
-    let broken = volume(wall().run());
+    let run = wall().run();
+    let mass = 2500.0 * 0.004 * 0.004;
+    let after = run.outcome.frames("solid").into_iter().filter(|frame| frame.time > 0.19);
+    let moved: Vec<(f64, f64)> = after.map(|frame| (frame.time, momentum(&frame, mass))).collect();
+    let (first, last) = (moved[0], moved[moved.len() - 1]);
+    let impulse = run.curve("push.x").between(first.0, last.0).mean() * (last.0 - first.0);
+    println!(
+        "the fragment's momentum {first:?} to {last:?} s, N s/m; the water's impulse meanwhile {impulse}"
+    );
+    // Nothing else pushes it along the floor, which is without friction.
+    assert!((impulse / (last.1 - first.1) - 1.0).abs() < 0.05, "{impulse}");
+    let broken = volume(run);
     let whole = volume(wall().set("solid.fracture.strength", 4e6).set("solid.fracture.energy", 300.0).run());
     println!(
         "{:.2} litres a metre through the breach, {:.2} over a wall that holds",
