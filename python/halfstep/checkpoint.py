@@ -4,22 +4,33 @@ import os
 
 import numpy as np
 
+# Before the names of what the solid saves; what the package saves of its own is before none of them.
+SAVED = "saved."
+
 
 def read(environment):
-    """What the run goes on from; `None` where it starts."""
+    """What the run goes on from, the solid's own and the package's; `None` twice where it starts."""
     folder = environment.get("CHECKPOINT")
     if folder is None:
-        return None
+        return None, None
     with np.load(os.path.join(folder, f"{environment['NAME']}.hdf")) as archive:
-        return dict(archive)
+        own = {name: archive[name] for name in archive.files if not name.startswith(SAVED)}
+        return {name.removeprefix(SAVED): archive[name] for name in archive.files if name not in own}, own
 
 
-def write(environment, number, arrays):
-    """Writes checkpoint `number`. It has its name only when it is whole and on disk."""
+def write(environment, number, saved, own):
+    """Writes checkpoint `number` with two dictionaries of arrays: what the solid saved, and what is the package's own.
+
+    It has its name only when it is whole and on disk.
+    """
+    arrays = {SAVED + name: np.asarray(value) for name, value in saved.items()}
+    for name, array in arrays.items():
+        if array.dtype.hasobject:
+            raise TypeError(f"save() gave {name.removeprefix(SAVED)!r}, which is no array of numbers")
     folder = os.path.join(environment["OUT"], "checkpoint-a" if number % 2 else "checkpoint-b")
     path = os.path.join(folder, f"{environment['NAME']}.hdf")
     with open(path + ".tmp", "wb") as file:
-        np.savez(file, **arrays)
+        np.savez(file, **arrays, **own)
         file.flush()
         os.fsync(file.fileno())
     os.replace(path + ".tmp", path)

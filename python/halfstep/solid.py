@@ -72,12 +72,25 @@ class Solid:
         self.abilities = (wire.CHECKPOINTS if save else 0) | (wire.WALLS_AND_CONTACTS if own_walls else 0)
         self._is_due, self._done = True, False
         self.step, self.stage, self.time = 0, 0, 0.0
-        state = checkpoint.read(self.environment)
-        if state is not None:
-            self.step, self.time = int(state["halfstep.step"]), float(state["halfstep.time"])
+        _, own = checkpoint.read(self.environment)
+        if own is not None:
+            self._go_on(own)
         self._set(position, velocity)
         self.link = Link(self.environment)
         atexit.register(self._leave)
+
+    def _own(self):
+        """What a checkpoint has of the state that was published, beside what the solid saves."""
+        header = {f"header.{field}": value for field, value in self.header.items()}
+        return {"step": self.step, "time": self.time, "records": self.records} | header
+
+    def _go_on(self, own):
+        self.step, self.time = int(own["step"]), float(own["time"])
+        if len(own["records"]) != len(self.records):
+            sys.exit(f"{len(self.records)} particles, but the checkpoint has {len(own['records'])}")
+        for field in ("deviatoric_stress", "pressure", "density"):
+            self.records[field] = own["records"][field]
+        self.header |= {key.removeprefix("header."): own[key][()] for key in own if key.startswith("header.")}
 
     def _set(self, position, velocity, stress=None, pressure=None, density=None, dt_limit=None, sub_steps=None,
              stored_energy=None):
@@ -99,8 +112,7 @@ class Solid:
             answer, forces = self.link.receive()
             if answer["order"] & wire.WRITE_CHECKPOINT and self.save:
                 self.safe = int(answer["checkpoint"])
-                own = {"halfstep.step": self.step, "halfstep.time": self.time}
-                checkpoint.write(self.environment, self.safe, self.save() | own)
+                checkpoint.write(self.environment, self.safe, self.save(), self._own())
             if answer["order"] & wire.STOP:
                 self._last(wire.FINISHED)
                 return
@@ -163,7 +175,7 @@ def environment():
 
 def saved():
     """The state that the run goes on from, as `save` gave it; `None` for a run from its start."""
-    return checkpoint.read(Environment())
+    return checkpoint.read(Environment())[0]
 
 
 def description():

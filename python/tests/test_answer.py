@@ -1,5 +1,6 @@
 """A wrong answer of the coupler ends the run before anybody uses it, and its message says what is wrong."""
 
+import contextlib
 import ctypes
 import types
 import unittest
@@ -57,11 +58,16 @@ class Coupler:
         return answer
 
 
-def run(coupler):
-    """Forces of all half steps of a solid with this coupler."""
+def environment(**more):
+    """Variables of a run."""
     told = {"RUN_ID": 7, "PROTOCOL": wire.PROTOCOL, "SCHEMA": wire.schema(), "NAME": "solid", "CAPACITY": COUNT,
             "PATIENCE_SECONDS": 1}
-    environment = Environment({f"HALFSTEP_{key}": str(value) for key, value in told.items()})
+    return Environment({f"HALFSTEP_{key}": str(value) for key, value in (told | more).items()})
+
+
+@contextlib.contextmanager
+def attach(coupler):
+    """Solids that begin meanwhile have this coupler."""
 
     def connect(link):
         link.inbox = link.outbox = coupler
@@ -69,7 +75,13 @@ def run(coupler):
 
     with (mock.patch.object(Link, "_handshake", connect), mock.patch("halfstep.link.Claim"),
           mock.patch("halfstep.solid.atexit")):
-        solid, forces = Solid(np.zeros((COUNT, 2)), 1.0, 1000.0, environment=environment), []
+        yield
+
+
+def run(coupler):
+    """Forces of all half steps of a solid with this coupler."""
+    with attach(coupler):
+        solid, forces = Solid(np.zeros((COUNT, 2)), 1.0, 1000.0, environment=environment()), []
         for step in solid:
             forces.append(step.forces)
             step.publish(np.zeros((COUNT, 2)), 0.0)

@@ -27,7 +27,8 @@ pub(crate) enum Measurement<const D: usize> {
     StrainEnergy,
     CrackEnergy,
     CrackArea,
-    Bodies,
+    /// With the number of bodies of a solid that does not break.
+    Bodies(u32),
     Centroid,
     /// Force of the fluid on these particles.
     Force(Vec<u32>),
@@ -65,8 +66,19 @@ pub(crate) fn of_solid<const D: usize>(
         Spot::At(at) => near(at),
         Spot::Body(body) => of_body(body),
     };
+    // What is clamped does not strain: of particles equally near to a point, as at the face of a clamp, the others.
+    let strained = |of: &Spot| {
+        let all = of_spot(of);
+        let is_free = |p: &u32| !layout().solid.get(*p as usize).is_some_and(|point| point.clamped);
+        match of {
+            Spot::At(_) if all.len() > 1 && all.iter().any(is_free) => {
+                all.into_iter().filter(is_free).collect()
+            }
+            _ => all,
+        }
+    };
     let strain = |of: &Spot| {
-        let particles = of_spot(of);
+        let particles = strained(of);
         let pieces = geometry::pieces(scene, layout());
         let same = |p: u32, q: u32| pieces.get(p as usize) == pieces.get(q as usize);
         Strain::new(model, &particles, scene.solid_spacing(solid), same)
@@ -84,15 +96,15 @@ pub(crate) fn of_solid<const D: usize>(
     let measurement = |kind: &ProbeKind| match kind {
         ProbeKind::Displacement { at } => Some(Measurement::Displacement(near(at))),
         ProbeKind::Position { at } => Some(Measurement::Position(near(at))),
-        ProbeKind::Stress { at } => Some(Measurement::Stress(near(at))),
+        ProbeKind::Stress { at } => Some(Measurement::Stress(strained(&Spot::At(*at)))),
         ProbeKind::SolidVelocity { at } => Some(Measurement::Velocity(near(at))),
         ProbeKind::Strain { of } => Some(Measurement::Strain(strain(of))),
-        ProbeKind::CauchyStress { of } => Some(Measurement::CauchyStress(of_spot(of))),
+        ProbeKind::CauchyStress { of } => Some(Measurement::CauchyStress(strained(of))),
         ProbeKind::KineticEnergy { phase: Phase::Solid } => Some(Measurement::KineticEnergy),
         ProbeKind::StrainEnergy => Some(Measurement::StrainEnergy),
         ProbeKind::CrackEnergy => Some(Measurement::CrackEnergy),
         ProbeKind::CrackArea => Some(Measurement::CrackArea),
-        ProbeKind::Bodies => Some(Measurement::Bodies),
+        ProbeKind::Bodies => Some(Measurement::Bodies(bodies_of(scene, solid))),
         ProbeKind::Centroid { phase: Phase::Solid } => Some(Measurement::Centroid),
         ProbeKind::Force { within, shape } => Some(Measurement::Force(loaded(*within, *shape))),
         ProbeKind::Moment { about, within, shape } => {
@@ -112,6 +124,12 @@ pub(crate) fn of_solid<const D: usize>(
         _ => None,
     };
     scene.probes.iter().filter(|p| p.solid == Some(solid)).filter_map(|p| measurement(&p.kind)).collect()
+}
+
+/// Number of bodies of a solid at the start.
+fn bodies_of(scene: &Scene, solid: usize) -> u32 {
+    let own = |shape: &usize| scene.shapes[*shape].solid == Some(solid);
+    scene.bodies().iter().filter(|body| body.shapes.iter().any(own)).count() as u32
 }
 
 /// What probes see of a solid: the present state, under the load of the last exchange.
@@ -202,9 +220,9 @@ impl<const D: usize> Measurement<D> {
             }
             Self::CrackEnergy => put(model.fracture().energy),
             Self::CrackArea => put(model.fracture().area),
-            Self::Bodies => {
+            Self::Bodies(whole) => {
                 let fracture = model.fracture();
-                put(f64::from(fracture.bodies));
+                put(f64::from(if model.breaks() { fracture.bodies } else { *whole }));
                 put(f64::from(fracture.loose));
                 put(f64::from(fracture.thin));
             }

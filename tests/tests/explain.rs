@@ -104,6 +104,33 @@ fn what_a_scene_prescribes_has_its_rows() {
     assert!(rows.iter().all(|row| !names.contains(&row["name"].as_str().unwrap())), "absent costs no row");
 }
 
+/// A wall 15 rows thick: 2 to 12 % measured. Shares are times: what else the machine does may hide one in one run, not
+/// in five.
+#[test]
+fn fracture_has_a_share_where_a_solid_may_break_and_none_elsewhere() {
+    let thick = ["resolution=0.004", "shape.wall.box.max=[0.346, 0.08]", "shape.wall.clamp.max=[0.352, 0.0]"];
+    let share = || {
+        let wall = effects("breaking-wall", &thick);
+        let fracture = row(&wall, "fracture");
+        assert!(fracture["on"] == true, "{fracture}");
+        assert!(
+            fracture["why"].as_str().unwrap().starts_with("solid.fracture: 400000 Pa and 3 J/m²"),
+            "{fracture}"
+        );
+        fracture["share"].as_f64().unwrap_or(0.0)
+    };
+    let shares: Vec<f64> = (0..5).map(|_| share()).collect();
+    assert!(shares.iter().all(|&share| (0.0..0.5).contains(&share)), "{shares:?}");
+    assert!(shares.iter().any(|&share| share > 0.0), "{shares:?}");
+    let off = effects("breaking-wall", &[&thick[..], &["effects.fracture=off"][..]].concat());
+    let never = effects("oscillating-plate", &["resolution=0.004"]);
+    for (scene, why) in [(off, "effects.fracture is \"off\""), (never, "solid.fracture is not there")] {
+        let fracture = row(&scene, "fracture");
+        assert!(fracture["on"] == false && fracture["share"].is_null(), "{fracture}");
+        assert_eq!(fracture["why"], why);
+    }
+}
+
 #[test]
 fn the_reason_is_the_key_or_the_fact() {
     let forced = effects("hydrostatic-tank", &["fluid.viscosity=0.1", "effects.viscosity=on"]);

@@ -104,6 +104,10 @@ fn a_run_with_the_block_goes_on_after_an_interruption() {
         "{}",
         refused.stderr
     );
+    // Its last frames stand behind the others: one that remembers goes on.
+    let going = scene("spring-block").resume(&dir).argument("--solid").argument(command()).until(0.07).run();
+    let times: Vec<f64> = going.outcome.frames("fluid").iter().map(|frame| frame.time).collect();
+    assert!(times[0] == 0.0 && times.len() == 5 && times.is_sorted(), "{times:?}");
 }
 
 /// The script with something else in it.

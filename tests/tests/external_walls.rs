@@ -1,4 +1,5 @@
 //! Walls and a solid of another program: the coupler holds it against them from its records, unless it does so itself.
+//! Against another solid the coupler holds it in any case.
 
 use halfstep_output::run_json::{ContactReport, ForceKind};
 use halfstep_tests::python::python;
@@ -181,6 +182,100 @@ fn a_block_whose_scene_names_an_elastic_model_slides_as_coulomb_says() {
     assert!(
         log(&run).contains("contact of the solid with walls: by the coupler, friction 0.3, restitution 0")
     );
+}
+
+/// A block of 10 kg/m on a slab, which space holds; water stands in a tank of its own. Contact is as stiff as without
+/// the water (`tests/tests/pair_contact.rs`), whose slow flow would soften it.
+const SLAB: &str = r#"
+resolution = 0.01
+end_time = 0.5
+
+[fluid]
+density = 1000.0
+
+[[solid]]
+name = "block"
+model = "rigid"
+density = 2000.0
+
+[[solid]]
+name = "slab"
+model = "rigid"
+density = 2000.0
+
+[[solid.joints]]
+name = "held"
+kind = "fixed"
+body = "slab"
+
+[[contact]]
+solids = ["block", "slab"]
+friction = 0.3
+stiffness = 9.4e7
+
+[[shape]]
+name = "block"
+phase = "solid"
+solid = "block"
+box = { min = [0.0, 0.0], max = [0.1, 0.05] }
+velocity = [1.0, 0.0]
+
+[[shape]]
+name = "slab"
+phase = "solid"
+solid = "slab"
+box = { min = [-0.2, -0.05], max = [0.5, 0.0] }
+
+[[shape]]
+name = "tank"
+phase = "wall"
+tank = { min = [1.0, 0.0], max = [1.1, 0.2], open = ["top"] }
+contact = false
+
+[[shape]]
+name = "water"
+phase = "fluid"
+box = { min = [1.0, 0.0], max = [1.1, 0.05] }
+pressure = "hydrostatic"
+
+[[probe]]
+name = "block"
+kind = "body-position"
+body = "block"
+solid = "block"
+"#;
+
+#[test]
+fn a_block_slides_on_a_built_in_solid_as_coulomb_says() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("slab.toml");
+    std::fs::write(&path, SLAB).expect("a scene");
+    let external = scene_at(&path).argument("--solid").argument(format!("block={}", line(""))).run();
+    let expected = 1.0 / (2.0 * 0.3 * 9.81);
+    for (whose, run) in [("its own program", external), ("built in", scene_at(&path).run())] {
+        let x = run.curve("block.x");
+        let (way, late) = (x.at(0.5) - 0.05, x.at(0.5) - x.at(0.4));
+        let pair = run.report.contacts.first().expect("contact");
+        println!(
+            "{whose}: way {way:.6} m of {expected:.6}, {late:.1e} m at last; {pair:?}, {:?}",
+            run.report.forces
+        );
+        assert_eq!(pair.solids, ["block", "slab"]);
+        assert!((way / expected - 1.0).abs() < 5e-3 && late.abs() < 1e-6, "{whose}: {way} {late}");
+        // Its kinetic energy.
+        assert!((pair.friction / -5.0 - 1.0).abs() < 0.01, "{whose}: {pair:?}");
+        // Friction stops 10 N s/m, and the slab carries the weight for 0.5 s.
+        let [on_block, on_slab] = &run.report.forces[..] else { panic!("{:?}", run.report.forces) };
+        for (name, by, sign) in [("block", on_block, 1.0), ("slab", on_slab, -1.0)] {
+            assert_eq!((by.solid.as_str(), by.kind), (name, ForceKind::Contact));
+            let [x, y, _] = by.impulse.map(|p| sign * p);
+            assert!(
+                (x / -10.0 - 1.0).abs() < 0.01 && (y / (0.5 * WEIGHT) - 1.0).abs() < 0.01,
+                "{whose}: {by:?}"
+            );
+        }
+        assert!(run.report.audit.action_reaction.expect("an audit") <= 1e-12);
+    }
 }
 
 #[test]

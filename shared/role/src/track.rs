@@ -48,6 +48,9 @@ pub(crate) struct Track {
 
 impl Track {
     pub(crate) fn new(member: Member, peers: Vec<Peer>) -> Self {
+        // A run that goes on keeps its frames, also where it ends before the next one.
+        let frames = member.resumed.as_ref().and(member.frames.as_ref());
+        let frame = frames.map_or(0, |frames| frames.safe());
         Self {
             member,
             own: Vec::new(),
@@ -56,7 +59,7 @@ impl Track {
             forces: Vec::new(),
             probes: Vec::new(),
             header: StateHeader::default(),
-            frame: 0,
+            frame,
             sent: Instant::now(),
             compute: Duration::ZERO,
             sums: Duration::ZERO,

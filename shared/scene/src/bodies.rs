@@ -1,7 +1,7 @@
 //! Bodies: connected pieces of solid.
 
 use crate::geometry::{self, Layout};
-use crate::{Joint, Phase, RigidBody, Scene, Shape, Solid, dispatch};
+use crate::{Phase, RigidBody, Scene, Shape, Solid, dispatch};
 
 /// A connected piece of a solid.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -38,7 +38,8 @@ impl Scene {
             let body = &mut bodies[piece as usize];
             body.particles += 1;
             body.clamped += usize::from(point.clamped);
-            body.held |= point.clamped || is_held(&self.solids, &self.shapes[point.body as usize]);
+            body.held |=
+                point.clamped || is_held(&self.solids, &self.shapes, &self.shapes[point.body as usize]);
             if let Err(place) = body.shapes.binary_search(&(point.body as usize)) {
                 body.shapes.insert(place, point.body as usize);
             }
@@ -70,6 +71,20 @@ impl Scene {
         given.iter().filter_map(of).fold(lightest, f64::min)
     }
 
+    /// A shape without `body` whose name another one of its solid gives as its `body` is of that body, too.
+    pub(crate) fn name_joined_bodies(&mut self) {
+        let joined: Vec<usize> = (0..self.shapes.len())
+            .filter(|&k| {
+                let own = &self.shapes[k];
+                let names = |other: &Shape| other.solid == own.solid && other.body == own.name;
+                own.solid.is_some() && own.body.is_empty() && self.shapes.iter().any(names)
+            })
+            .collect();
+        for k in joined {
+            self.shapes[k].body = self.shapes[k].name.clone();
+        }
+    }
+
     /// What nothing holds would fall through walls: those that say nothing of `contact` can be touched where a body is
     /// not held.
     pub(crate) fn touch_free_bodies(&mut self, said: &[bool]) {
@@ -86,13 +101,34 @@ impl Scene {
     }
 }
 
-/// A joint or a motion of its own holds a shape's rigid body.
-pub(super) fn is_held(solids: &[Solid], shape: &Shape) -> bool {
-    let keys = shape.solid.and_then(|k| solids.get(k)).and_then(Solid::rigid);
-    keys.is_some_and(|keys| {
-        let names = |joint: &Joint| joint.body == shape.body() || joint.with == shape.body();
-        shape.motion.is_some() || keys.joints.iter().any(|joint| joint.holds() && names(joint))
-    })
+/// A motion of its own holds a shape's rigid body, or a joint to space, to a wall or to another body that is held.
+pub(super) fn is_held(solids: &[Solid], shapes: &[Shape], shape: &Shape) -> bool {
+    let Some(keys) = shape.solid.and_then(|k| solids.get(k)).and_then(Solid::rigid) else { return false };
+    let any_of = |name: &str, fits: fn(&Shape) -> bool| {
+        shapes.iter().any(|s| s.solid == shape.solid && s.body() == name && fits(s))
+    };
+    let mut reached = vec![shape.body()];
+    let mut next = 0;
+    while let Some(&body) = reached.get(next) {
+        next += 1;
+        if any_of(body, |shape| shape.motion.is_some()) {
+            return true;
+        }
+        for joint in keys.joints.iter().filter(|joint| joint.holds()) {
+            let other = match (joint.body == body, joint.with == body) {
+                (true, _) => joint.with.as_str(),
+                (_, true) => joint.body.as_str(),
+                _ => continue,
+            };
+            if !any_of(other, |_| true) {
+                return true;
+            }
+            if !reached.contains(&other) {
+                reached.push(other);
+            }
+        }
+    }
+    false
 }
 
 #[cfg(test)]

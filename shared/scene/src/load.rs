@@ -64,6 +64,7 @@ pub fn parse_with(
     let doubtful = parameters::resolve(&mut root, &report);
     let mut draft = read::scene(&root, path, &report, own_effects);
     draft.scene.doubtful = doubtful;
+    draft.scene.name_joined_bodies();
     Check { scene: &draft.scene, root: &root, report: &report }.all();
     if report.is_empty() && draft.sound_speed_auto {
         let found = resources::sound_speed(&draft.scene, &root, &report);

@@ -41,7 +41,7 @@ impl Company {
 /// Shapes of bodies of which no shape is clamped, and no joint and no prescribed motion holds it.
 pub(super) fn free_shapes<'a>(shapes: &'a [Shape], solids: &'a [Solid]) -> impl Iterator<Item = &'a Shape> {
     let of_solids = || shapes.iter().filter(|shape| shape.solid.is_some());
-    let holds = |shape: &Shape| !shape.clamp.is_empty() || super::bodies::is_held(solids, shape);
+    let holds = |shape: &Shape| !shape.clamp.is_empty() || super::bodies::is_held(solids, shapes, shape);
     let held = move |body: &Shape| {
         of_solids().any(|shape| shape.solid == body.solid && shape.body() == body.body() && holds(shape))
     };

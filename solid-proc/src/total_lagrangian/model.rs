@@ -444,6 +444,7 @@ impl<const D: usize> SolidModel<D> for TotalLagrangian<D> {
 
     fn contact_forces(&self, give: &mut dyn FnMut(u32, [f64; D])) {
         self.contact.iter().for_each(|contact| contact.forces(&mut *give));
+        self.friction_forces(give);
     }
 
     fn state(&mut self) -> Option<&mut dyn halfstep_wire::state::State> {

@@ -207,6 +207,39 @@ const BLOCKS: &str = r#"
     about = [0.2, 0.0]
 "#;
 
+/// At the face of a clamp a particle that is held and one that strains are equally near.
+#[test]
+fn stress_at_the_face_of_a_clamp_is_that_of_what_strains() {
+    const BAR: &str = r#"
+        resolution = 0.005
+        end_time = 0.002
+        gravity = [0.0, 0.0]
+        [solid]
+        density = 1000.0
+        youngs_modulus = 1e7
+        poissons_ratio = 0.0
+        [[shape]]
+        name = "bar"
+        phase = "solid"
+        box = { min = [0.0, 0.0], max = [0.1, 0.02] }
+        clamp = { min = [0.0, 0.0], max = [0.02, 0.02] }
+        load = { min = [0.095, 0.0], max = [0.1, 0.02], traction = [1e4, 0.0] }
+    "#;
+    let kinds = ["stress", "strain", "cauchy-stress"];
+    let probe = |(name, x): (&str, f64)| {
+        kinds.map(|kind| {
+            format!("[[probe]]\nname = \"{name}-{kind}\"\nkind = \"{kind}\"\nat = [{x}, 0.0075]\n")
+        })
+    };
+    let probes: String = [("face", 0.02), ("next", 0.0225)].into_iter().flat_map(probe).collect();
+    let mut run = simulation(&(BAR.to_owned() + &probes)).begin().expect("a run");
+    while run.step().expect("a step") {}
+    for value in ["stress.stress", "strain.xx", "cauchy-stress.xx"] {
+        let [face, next] = ["face", "next"].map(|at| run.probe(&format!("{at}-{value}")).expect("a probe"));
+        assert!(face == next && next.abs() > 0.0, "{value}: {face} {next}");
+    }
+}
+
 #[test]
 fn each_shape_of_a_solid_carries_its_part() {
     let mut run = simulation(BLOCKS).begin().expect("a run");

@@ -125,8 +125,10 @@ pub(super) fn parted(scene: &Scene, bodies: &[Body], all: &mut Vec<String>) {
         let count = bodies.iter().filter(of_name).count();
         if count > 1 && !told.contains(&name) {
             told.push(name);
+            let cracked = scene.shapes.iter().any(|shape| shape.body == name && shape.crack.is_some());
+            let why = if cracked { "lie apart, or a `crack` parts them" } else { "lie apart" };
             all.push(format!(
-                "the shapes of body `{name}` lie apart: it is {count} bodies, and nothing holds them together"
+                "the shapes of body `{name}` {why}: it is {count} bodies, and nothing holds them together"
             ));
         }
     }

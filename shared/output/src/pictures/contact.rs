@@ -167,7 +167,11 @@ impl ColourScales {
 
     /// The bars that explain the colours, at the foot of the picture.
     fn bars(&self, width: i32, height: i32, cracks: bool) -> Vec<Bar> {
-        let solid = if cracks { "solid: von Mises stress; black: cracks" } else { "solid: von Mises stress" };
+        let solid = if cracks {
+            "solid: von Mises stress; black: damage above 0.9"
+        } else {
+            "solid: von Mises stress"
+        };
         let present: Vec<_> =
             [(Scale::Fluid, "fluid: pressure", self.pressure), (Scale::Solid, solid, self.stress)]
                 .into_iter()

@@ -60,6 +60,41 @@ fn a_shape_that_a_void_cuts_is_two_bodies() {
     assert_eq!(counts, [(100, 10), (170, 0)]);
 }
 
+/// Two rigid shapes far apart, the second with what is added, and what stands before `[[shape]]`.
+fn two_rigid(more: &str, keys: &str) -> Scene {
+    let text = format!(
+        "resolution = 0.01\nend_time = 1.0\n[solid]\nmodel = \"rigid\"\ndensity = 1000.0\n{keys}\n[[shape]]\n\
+         name = \"floor\"\nphase = \"wall\"\nbox = {{ min = [-1.0, -0.1], max = [2.0, 0.0] }}\n[[shape]]\n\
+         name = \"a\"\nphase = \"solid\"\nbox = {{ min = [0.0, 0.1], max = [0.1, 0.2] }}\n[[shape]]\nname = \"b\"\n\
+         phase = \"solid\"\nbox = {{ min = [0.5, 0.1], max = [0.6, 0.2] }}\n{more}"
+    );
+    parse(&text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}"))
+}
+
+#[test]
+fn a_shape_whose_name_is_anothers_body_is_of_that_body() {
+    assert_eq!(two_rigid("", "").bodies().len(), 2);
+    let joined = two_rigid("body = \"a\"\n", "");
+    assert_eq!(joined.bodies().len(), 1);
+    assert_eq!(joined.bodies()[0].particles, 200);
+    // Of another name it is none.
+    assert_eq!(two_rigid("body = \"c\"\n", "").bodies().len(), 2);
+}
+
+#[test]
+fn what_bodies_hold_of_each_other_holds_none_of_them() {
+    let contact = |joints: &str| two_rigid("", joints).shapes[0].contact;
+    let hinge = |body: &str, with: &str| {
+        format!(
+            "[[solid.joints]]\nname = \"of-{body}\"\nkind = \"hinge\"\nbody = \"{body}\"\n{with}at = [0.3, 0.15]\n"
+        )
+    };
+    let (raft, anchor) = (hinge("a", "with = \"b\"\n"), hinge("b", ""));
+    assert!(contact(&raft), "a raft of two falls");
+    assert!(!contact(&(raft.clone() + &anchor)), "one that is moored does not, through the other one");
+    assert!(contact(&anchor), "one of two is free");
+}
+
 #[test]
 fn walls_can_be_touched_where_a_body_is_free() {
     let contact = |shapes: &[&str]| scene("total-lagrangian", shapes).shapes[0].contact;

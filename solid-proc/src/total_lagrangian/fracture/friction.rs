@@ -77,7 +77,10 @@ impl<const D: usize> TotalLagrangian<D> {
 
     /// Friction over a kick of dt, s, before or after the drift.
     pub(in crate::total_lagrangian) fn rub(&mut self, dt: f64, drift: Drift) {
-        let Some(fracture) = self.fracture.take_if(|fracture| !fracture.rubbing.is_empty()) else { return };
+        self.fracture.iter_mut().for_each(|fracture| fracture.rubbed.clear());
+        let Some(mut fracture) = self.fracture.take_if(|fracture| !fracture.rubbing.is_empty()) else {
+            return;
+        };
         let before = self.keeps_account().then(|| self.now.velocity.clone());
         for Rubbing { pair: [i, j], normal, push, wall } in &fracture.rubbing {
             let velocity = |slot: usize| vector(&self.now.velocity, slot as u32);
@@ -87,6 +90,7 @@ impl<const D: usize> TotalLagrangian<D> {
             let count = if free[0] && free[1] && !at_wall { 2.0 } else { 1.0 };
             let u = std::array::from_fn(|d| v[d] - other[d]);
             let change = slowed(u, *normal, fracture.friction * push * dt, count);
+            fracture.rubbed.push(([*i, *j], change.map(|change| change / dt)));
             for d in 0..D {
                 if free[0] {
                     self.now.velocity[d][*i] += change[d];
@@ -102,6 +106,17 @@ impl<const D: usize> TotalLagrangian<D> {
             self.account
                 .iter_mut()
                 .for_each(|account| account.given.give(EnergyPart::FragmentFriction, work));
+        }
+    }
+
+    /// Calls `give` with particles and the force of friction on them in the last kick, N (2D: N/m).
+    pub(in crate::total_lagrangian) fn friction_forces(&self, mut give: impl FnMut(u32, [f64; D])) {
+        let rubbed = self.fracture.iter().flat_map(|fracture| &fracture.rubbed);
+        for (pair, acceleration) in rubbed {
+            give(self.id[pair[0]], acceleration.map(|a| self.mass * a));
+            if pair[0] != pair[1] {
+                give(self.id[pair[1]], acceleration.map(|a| -self.mass * a));
+            }
         }
     }
 

@@ -96,6 +96,8 @@ pub(super) struct Fracture<const D: usize> {
     rubbing: Vec<Rubbing<D>>,
     /// The same at n.
     rubbing_at_n: Vec<Rubbing<D>>,
+    /// What rubbed in the last kick: slots, and the acceleration of the first, m/s².
+    rubbed: Vec<([usize; 2], [f64; D])>,
     /// Energy taken, J (2D: J/m).
     taken: f64,
     /// Body of each particle.
@@ -170,6 +172,7 @@ impl<const D: usize> Fracture<D> {
             },
             rubbing: Vec::new(),
             rubbing_at_n: Vec::new(),
+            rubbed: Vec::new(),
             taken: 0.0,
             bodies: body.iter().max().map_or(0, |last| last + 1),
             body: body.to_vec(),
