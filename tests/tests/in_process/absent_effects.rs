@@ -154,9 +154,11 @@ struct Case {
     base: &'static [&'static str],
     /// Names, each with the setting that calls for it.
     effects: &'static [(&'static str, &'static str)],
-    /// What counts may differ by: the heap's own way, where contacts are lists, hangs on what else it held.
-    heap: u64,
 }
+
+/// What counts may differ by: the heap's own way, where lists are made, hangs on what else it held; 0 to 450 measured.
+/// One instruction for each particle of the plate would be 14 000.
+const HEAP: u64 = 2000;
 
 const WALL: (&str, &str) = ("wall-contact", "shape.wall.contact=true");
 const SIDE: (&str, &str) = ("side-friction", "solid.side_friction=1000.0");
@@ -167,43 +169,39 @@ const SOLIDS: [Case; 6] = [
         text: PLATE,
         base: &["solid.model=total-lagrangian"],
         effects: &[WALL, SIDE, ("relaxation", "solid.prony=[[0.5, 0.01]]")],
-        heap: 0,
     },
     // It cannot stand with Maxwell arms.
-    Case { text: PLATE, base: &["solid.model=total-lagrangian"], effects: &[("fracture", BRITTLE)], heap: 0 },
+    Case { text: PLATE, base: &["solid.model=total-lagrangian"], effects: &[("fracture", BRITTLE)] },
     Case {
         text: PLATE,
         base: &["solid.model=total-lagrangian", BRITTLE, WALL.1, "gravity=[0.0, -500.0]"],
         effects: &[("fragment-friction", "solid.fracture.friction=0.3")],
-        heap: 2000,
     },
-    Case { text: PLATE, base: &["solid.model=finite-element"], effects: &[WALL, SIDE], heap: 0 },
+    Case { text: PLATE, base: &["solid.model=finite-element"], effects: &[WALL, SIDE] },
     Case {
         text: PLATE,
         base: &["solid.model=hypoelastic", "solid.artificial_stress.strength=0.0"],
         effects: &[WALL, SIDE, ("artificial-stress", "solid.artificial_stress.strength=0.3")],
-        heap: 0,
     },
-    Case { text: BLOCK, base: &[], effects: &[WALL], heap: 2000 },
+    Case { text: BLOCK, base: &[], effects: &[WALL] },
 ];
 
 /// Called for, each effect takes instructions; called for and off, as many as where nothing calls for it.
 #[test]
 fn an_absent_effect_of_a_solid_takes_no_instruction() {
-    for Case { text, base, effects, heap } in SOLIDS {
+    for Case { text, base, effects } in SOLIDS {
         let count = |more: &[&str]| of_a_text(&["*SolidModel*advance*"], text, &[base, more].concat());
         let absent = count(&[]);
         for (name, setting) in effects {
             let acting = count(&[*setting]);
             println!("{base:?}: {absent} instructions, {acting} with {name}");
-            assert!(acting > absent + 10 * heap, "{base:?}: {name} acts: {absent} {acting}");
+            assert!(acting > absent + 10 * HEAP, "{base:?}: {name} acts: {absent} {acting}");
         }
         let off: Vec<String> = effects.iter().map(|(name, _)| format!("effects.{name}=off")).collect();
         let settings = effects.iter().map(|(_, setting)| *setting);
         let off = count(&settings.chain(off.iter().map(String::as_str)).collect::<Vec<_>>());
         println!("{base:?}: {absent} instructions, {off} called for and off");
-        // At most 260 measured.
-        assert!(off.abs_diff(absent) <= heap, "{base:?}: {absent} {off}");
+        assert!(off.abs_diff(absent) <= HEAP, "{base:?}: {absent} {off}");
         // Some 600 particles in ten steps of two stages, and one body.
         assert!(absent > if text == BLOCK { 20 * 10_000 } else { 600 * 20 * 1000 }, "{base:?}: {absent}");
     }

@@ -223,7 +223,7 @@ fn stress_at_the_face_of_a_clamp_is_that_of_what_strains() {
         phase = "solid"
         box = { min = [0.0, 0.0], max = [0.1, 0.02] }
         clamp = { min = [0.0, 0.0], max = [0.02, 0.02] }
-        load = { min = [0.095, 0.0], max = [0.1, 0.02], traction = [1e4, 0.0] }
+        load = { within = { min = [0.095, 0.0], max = [0.1, 0.02] }, traction = [1e4, 0.0] }
     "#;
     let kinds = ["stress", "strain", "cauchy-stress"];
     let probe = |(name, x): (&str, f64)| {
