@@ -4,7 +4,7 @@ import os
 
 import numpy as np
 
-# Before the names of what the solid saves; what the package saves of its own is before none of them.
+# Prefix of the names that the solid saves; names of the package have none.
 SAVED = "saved."
 
 

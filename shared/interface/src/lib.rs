@@ -138,7 +138,7 @@ impl<const D: usize> Parameters<D> {
             resolution: scene.resolution,
             spacing: scene.interface_spacing(index),
             thin_plates: thin_plate::screened(scene, index),
-            torn: solid.fracture().map(|fracture| fracture.torn(scene.solid_spacing(index))),
+            torn: scene.fracture(index).map(|fracture| fracture.torn(scene.solid_spacing(index))),
             cross_viscosity: scene.interface.cross_viscosity,
             cross_viscosity_far: scene.interface.cross_viscosity_far,
             viscosity: interface_viscosity(scene).on.then_some(fluid.viscosity),

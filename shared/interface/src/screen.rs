@@ -142,23 +142,20 @@ impl<const D: usize> Screen<D> {
         }
         let mut moment = SMatrix::<f64, D, D>::zeros();
         let mut first = SMatrix::<f64, D, D>::zeros();
-        let mut left = false;
         for j in neighbours.iter().map(|&j| j as usize) {
             let apart = self.material[j].position - own.position;
-            if piece.as_ref().is_some_and(|pieces| !pieces.holds(j)) {
-                left = true;
-                continue;
+            match &piece {
+                Some(pieces) if !pieces.holds(j) => continue,
+                Some(_) => first += apart * apart.transpose(),
+                None => {}
             }
             moment += (at(j) - here) * apart.transpose();
-            if piece.is_some() {
-                first += apart * apart.transpose();
-            }
         }
         let even = (first.trace() / D as f64).powi(D as i32);
-        if left && tensor::determinant(&first) <= FLAT * even {
+        if piece.is_some() && tensor::determinant(&first) <= FLAT * even {
             return SVector::zeros();
         }
-        let carried = if left { first * own.across } else { own.normal };
+        let carried = if piece.is_some() { first * own.across } else { own.normal };
         let inverse = tensor::inverse(&moment, tensor::determinant(&moment));
         let normal = inverse.map_or_else(SVector::zeros, |inverse| inverse.transpose() * carried);
         let length = normal.norm();

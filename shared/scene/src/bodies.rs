@@ -38,10 +38,11 @@ impl Scene {
             let body = &mut bodies[piece as usize];
             body.particles += 1;
             body.clamped += usize::from(point.clamped);
-            body.held |=
-                point.clamped || is_held(&self.solids, &self.shapes, &self.shapes[point.body as usize]);
-            if let Err(place) = body.shapes.binary_search(&(point.body as usize)) {
-                body.shapes.insert(place, point.body as usize);
+            body.held |= point.clamped;
+            let shape = point.body as usize;
+            if let Err(place) = body.shapes.binary_search(&shape) {
+                body.shapes.insert(place, shape);
+                body.held |= is_held(&self.solids, &self.shapes, &self.shapes[shape]);
             }
         }
         bodies

@@ -3,9 +3,7 @@
 use super::shapes::length;
 use super::{meet, near};
 use halfstep_scene::geometry::{self, Cells, Layout, SolidPoint, Surface};
-use halfstep_scene::{
-    Block, Body, ContactKeys, EffectName, Geometry, Phase, Scene, Shape, SolidModelName, Switch,
-};
+use halfstep_scene::{Block, Body, ContactKeys, Geometry, Phase, Scene, Shape, SolidModelName};
 use std::collections::HashSet;
 
 /// Distance of particles, over their spacing, at which their surfaces meet: a spacing, and what lattices are off.
@@ -178,9 +176,7 @@ pub(super) fn of_walls(scene: &Scene, bodies: &[Body], all: &mut Vec<String>) {
 
 /// Solids that break, and touch others with the surface that they began with.
 pub(super) fn debris(scene: &Scene, all: &mut Vec<String>) {
-    let breaks = |k: &usize| {
-        scene.solids[*k].fracture().is_some() && scene.switch(EffectName::Fracture) != Switch::Off
-    };
+    let breaks = |k: &usize| scene.fracture(*k).is_some();
     for contact in scene.contacts() {
         let Some(broken) = contact.solids.iter().copied().find(breaks) else { continue };
         let [a, b] = contact.solids.map(|k| &scene.solids[k].name);

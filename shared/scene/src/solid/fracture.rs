@@ -3,6 +3,7 @@
 use super::{ModelKeys, Plane, Solid};
 use crate::keys::{Key, Table};
 use crate::section::{Range, Section};
+use crate::{EffectName, Scene, Switch};
 use serde::{Deserialize, Serialize};
 
 /// Tensile strength, fracture energy, and friction of what is left.
@@ -86,6 +87,14 @@ impl Fracture {
     /// Narrowest band that is not torn far apart before it breaks, m.
     pub fn narrowest_band(&self) -> f64 {
         self.energy / (self.strength * Self::WIDEST)
+    }
+}
+
+impl Scene {
+    /// What fracture of the solid of that index takes, where it can break and the scene does not turn that off.
+    pub fn fracture(&self, solid: usize) -> Option<Fracture> {
+        let on = self.switch(EffectName::Fracture) != Switch::Off;
+        self.solids[solid].fracture().filter(|_| on)
     }
 }
 

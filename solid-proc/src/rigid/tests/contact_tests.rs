@@ -1,6 +1,7 @@
 //! Bodies that fall, slide, roll, stack and knock, by hand.
 
 use super::*;
+use crate::rigid::Vec3;
 
 #[test]
 fn a_falling_box_comes_to_rest_on_the_floor() {
@@ -94,7 +95,7 @@ fn a_disc_rolls_down_a_slope() {
     let state = &model.states[0];
     // a = g sin / (1 + I / (m r²)).
     let body = &model.system.bodies[0];
-    let inertia = body.spin(&nalgebra::Matrix3::identity(), &super::super::Vec3::z())[2];
+    let inertia = body.spin(&nalgebra::Matrix3::identity(), &Vec3::z())[2];
     let right = 0.5 * G * angle.sin() / (1.0 + inertia / (body.mass * 0.01));
     println!("rolls {:.6} m, right {right:.6} m", state.center[0]);
     assert!((state.center[0] / right - 1.0).abs() < 1e-3);
