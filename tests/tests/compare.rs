@@ -132,6 +132,37 @@ fn models_and_programs_are_compared_without_water() {
     assert!(number(&nine["steps"]) > 100.0 && number(&nine["wall_seconds"]) > 0.0, "{told}");
 }
 
+/// A solid that fails midway has a curve as near as any other one while it lasts: the table says how long, and a script
+/// sees that the comparison is not whole. The run of somebody else in its place is kept.
+#[test]
+fn a_solid_that_fails_is_told() {
+    let _machine = whole_machine();
+    let folder = tempfile::tempdir().unwrap();
+    let script = folder.path().join("failing.py");
+    let text = "import halfstep\npoints = halfstep.particles()\n\
+        solid = halfstep.Solid(points.position, points.mass, points.density)\n\
+        for step in solid:\n    if step.number == 3: raise ValueError('no convergence')\n\
+        \x20   step.publish(points.position, 0.0)\n";
+    std::fs::write(&script, text).unwrap();
+    let failing = format!("failing={} {}", python().display(), script.display());
+    let out = folder.path().join("out");
+    let arguments = ["--set", "resolution=0.004", "--until", "0.01", "--out", out.to_str().unwrap()];
+    let arguments = [&arguments[..], &["--solid", "total-lagrangian", "--solid", &failing]].concat();
+    let output = compare_in("oscillating-plate", &arguments);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{said}\n{errors}");
+    assert!(said.contains(" % until ") && said.contains("failing: the solid failed at step 3"), "{said}");
+    assert!(errors.contains("failing did not run to the end"), "{errors}");
+    std::fs::remove_file(out.join("runs/total-lagrangian/messages.txt")).unwrap();
+    let before = std::fs::read(out.join("runs/total-lagrangian/run.json")).unwrap();
+    let output = compare_in("oscillating-plate", &arguments);
+    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{errors}");
+    assert!(errors.contains("a run that was not made here"), "{errors}");
+    assert_eq!(std::fs::read(out.join("runs/total-lagrangian/run.json")).unwrap(), before);
+}
+
 /// The stand-in knows one solid.
 #[test]
 fn a_program_does_not_join_others_without_water() {

@@ -106,3 +106,39 @@ fn a_load_that_grows_moves_the_block_as_its_formula_says() {
         assert!((x - exact).abs() < 1e-6, "{time} s: {x}, exactly {exact}");
     }
 }
+
+/// A trial takes the place of an earlier trial and of nothing else.
+#[test]
+fn a_run_in_the_folder_is_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let occupied = folder.path().join("probes.csv");
+    std::fs::write(&occupied, "somebody's").unwrap();
+    let output = trial("spring-block.toml", "exit 3", folder.path(), &["--force=1,0"]);
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(error.contains("holds a run (probes.csv)") && error.contains("--replace"), "{error}");
+    assert_eq!(std::fs::read_to_string(&occupied).unwrap(), "somebody's");
+    // Both begin, and end for the solid's sake.
+    for more in [&["--force=1,0", "--replace"][..], &["--force=1,0"]] {
+        let output = trial("spring-block.toml", "exit 3", folder.path(), more);
+        let error = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(error.contains("before the run had begun"), "{error}");
+    }
+    let told: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(folder.path().join("trial.json")).unwrap()).unwrap();
+    assert_eq!((&told["command"], &told["force"][0]), (&"exit 3".into(), &1.0.into()));
+    let run = Command::new(program())
+        .args(["run", "scenes/spring-block.toml", "--until", "0", "--out"])
+        .arg(folder.path())
+        .current_dir(repository())
+        .output()
+        .unwrap();
+    assert!(String::from_utf8_lossy(&run.stderr).contains("holds an earlier run"), "{run:?}");
+    for (arguments, reason) in [
+        (&["--ramp", "0.1"][..], "--force"),
+        (&["--within=0,0,1,1"], "--force"),
+        (&["--force=1,0,1"], "its force has no third component"),
+    ] {
+        let output = trial("spring-block.toml", "exit 3", folder.path(), arguments);
+        assert!(String::from_utf8_lossy(&output.stderr).contains(reason), "{output:?}");
+    }
+}

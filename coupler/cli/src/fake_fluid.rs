@@ -22,18 +22,21 @@ pub(crate) struct FakeFluidArguments {
     #[arg(long, value_name = "N,N", value_parser = vector, allow_hyphen_values = true)]
     force: Option<[f64; 3]>,
     /// Only on the particles that begin in this box, m: XMIN,YMIN,XMAX,YMAX (default: on all)
-    #[arg(long, value_name = "M,M,M,M", value_parser = block, allow_hyphen_values = true)]
+    #[arg(long, value_name = "M,M,M,M", value_parser = block, allow_hyphen_values = true, requires = "force")]
     within: Option<Block>,
     /// Time in which the force grows from zero, s
-    #[arg(long, value_name = "SECONDS", value_parser = crate::arguments::seconds)]
+    #[arg(long, value_name = "SECONDS", value_parser = crate::arguments::seconds, requires = "force")]
     ramp: Option<f64>,
     /// Time step, s (default: what sound in the scene's water takes for a fifth of a particle, without water what
     /// is stable for the model that the scene names); the solid may take less
     #[arg(long, value_name = "SECONDS", value_parser = crate::arguments::seconds)]
     time_step: Option<f64>,
-    /// Folder of the trial (default: out/fake-fluid-SCENE)
+    /// Folder of the trial (default: out/fake-fluid-SCENE); files of an earlier trial in it are replaced
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Replaces the files of a run in that folder, too
+    #[arg(long)]
+    replace: bool,
 }
 
 fn numbers(text: &str) -> Result<Vec<f64>, String> {
@@ -96,6 +99,9 @@ fn trial(scene: &Scene, arguments: FakeFluidArguments) -> Result<Trial, String> 
     let Some((solid, SolidSource::Command(command))) = external.pop() else {
         return Err("--solid needs a command".into());
     };
+    if scene.dimension == 2 && arguments.force.is_some_and(|force| force[2] != 0.0) {
+        return Err(format!("--force: {} is two-dimensional, its force has no third component", scene.name));
+    }
     let time_step = match arguments.time_step.or(of_sound(scene)) {
         Some(dt) => dt,
         None => of_model(scene, solid.as_str())?,
@@ -111,6 +117,7 @@ fn trial(scene: &Scene, arguments: FakeFluidArguments) -> Result<Trial, String> 
         },
         time_step,
         out: arguments.out.unwrap_or(out),
+        replace: arguments.replace,
         stop: StopFlags::of_signals().map_err(|e| format!("cannot watch for signals: {e}"))?,
     })
 }

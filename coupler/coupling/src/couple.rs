@@ -139,7 +139,7 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
     pub fn first(&mut self, course: &mut Course) -> Result<bool, RunError> {
         let began = timeline::begin(&self.half_step, 1);
         let _turn = timeline::turn(Name::COUPLER);
-        self.receive(&course.progress, &Expect::of(&self.half_step))?;
+        self.receive(course, &Expect::of(&self.half_step))?;
         if self.abilities.is_empty() {
             self.abilities = self.states.iter().map(|state| state.header().abilities).collect();
             let unable = self.abilities.iter().position(|abilities| abilities & ability::CHECKPOINTS == 0);
@@ -215,7 +215,7 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
         self.half_step = self.half_step.next();
         let began = timeline::begin(&self.half_step, 1);
         let _turn = timeline::turn(Name::COUPLER);
-        self.receive(&course.progress, &Expect::of(&self.half_step))?;
+        self.receive(course, &Expect::of(&self.half_step))?;
         self.complete_checkpoint(course)?;
         self.answer(&tick, None)?;
         self.solids.book(self.half_step.dt);
@@ -232,7 +232,7 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
     /// As for [`Self::run`].
     pub fn end(&mut self, course: &mut Course) -> Result<Outcome, RunError> {
         timeline::finish();
-        self.receive(&course.progress, &Expect::last(self.half_step.step))?;
+        self.receive(course, &Expect::last(self.half_step.step))?;
         self.solids.finish()?;
         // All frames of external solids are on disk.
         self.complete_checkpoint(course)?;
@@ -308,15 +308,15 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
 
     /// All states of a half-step. The solids' first: where all are there the order does not matter, and the fluid waits
     /// for the solids' first messages before it sends its own.
-    fn receive(&mut self, progress: &Progress, expect: &Expect) -> Result<(), RunError> {
+    fn receive(&mut self, course: &mut Course, expect: &Expect) -> Result<(), RunError> {
         let (first_solid, participants) = (self.solids.first, self.phases.len());
         self.states.clear();
         for place in (first_solid..participants).chain(0..first_solid) {
-            progress.await_message(place);
+            course.progress.await_message(place);
             let (from, times) = (self.port.name(place), P::times);
             let take = |port: &mut P| port.receive_state(place, expect);
             let state = timeline::receive(&mut self.port, "wait for state", from, times, take)?;
-            progress.note_message();
+            course.progress.note_message();
             self.reject_failure(place, state.header())?;
             self.states.push(state);
         }
@@ -326,7 +326,9 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
         }
         let _phase = timeline::phase("checks");
         let dt = self.tick.and_then(|tick| tick.dt).unwrap_or_default();
-        self.solids.check(&self.states, dt, expect.step)
+        let remark = self.solids.check(&self.states, dt, (expect.step, self.half_step.stage.number()))?;
+        remark.into_iter().for_each(|remark| course.recorder.note_warning(remark));
+        Ok(())
     }
 
     fn reject_failure(&self, place: usize, header: &StateHeader) -> Result<(), RunError> {

@@ -65,6 +65,23 @@ pub enum RunError {
         /// Step n.
         step: u64,
     },
+    /// A particle of a solid has another mass than before.
+    #[error(
+        "particle {particle} of the {solid} has a mass of {now} at step {step} and of {first} before: masses stay as \
+         they were first published"
+    )]
+    MassChanged {
+        /// Which solid.
+        solid: Name,
+        /// Number of the particle.
+        particle: u32,
+        /// At first, kg (2D: kg/m).
+        first: f64,
+        /// Now, kg (2D: kg/m).
+        now: f64,
+        /// Step n.
+        step: u64,
+    },
     /// A solid has nothing that the fluid could meet.
     #[error("the {solid} publishes no interface particles: a solid has at least one")]
     NoParticles {

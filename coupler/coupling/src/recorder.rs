@@ -82,6 +82,8 @@ pub struct Recorder {
     dimension: usize,
     /// What external solids published first.
     external: Vec<FirstMessage>,
+    /// What the run was warned of on its way.
+    told: Vec<String>,
     balance: EnergyBalance,
 }
 
@@ -136,6 +138,7 @@ impl Recorder {
             isolated,
             dimension: scene.dimension,
             external: Vec::new(),
+            told: Vec::new(),
             balance: EnergyBalance::new(scene),
             earlier: 0.0,
             logged: Logged::default(),
@@ -212,15 +215,23 @@ impl Recorder {
         self.bar.suspend(|| say::warn(format_args!("warning: {warning}")));
     }
 
+    /// As [`Self::warn`], and in the report.
+    pub(crate) fn note_warning(&mut self, warning: String) {
+        self.warn(&warning);
+        self.told.push(warning);
+    }
+
     /// Takes what external solids published first into the report, and warns of what the scene has otherwise; of a run
     /// that was `resumed` the report knows it.
-    pub(crate) fn compare_first(&mut self, first: Vec<FirstMessage>, resumed: bool) {
+    pub(crate) fn compare_first(&mut self, mut first: Vec<FirstMessage>, resumed: bool) {
         if let Some((_, report)) =
             self.report.as_ref().filter(|(_, report)| resumed && !report.external.is_empty())
         {
             self.external.clone_from(&report.external);
             return;
         }
+        // The first velocities of a run that goes on are none with which the scene begins.
+        first.iter_mut().filter(|_| resumed).for_each(|message| message.off_velocity = 0.0);
         let remarks = first.iter().filter(|_| !resumed).flat_map(|message| message.remarks(self.dimension));
         remarks.for_each(|remark| self.warn(&remark));
         if let Some((path, report)) = self.report.as_mut().filter(|_| !first.is_empty()) {
@@ -352,7 +363,11 @@ impl Recorder {
         // What begins outside of the domain is gone before the first state.
         let at_first = self.first_fluid.map_or(0, |first| report.particles.fluid.saturating_sub(first));
         report.particles.removed = at_first + self.removed;
-        report.external.clone_from(&self.external);
+        // A run that ended before the first states knows what an earlier part of it wrote.
+        if !self.external.is_empty() {
+            report.external.clone_from(&self.external);
+        }
+        report.warnings.extend(self.told.iter().cloned());
         report.audit.energy_growth = self.balance.growth();
         report.audit.density_error = self.first_fluid.map(|_| self.density_error);
         report.audit.min_gap = self.gap.is_finite().then_some(self.gap);

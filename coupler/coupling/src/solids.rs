@@ -200,24 +200,34 @@ impl<const D: usize> Solids<D> {
     /// Notes the states that a checkpoint is made of.
     pub(crate) fn note_saved(&mut self, states: &[impl StateMessage]) {
         for (side, state) in self.solids.iter_mut().zip(&states[self.first..]) {
-            side.saved = positions_hash(state.records());
+            side.saved = state_hash(state.records());
         }
     }
 
     /// Place of a solid whose state is not the one that the checkpoint was made of.
     pub(crate) fn changed_since_saved<S: StateMessage>(&self, states: &[S]) -> Option<usize> {
-        let changed = |(side, state): (&CoupledSolid<D>, &S)| positions_hash(state.records()) != side.saved;
+        let changed = |(side, state): (&CoupledSolid<D>, &S)| state_hash(state.records()) != side.saved;
         let solid = self.solids.iter().zip(&states[self.first..]).position(changed)?;
         Some(self.first + solid)
     }
 
-    /// Checks that each state, of step n, goes on from the one before, after a time step of at most `dt`, s.
+    /// Checks that each state, of step n at a stage, goes on from the one before, after a time step of at most `dt`, s.
+    /// Returns what is to be warned of.
     ///
     /// # Errors
     /// What does not belong together.
-    pub(crate) fn check(&mut self, states: &[impl StateMessage], dt: f64, step: u64) -> Result<(), RunError> {
-        let mut all = self.solids.iter_mut().zip(&states[self.first..]);
-        all.try_for_each(|(side, state)| side.continuity.check(state.records(), dt, step))
+    pub(crate) fn check(
+        &mut self,
+        states: &[impl StateMessage],
+        dt: f64,
+        at: (u64, u32),
+    ) -> Result<Option<String>, RunError> {
+        let mut remark = None;
+        for (side, state) in self.solids.iter_mut().zip(&states[self.first..]) {
+            side.continuity.check(state.records(), dt, at)?;
+            remark = remark.or_else(|| side.continuity.remark());
+        }
+        Ok(remark)
     }
 
     /// Another program computes this participant.
@@ -462,12 +472,13 @@ impl<const D: usize> State for CoupledSolid<D> {
     }
 }
 
-/// Hash of particles and their positions.
-fn positions_hash(records: &[StateRecord]) -> u64 {
+/// Hash of particles, their positions, velocities and masses.
+fn state_hash(records: &[StateRecord]) -> u64 {
     let mut hash = Xxh3::new();
     for record in records {
         hash.update(&record.id.to_le_bytes());
-        record.position.iter().for_each(|x| hash.update(&x.to_le_bytes()));
+        let numbers = record.position.iter().chain(&record.velocity).chain([&record.mass]);
+        numbers.for_each(|x| hash.update(&x.to_le_bytes()));
     }
     hash.digest()
 }

@@ -8,6 +8,7 @@ use crate::session::watch;
 use halfstep_coupling::error::RunError;
 use halfstep_coupling::external::{Continuity, ExternalSolid, WallContact};
 use halfstep_coupling::roles::probes_of;
+use halfstep_coupling::say;
 use halfstep_coupling::supervise::{Children, StopFlags};
 use halfstep_link::{
     self as link, Claim, CouplerLink, CouplerPort, Expect, FLUID, LinkConfig, LinkError, Participant, Port,
@@ -15,7 +16,8 @@ use halfstep_link::{
 };
 use halfstep_output::probes::ProbeLog;
 use halfstep_output::run_json::{Percentiles, RunStatus, TimeSteps};
-use halfstep_output::{RunReport, Table, atomic, read_probes};
+use halfstep_output::run_dir::TRIAL;
+use halfstep_output::{OutputError, RunDirectory, RunReport, Table, atomic, read_probes};
 use halfstep_role::serve::{FOLDER_VARIABLE, SCENE_VARIABLE};
 use halfstep_scene::geometry::{self, holds};
 use halfstep_scene::{Block, Scene, dispatch};
@@ -56,8 +58,25 @@ pub struct Trial {
     pub time_step: f64,
     /// Folder of the trial: an empty one, or one of an earlier trial.
     pub out: PathBuf,
+    /// Replaces the files of a run in the folder, too.
+    pub replace: bool,
     /// Ends the trial.
     pub stop: StopFlags,
+}
+
+impl Trial {
+    /// What is tried, for whoever finds the folder.
+    fn json(&self) -> Result<String, RunError> {
+        let told = serde_json::json!({
+            "solid": self.solid.as_str(),
+            "command": self.command,
+            "force": self.load.force,
+            "within": self.load.within,
+            "ramp": self.load.ramp,
+            "time_step": self.time_step,
+        });
+        serde_json::to_string_pretty(&told).map_err(|e| RunError::System(e.to_string()))
+    }
 }
 
 /// What came of it.
@@ -89,8 +108,13 @@ pub fn run(scene: &Scene, trial: &Trial) -> Result<Tried, RunError> {
     });
     let particles = particles.unwrap_or_default();
     let system = |what: &str, e: std::io::Error| RunError::System(format!("{what}: {e}"));
-    std::fs::create_dir_all(&trial.out).map_err(|e| system(&trial.out.display().to_string(), e))?;
-    let out = trial.out.canonicalize().map_err(|e| system("the trial's folder", e))?;
+    let directory = RunDirectory::create(&trial.out, trial.replace || trial.out.join(TRIAL).is_file());
+    let directory = directory.map_err(|error| match error {
+        OutputError::Occupied { dir, found } => OutputError::HoldsRun { dir, found },
+        other => other,
+    })?;
+    let out = directory.path().canonicalize().map_err(|e| system("the trial's folder", e))?;
+    atomic::replace_bytes(&out.join(TRIAL), trial.json()?.as_bytes())?;
     let file = |name: &str| out.join(name);
     let (told, table) = (file("scene.json"), file(&particles::file_name(trial.solid.as_str())));
     let text = scene.to_json().map_err(|e| RunError::System(e.to_string()))?;
@@ -104,6 +128,7 @@ pub fn run(scene: &Scene, trial: &Trial) -> Result<Tried, RunError> {
     let log = file("log.txt");
     std::fs::write(&log, "").map_err(|e| system("log.txt", e))?;
     let mut children = Children::new(&log);
+    children.keep(directory.lock());
     let variables = [(SCENE_VARIABLE, told.as_path()), (FOLDER_VARIABLE, &out), (PARTICLES_VARIABLE, &table)];
     children.spawn_shell(&config.participants[SOLID], &trial.command, &config, &variables)?;
 
@@ -122,6 +147,7 @@ pub fn run(scene: &Scene, trial: &Trial) -> Result<Tried, RunError> {
         clock: (0, 0.0),
         pushed: Vec::new(),
         half_steps: Vec::new(),
+        remarks: Vec::new(),
     };
     let started = Instant::now();
     let (abort, connected, done) =
@@ -147,6 +173,7 @@ pub fn run(scene: &Scene, trial: &Trial) -> Result<Tried, RunError> {
     let particles = [pusher.pushed.len(), pusher.pushed.iter().filter(|share| **share > 0.0).count()];
     let half_step_us = percentiles(std::mem::take(&mut pusher.half_steps));
     pusher.solid.finish()?;
+    let warnings = std::mem::take(&mut pusher.remarks);
     drop(pusher);
     let mean = (steps > 0).then(|| time / steps as f64);
     let mut report = RunReport {
@@ -157,6 +184,7 @@ pub fn run(scene: &Scene, trial: &Trial) -> Result<Tried, RunError> {
         wall_seconds: started.elapsed().as_secs_f64(),
         dt: TimeSteps { mean, ..TimeSteps::default() },
         round_trip_us: Some(half_step_us),
+        warnings,
         ..RunReport::default()
     };
     let ended = ended.map_err(|error| {
@@ -229,6 +257,8 @@ struct Pusher<'a> {
     pushed: Vec<f64>,
     /// Duration of each of the solid's half-steps, µs.
     half_steps: Vec<f32>,
+    /// What the trial was warned of.
+    remarks: Vec<String>,
 }
 
 impl Pusher<'_> {
@@ -250,7 +280,11 @@ impl Pusher<'_> {
                 }
                 drop(link.receive_state(FLUID, &expect)?);
                 let records = state.records();
-                self.continuity.check(records, if stage == 0 { last_dt } else { dt }, step)?;
+                self.continuity.check(records, if stage == 0 { last_dt } else { dt }, (step, stage as u32))?;
+                if let Some(remark) = self.continuity.remark() {
+                    say::warn(format_args!("warning: {remark}"));
+                    self.remarks.push(remark);
+                }
                 if step == 0 && stage == 0 {
                     if state.header().holds_own_walls() {
                         self.walls = None;

@@ -16,6 +16,7 @@ use std::process::ExitCode;
 
 /// Exit status where a wanted error or budget was not reached.
 const NOT_REACHED: u8 = 3;
+const NONE_FINISHED: &str = "no run finished";
 
 /// Measures what accuracy costs: runs a scene over a ladder of settings
 ///
@@ -114,13 +115,13 @@ pub(crate) fn ended(result: Result<ExitCode, StudyError>) -> ExitCode {
     }
 }
 
-/// Tells what was found, as JSON or as text with the files that were `made`. Returns the exit status where no run
-/// finished.
+/// Tells what was found, as JSON or as text with the files that were `made`. Returns the exit status where that is not
+/// enough, `failed` says why.
 pub(crate) fn tell(
     json: Option<String>,
     text: impl FnOnce() -> String,
     (made, folder): (&str, &Path),
-    finished: bool,
+    failed: Option<&str>,
 ) -> Option<ExitCode> {
     match json {
         Some(json) => say::tell(format_args!("{json}")),
@@ -129,10 +130,9 @@ pub(crate) fn tell(
             say::tell(format_args!("\n{made} are in {}", folder.display()));
         }
     }
-    if !finished {
-        say::warn(format_args!("error: no run finished"));
-    }
-    (!finished).then(|| ExitCode::from(2))
+    let failed = failed?;
+    say::warn(format_args!("error: {failed}"));
+    Some(ExitCode::from(2))
 }
 
 fn run(arguments: StudyArguments) -> Result<ExitCode, StudyError> {
@@ -184,9 +184,9 @@ fn run(arguments: StudyArguments) -> Result<ExitCode, StudyError> {
     pictures::draw(&study, session.folder())?;
     let as_json = || serde_json::to_string_pretty(&study).map_err(|e| StudyError::System(e.to_string()));
     let as_json = json.then(as_json).transpose()?;
-    let finished = study.rows.iter().any(|row| row.error.is_none());
+    let failed = study.rows.iter().all(|row| row.error.is_some()).then_some(NONE_FINISHED);
     let made = ("study.csv, study.json and pictures", session.folder());
-    if let Some(code) = tell(as_json, || study.text(), made, finished) {
+    if let Some(code) = tell(as_json, || study.text(), made, failed) {
         return Ok(code);
     }
     Ok(match reached {
@@ -210,8 +210,9 @@ fn report(sweep: &Sweep, json: bool, folder: &Path) -> Result<ExitCode, StudyErr
     sweep.write(folder)?;
     let as_json = json.then(|| sweep.json()).transpose()?;
     let finished = sweep.rows.iter().any(|row| row.status == Some(RunStatus::Finished));
+    let failed = (!finished).then_some(NONE_FINISHED);
     let made = ("sweep.csv, sweep.json and sweep.png", folder);
-    Ok(tell(as_json, || sweep.text(), made, finished).unwrap_or(ExitCode::SUCCESS))
+    Ok(tell(as_json, || sweep.text(), made, failed).unwrap_or(ExitCode::SUCCESS))
 }
 
 /// The overrides of which no later one says otherwise.

@@ -167,6 +167,14 @@ fn distance(a: &[(f64, f64)], b: &[(f64, f64)]) -> Option<f64> {
     (squares.len() > 1).then(|| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
 }
 
+impl Compared {
+    /// How far the curve goes, where its run did not finish: a short one lies near any other.
+    fn until(&self) -> String {
+        let end = self.curve.last().filter(|_| self.status != Some(RunStatus::Finished));
+        end.map_or(String::new(), |end| format!(" until {} s", short(end.0)))
+    }
+}
+
 impl Comparison {
     /// From the runs of the solids: report, and probes where there are any.
     ///
@@ -246,7 +254,7 @@ impl Comparison {
                     .first()
                     .copied()
                     .flatten()
-                    .map_or("-".into(), |d| format!("{:.2} %", 100.0 * d)),
+                    .map_or("-".into(), |d| format!("{:.2} %{}", 100.0 * d, solid.until())),
                 short(solid.wall_seconds),
                 solid.steps.to_string(),
                 number(solid.time_step),

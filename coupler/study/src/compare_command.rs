@@ -16,7 +16,7 @@ use std::process::ExitCode;
 
 /// Runs a scene with different solids and compares them: a table and a picture
 ///
-/// Exit status: 0 done; 1 scene or usage error; 2 no run finished; 130 interrupted.
+/// Exit status: 0 done; 1 scene or usage error; 2 a run did not finish; 130 interrupted.
 #[derive(Clone, Debug, clap::Args)]
 pub struct CompareArguments {
     /// Scene file (TOML) with a solid
@@ -136,9 +136,10 @@ fn run(arguments: CompareArguments) -> Result<ExitCode, StudyError> {
     let comparison = Comparison::new(&scene, &probe, ended)?;
     comparison.write(&scene, &folder)?;
     let json = arguments.json.then(|| comparison.json()).transpose()?;
-    let finished = comparison.solids.iter().any(|solid| solid.status == Some(RunStatus::Finished));
+    let unfinished = comparison.solids.iter().find(|solid| solid.status != Some(RunStatus::Finished));
+    let failed = unfinished.map(|solid| format!("{} did not run to the end", solid.name));
     let made = ("compare.json, compare.png and the runs", folder.as_path());
-    Ok(tell(json, || comparison.text(), made, finished).unwrap_or(ExitCode::SUCCESS))
+    Ok(tell(json, || comparison.text(), made, failed.as_deref()).unwrap_or(ExitCode::SUCCESS))
 }
 
 /// Largest stable sub-step of the solid of that index in its first state, s.

@@ -196,7 +196,7 @@ fn claim(folder: &Path) -> Result<File, StudyError> {
 /// The report of a run that has ended, whatever it left.
 fn report_of(job: &Job) -> RunReport {
     RunReport::read(&job.dir.join("run.json")).unwrap_or_else(|_| {
-        let said = std::fs::read_to_string(job.dir.join("messages.txt")).unwrap_or_default();
+        let said = std::fs::read_to_string(job.dir.join(runs::MESSAGES)).unwrap_or_default();
         RunReport {
             status: Some(RunStatus::Failed),
             error: Some(format!("left no report: {}", said.trim())),

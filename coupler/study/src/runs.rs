@@ -7,7 +7,8 @@
 use super::error::StudyError;
 use super::ladder::{Setting, content, strip};
 use halfstep_output::run_json::RunStatus;
-use halfstep_output::{RunReport, atomic};
+use halfstep_output::run_dir::RunDirectory;
+use halfstep_output::{OutputError, RunReport, atomic};
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::{Deserialize, Serialize};
 use std::fs::File;
@@ -20,6 +21,8 @@ use std::time::{Duration, Instant};
 use xxhash_rust::xxh3::xxh3_64;
 
 const DONE: &str = "done.json";
+/// What a run of a study prints; no other run's folder has it.
+pub(super) const MESSAGES: &str = "messages.txt";
 /// Pause between two looks at the runs.
 const TICK: Duration = Duration::from_millis(50);
 
@@ -125,7 +128,7 @@ impl Job {
         }
         command.args(self.overrides.iter().flat_map(|o| ["--set", o]));
         command.args(&self.more);
-        let said = File::create(self.dir.join("messages.txt"))?;
+        let said = File::create(self.dir.join(MESSAGES))?;
         command.stdin(Stdio::null()).stdout(said.try_clone()?).stderr(said);
         // Ctrl-C is for the study, which then asks its runs to stop; without the study they stop, too.
         command.process_group(0);
@@ -146,12 +149,35 @@ impl Job {
         Ok(command)
     }
 
+    /// Refuses a folder in which a run goes on, and one with a run that no study made.
+    fn check_folder(&self) -> Result<(), StudyError> {
+        if !self.dir.is_dir() {
+            return Ok(());
+        }
+        if self.dir.join(MESSAGES).is_file() {
+            RunDirectory::reopen(&self.dir)?;
+            return Ok(());
+        }
+        match RunDirectory::create(&self.dir, false) {
+            Err(OutputError::Occupied { dir, found }) => Err(StudyError::Usage(format!(
+                "{} holds a run that was not made here ({found}), which would be replaced: give another --out",
+                dir.display()
+            ))),
+            other => other.map(drop).map_err(StudyError::from),
+        }
+    }
+
     fn start(&self) -> Result<Child, StudyError> {
         let what = self.dir.display().to_string();
         std::fs::create_dir_all(&self.dir).map_err(StudyError::system(&what))?;
-        match std::fs::remove_file(self.dir.join(DONE)) {
-            Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(StudyError::system(&what)(e)),
-            _ => (),
+        // A run that is refused before it begins leaves no report; the one before is not taken for its own.
+        for stale in [DONE, "run.json", "probes.csv"] {
+            match std::fs::remove_file(self.dir.join(stale)) {
+                Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
+                    return Err(StudyError::system(&what)(e));
+                }
+                _ => (),
+            }
         }
         self.command().and_then(|mut command| command.spawn()).map_err(StudyError::system(&what))
     }
@@ -196,6 +222,7 @@ pub fn execute(
     program: &Program,
     stop: &AtomicBool,
 ) -> Result<bool, StudyError> {
+    jobs.iter().try_for_each(Job::check_folder)?;
     let bar = ProgressBar::new(1000);
     let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}");
     bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
@@ -308,6 +335,33 @@ mod tests {
         }
         report.status = Some(RunStatus::Diverged);
         assert!(matches(&program, &report, &own, &program));
+    }
+
+    #[test]
+    fn runs_of_others_are_refused_and_kept() {
+        let dir = tempfile::tempdir().unwrap();
+        let own = dir.path().join("runs/hypoelastic");
+        let job = Job {
+            label: "hypoelastic".into(),
+            dir: own.clone(),
+            scene: dir.path().join("pool.toml"),
+            overrides: Vec::new(),
+            more: Vec::new(),
+            alone: false,
+            end_time: 1.0,
+            cost: 1.0,
+        };
+        job.check_folder().unwrap();
+        assert!(!own.exists());
+        std::fs::create_dir_all(&own).unwrap();
+        std::fs::write(own.join("run.json"), "{}").unwrap();
+        let refused = job.check_folder().unwrap_err().to_string();
+        assert!(refused.contains("a run that was not made here (run.json)"), "{refused}");
+        std::fs::write(own.join(MESSAGES), "").unwrap();
+        job.check_folder().unwrap();
+        let _under_way = RunDirectory::reopen(&own).unwrap();
+        let refused = job.check_folder().unwrap_err().to_string();
+        assert!(refused.starts_with("a run goes on in "), "{refused}");
     }
 
     #[test]

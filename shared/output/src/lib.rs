@@ -100,6 +100,14 @@ pub enum OutputError {
         /// A file of the earlier run.
         found: String,
     },
+    /// The folder of a trial holds an earlier run.
+    #[error("{} holds a run ({found}); give another folder, or --replace to replace that run", dir.display())]
+    HoldsRun {
+        /// The folder.
+        dir: PathBuf,
+        /// A file of the run.
+        found: String,
+    },
     /// A run goes on in the folder.
     #[error(
         "a run goes on in {}: process {}, for {} s so far; give another folder, or end that run first",

@@ -10,7 +10,7 @@ mod lock;
 use lock::Lock;
 
 /// Files that a run leaves in its folder, beside the frames.
-pub const FILES: [&str; 9] = [
+pub const FILES: [&str; 10] = [
     "run.json",
     "probes.csv",
     "plot.png",
@@ -20,7 +20,11 @@ pub const FILES: [&str; 9] = [
     "log.txt",
     "scene.json",
     "solid.env",
+    TRIAL,
 ];
+
+/// What was tried in a folder of `halfstep fake-fluid`.
+pub const TRIAL: &str = "trial.json";
 
 /// Whether a file in the run's folder is one that a run leaves.
 fn is_run_file(name: &str) -> bool {
