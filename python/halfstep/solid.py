@@ -124,7 +124,9 @@ class Solid:
 
     def _publish(self, dt):
         if not self._is_due:
-            raise RuntimeError(f"no state was published in step {self.step}, stage {1 - self.stage}")
+            # The place has moved on to the state that is due.
+            step = self.step - (self.stage == 0)
+            raise RuntimeError(f"no state was published in step {step}, stage {1 - self.stage}")
         self._is_due = False
         self.link.send(self.records, **self._head(), dt=dt, **self._sums())
 

@@ -90,24 +90,56 @@ fn a_run_with_the_block_goes_on_after_an_interruption() {
     assert_eq!(built_in.code(), Some(1));
     let said = "`solid` of this run was computed by another program: --solid or --await-solid";
     assert!(built_in.stderr.contains(said), "{}", built_in.stderr);
-    // The block forgets how far it was.
-    let forgetful = altered("x, v = float(saved", "x, v = 1e-3 + float(saved");
-    let refused = scene("spring-block")
-        .resume(&dir)
-        .argument("--solid")
-        .argument(forgetful.line())
-        .until(0.07)
-        .outcome();
-    assert_eq!(refused.code(), Some(2));
-    assert!(
-        refused.stderr.contains("the solid shows another state than that of the checkpoint"),
-        "{}",
-        refused.stderr
-    );
+    // The block forgets how far it was, how fast, or how heavy.
+    for (honest, lie) in [
+        ("x, v = float(saved", "x, v = 1e-3 + float(saved"),
+        ("velocity=v * along_x", "velocity=0.0"),
+        ("mass = density", "mass = (1.0 + halfstep.saved()['v'] ** 2) * density"),
+    ] {
+        let forgetful = altered(honest, lie);
+        let refused = scene("spring-block")
+            .resume(&dir)
+            .argument("--solid")
+            .argument(forgetful.line())
+            .until(0.07)
+            .outcome();
+        assert_eq!(refused.code(), Some(2));
+        let said = "the solid shows another state than that of the checkpoint";
+        assert!(refused.stderr.contains(said), "{}", refused.stderr);
+    }
     // Its last frames stand behind the others: one that remembers goes on.
     let going = scene("spring-block").resume(&dir).argument("--solid").argument(command()).until(0.07).run();
     let times: Vec<f64> = going.outcome.frames("fluid").iter().map(|frame| frame.time).collect();
     assert!(times[0] == 0.0 && times.len() == 5 && times.is_sorted(), "{times:?}");
+}
+
+/// A program knows nothing of what halfstep's own solid saved.
+#[test]
+fn a_run_of_the_built_in_solid_goes_on_with_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let dir = folder.path().join("run");
+    let built_in = scene("spring-block").set("output.checkpoint_interval", 0.01);
+    built_in.until(0.012).out(&dir).run();
+    let status = || std::fs::read(dir.join("run.json")).unwrap();
+    let before = status();
+    let other =
+        scene("spring-block").resume(&dir).argument("--solid").argument(command()).until(0.03).outcome();
+    assert_eq!(other.code(), Some(1));
+    assert!(other.stderr.contains("`solid` of this run was computed by halfstep itself"), "{}", other.stderr);
+    assert_eq!(status(), before);
+}
+
+/// A block that says it rests while it swings; one that says what it does is told nothing.
+#[test]
+fn velocities_that_do_not_move_the_solid_are_told() {
+    let lying = altered("v_now * along_x)", "0.0)");
+    for (line, told) in [(lying.line(), true), (command(), false)] {
+        let run = scene("spring-block").until(0.06).argument("--solid").argument(line).run();
+        let said = "the velocities of the solid do not take its particles where they are: 100 %";
+        assert_eq!(run.outcome.stderr.contains(said), told, "{}", run.outcome.stderr);
+        let warnings = run.report.warnings.iter().filter(|warning| warning.contains(said)).count();
+        assert_eq!(warnings, usize::from(told), "{:?}", run.report.warnings);
+    }
 }
 
 /// The script with something else in it.
@@ -260,7 +292,7 @@ fn a_solid_that_nobody_starts_is_missed_by_name() {
         scene("spring-block").argument("--await-solid").argument("--solid-wait").argument("0.5").outcome();
     assert_eq!(outcome.code(), Some(2));
     let error = outcome.report().error.unwrap();
-    assert_eq!(error, "no solid came within 0.5 s (--solid-wait)");
+    assert_eq!(error, "nobody started a solid within 0.5 s (--solid-wait): solid");
     assert!(outcome.stderr.contains(&error), "{}", outcome.stderr);
 }
 

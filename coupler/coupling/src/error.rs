@@ -35,8 +35,13 @@ pub enum RunError {
     #[error("{0}")]
     RoleEnded(Box<RoleEnd>),
     /// Nobody started a solid.
-    #[error("no solid came within {seconds} s (--solid-wait)")]
+    #[error(
+        "nobody started a solid within {seconds} s (--solid-wait): {}",
+        missing.iter().map(Name::to_string).collect::<Vec<_>>().join(", ")
+    )]
     NoSolid {
+        /// Who did not come.
+        missing: Vec<Name>,
         /// How long was waited, s.
         seconds: f64,
     },

@@ -15,8 +15,8 @@ use halfstep_link::{
     ProcessLink, Processes, StateMessage,
 };
 use halfstep_output::probes::ProbeLog;
-use halfstep_output::run_json::{Percentiles, RunStatus, TimeSteps};
 use halfstep_output::run_dir::TRIAL;
+use halfstep_output::run_json::{Percentiles, RunStatus, TimeSteps};
 use halfstep_output::{OutputError, RunDirectory, RunReport, Table, atomic, read_probes};
 use halfstep_role::serve::{FOLDER_VARIABLE, SCENE_VARIABLE};
 use halfstep_scene::geometry::{self, holds};
@@ -280,7 +280,11 @@ impl Pusher<'_> {
                 }
                 drop(link.receive_state(FLUID, &expect)?);
                 let records = state.records();
-                self.continuity.check(records, if stage == 0 { last_dt } else { dt }, (step, stage as u32))?;
+                self.continuity.check(
+                    records,
+                    if stage == 0 { last_dt } else { dt },
+                    (step, stage as u32),
+                )?;
                 if let Some(remark) = self.continuity.remark() {
                     say::warn(format_args!("warning: {remark}"));
                     self.remarks.push(remark);

@@ -186,6 +186,12 @@ fn check_external(scene: &Scene, options: &RunOptions) -> Result<(), RunError> {
 /// A run's solids are computed on by whom they were computed by.
 fn check_sources(earlier: &RunReport, options: &RunOptions) -> Result<(), RunError> {
     let names = options.external_names();
+    let other = names.iter().find(|name| !earlier.external.iter().any(|solid| solid.name == name.as_str()));
+    if let Some(name) = other {
+        return Err(RunError::Resume(format!(
+            "`{name}` of this run was computed by halfstep itself: go on without --solid for it"
+        )));
+    }
     let missing = earlier.external.iter().find(|solid| !names.iter().any(|name| name.as_str() == solid.name));
     let Some(solid) = missing else { return Ok(()) };
     Err(RunError::Resume(format!(

@@ -15,7 +15,9 @@ use halfstep_coupling::external::ExternalSolid;
 use halfstep_coupling::supervise::Children;
 use halfstep_coupling::{no_room, say};
 use halfstep_coupling::{reports, roles};
-use halfstep_link::{self as link, Claim, CouplerLink, FLUID, LinkConfig, Participant, Processes, Threads};
+use halfstep_link::{
+    self as link, Claim, CouplerLink, FLUID, LinkConfig, LinkError, Participant, Processes, Threads,
+};
 use halfstep_output::run_json::{Percentiles, RunStatus};
 use halfstep_output::{self as output, RunDirectory, RunReport};
 use halfstep_role::lockstep::RoleError;
@@ -243,8 +245,18 @@ impl<'a, const D: usize> Session<'a, D> {
                         RunError::StoppedEarly
                     }
                     // The fluid waits for the solid, too, and may be the first to give up.
-                    _ if waiting && by_hand && started.elapsed().as_secs_f64() >= seconds => {
-                        RunError::NoSolid { seconds }
+                    (error, _) if waiting && by_hand && started.elapsed().as_secs_f64() >= seconds => {
+                        let told = match error {
+                            RunError::Link(LinkError::HandshakeTimeout { missing, .. }) => missing,
+                            _ => Vec::new(),
+                        };
+                        let awaited: Vec<Name> = self.awaited().map(|(p, _)| p.name).collect();
+                        let mut missing = awaited.clone();
+                        missing.retain(|name| told.contains(name));
+                        RunError::NoSolid {
+                            missing: if missing.is_empty() { awaited } else { missing },
+                            seconds,
+                        }
                     }
                     (error, ended) => {
                         let external = self.options.external_names();

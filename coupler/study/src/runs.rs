@@ -6,8 +6,8 @@
 
 use super::error::StudyError;
 use super::ladder::{Setting, content, strip};
-use halfstep_output::run_json::RunStatus;
 use halfstep_output::run_dir::RunDirectory;
+use halfstep_output::run_json::RunStatus;
 use halfstep_output::{OutputError, RunReport, atomic};
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::{Deserialize, Serialize};

@@ -123,6 +123,8 @@ fn velocities_that_joints_take() {
     assert!(has(&across, "is lost at the joint `rail`: it is across the rail"), "{across:?}");
     assert!(!has(&moving(rail(), "[1.0, 1.0]"), "is lost"));
     assert!(!has(&moving(joint("pin", "hinge", FOOT), "[1.0, 0.0]"), "is lost"));
+    let along = moving(joint("pin", "hinge", FOOT), "[0.0, 1.0]");
+    assert!(has(&along, "is lost at the joint `pin`: it is along the arm"), "{along:?}");
     let turning = |turns: bool| {
         let rail = joint("rail", "rail", &format!("at = [0.5, 0.2], axis = [0.0, 1.0], turns = {turns}"));
         flap(&format!("bodies = [{{ name = \"flap\", angular_velocity = 3.0 }}]\njoints = [{rail}]"), "")
@@ -130,6 +132,29 @@ fn velocities_that_joints_take() {
     let said = "the angular velocity that `flap` begins with is lost at the joint `rail`: the rail does not let it turn";
     assert!(has(&turning(false), said), "{:?}", turning(false));
     assert!(!has(&turning(true), "is lost"));
+}
+
+#[test]
+fn keys_that_do_nothing() {
+    let found = hinged(&format!("{FOOT}, rest = 0.2"));
+    assert!(has(&found, "rest = 0.2 of the joint `pin` does nothing: it has no `stiffness`"), "{found:?}");
+    let found = hinged(&format!("{FOOT}, rest = 0.2, stiffness = 1000.0"));
+    assert!(!has(&found, "does nothing"), "{found:?}");
+    let bodies = "bodies = [{ name = \"flap\", angular_velocity = 3.0 }]";
+    let found = flap(bodies, "motion = { amplitude = [0.01, 0.0], period = 1.0 }");
+    let said =
+        "the angular velocity of the body `flap` does nothing: the `motion` of `flap` says how it moves";
+    assert!(has(&found, said), "{found:?}");
+    assert!(!has(&flap(bodies, ""), "does nothing"));
+}
+
+#[test]
+fn hinges_that_are_nowhere_near() {
+    // The flap is 0.3 m long.
+    for (at, told) in [("[0.5, -2.5]", true), ("[0.5, -0.1]", false)] {
+        let found = hinged(&format!("at = {at}"));
+        assert_eq!(has(&found, "the hinge `pin` is"), told, "{found:?}");
+    }
 }
 
 #[test]

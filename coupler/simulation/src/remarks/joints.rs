@@ -16,8 +16,9 @@ const TURN: f64 = 360.0;
 const PULLS: f64 = 20.0;
 /// Length over thickness from which on a body is a flap and no float on an arm.
 const FLAP: f64 = 3.0;
-/// Distance of a hinge from a flap over the flap's length.
+/// Distance of a hinge from a flap over the flap's length, and of any hinge from its body over that.
 const FAR: f64 = 0.5;
+const ANYWHERE: f64 = 10.0;
 
 /// A rigid solid with its keys.
 fn rigid(scene: &Scene) -> impl Iterator<Item = (usize, &RigidKeys)> {
@@ -149,6 +150,11 @@ pub(super) fn starts(scene: &Scene, all: &mut Vec<String>) {
                 JointKind::Rail { axis, .. } if moves && velocities().all(|v| is_across(&v, &axis)) => {
                     "it is across the rail"
                 }
+                JointKind::Hinge { at, .. }
+                    if moves && scene.dimension == 2 && along_arm(scene, solid, body, &at) =>
+                {
+                    "it is along the arm"
+                }
                 _ => continue,
             };
             let what = if turns && !moves { "angular velocity" } else { "velocity" };
@@ -160,6 +166,36 @@ pub(super) fn starts(scene: &Scene, all: &mut Vec<String>) {
 fn is_across(v: &[f64; 3], axis: &[f64; 3]) -> bool {
     let size = v.iter().map(|x| x * x).sum::<f64>().sqrt();
     (0..3).map(|d| v[d] * axis[d]).sum::<f64>().abs() <= 1e-9 * size
+}
+
+/// All shapes of a body begin with a velocity toward or away from a point.
+fn along_arm(scene: &Scene, solid: usize, body: &str, at: &[f64; 3]) -> bool {
+    let boxes = shapes(scene, solid, body).map(|shape| geometry::bounding_box(shape, scene));
+    let Some(around) = geometry::around(boxes) else { return false };
+    let arm = [0, 1].map(|d| 0.5 * (around.min[d] + around.max[d]) - at[d]);
+    let across = [-arm[1], arm[0], 0.0];
+    across != [0.0; 3] && shapes(scene, solid, body).all(|shape| is_across(&shape.velocity, &across))
+}
+
+/// Keys of joints and bodies that do nothing.
+pub(super) fn idle(scene: &Scene, all: &mut Vec<String>) {
+    for (solid, keys) in rigid(scene) {
+        let hinges = keys.joints.iter().filter(|joint| !matches!(joint.kind, JointKind::Spring { .. }));
+        for joint in hinges.filter(|joint| joint.rest != 0.0 && joint.stiffness == 0.0) {
+            all.push(format!(
+                "rest = {} of the joint `{}` does nothing: it has no `stiffness`",
+                joint.rest, joint.name
+            ));
+        }
+        for said in keys.bodies.iter().filter(|said| said.angular_velocity != [0.0; 3]) {
+            if let Some(shape) = shapes(scene, solid, &said.name).find(|shape| shape.motion.is_some()) {
+                all.push(format!(
+                    "the angular velocity of the body `{}` does nothing: the `motion` of `{}` says how it moves",
+                    said.name, shape.name
+                ));
+            }
+        }
+    }
 }
 
 /// Two joints of one body that leave no way together, in the plane.
@@ -193,7 +229,7 @@ fn lock(a: &Joint, b: &Joint) -> bool {
     }
 }
 
-/// Flaps whose hinge is far from them.
+/// Bodies whose hinge is far from them.
 pub(super) fn far_hinges(scene: &Scene, all: &mut Vec<String>) {
     for (solid, keys) in rigid(scene) {
         for joint in keys.joints.iter().filter(|joint| is_grounded(scene, joint)) {
@@ -202,7 +238,7 @@ pub(super) fn far_hinges(scene: &Scene, all: &mut Vec<String>) {
             let Some(around) = geometry::around(boxes) else { continue };
             let [thin, long] = sides(&around, scene.dimension);
             let away = geometry::distance(&Geometry::Box(around), &at);
-            if long > FLAP * thin && away > FAR * long {
+            if long > FLAP * thin && away > FAR * long || away > ANYWHERE * long {
                 all.push(format!(
                     "the hinge `{}` is {} m away from `{}`, which is {} m long: it swings about it on an arm that is \
                      not there (`at` is in the scene's coordinates)",

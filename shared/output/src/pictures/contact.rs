@@ -78,9 +78,10 @@ pub fn draw_contact(scene: &Scene, dir: &Path) -> Result<Option<PathBuf>, Output
             label(area, &title(scene), (16, 14), 20, HPos::Left)?;
             scale_bar(area, &view, place.scale, width as i32)?;
             let last = instants.last().map_or(0.0, |instant| instant.time);
-            for ((instant, panel), (_, by)) in instants.iter().zip(&place.panels).zip(&views) {
+            for ((instant, panel), (view, by)) in instants.iter().zip(&place.panels).zip(&views) {
                 frame_of(area, *panel)?;
-                let text = time_label(instant.time, last) + &way_label(*by);
+                let text =
+                    time_label(instant.time, last) + &way_label(*by) + &beyond_label(view.beyond(instant));
                 label(area, &text, (panel.x, panel.y - 22), 15, HPos::Left)?;
             }
             bars.iter().try_for_each(|bar| bar.draw(area))
@@ -246,6 +247,11 @@ fn way_label(by: [f64; 2]) -> String {
             format!(", view moved by ({}, {}) {unit}", units::number(x * factor), units::number(y * factor))
         }
     }
+}
+
+/// How many particles the view does not show.
+fn beyond_label(count: usize) -> String {
+    if count == 0 { String::new() } else { format!(", {count} outside") }
 }
 
 fn time_label(time: f64, last: f64) -> String {

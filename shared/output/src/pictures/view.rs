@@ -93,6 +93,16 @@ impl View {
         self.slice.is_none_or(|[low, high]| (low..=high).contains(&f64::from(point[2])))
     }
 
+    /// How many particles of fluid and solid an instant has beyond the edges.
+    pub(crate) fn beyond(&self, instant: &Instant) -> usize {
+        let outside = |point: &[f32; 3]| {
+            let x = [0, 1].map(|axis| f64::from(point[axis]));
+            !(0..2).all(|axis| (self.min[axis]..=self.max[axis]).contains(&x[axis]))
+        };
+        let moving = [FLUID, SOLID].into_iter().flat_map(|phase| instant.phase(phase));
+        moving.filter(|(frame, k)| self.shows(frame.points[*k]) && outside(&frame.points[*k])).count()
+    }
+
     /// Where in a panel a point lies; y points up in space and down in the picture.
     pub(crate) fn pixel(&self, point: [f32; 3], panel: Rect, scale: f64) -> [f64; 2] {
         let [x, y] = [f64::from(point[0]), f64::from(point[1])];
@@ -267,6 +277,9 @@ mod tests {
         }
         let (followed, _) = narrow.following(&scene, &instants[2]);
         assert!((followed.min[0] - 1.47).abs() < 1e-6 && (followed.size()[0] - 1.56).abs() < 1e-9);
+        // The drop; in a view of 0.5 m the water from 0.5 to 1 m, too.
+        assert_eq!(narrow.beyond(&instants[0]), 1);
+        assert_eq!(View { max: [0.505, 0.13], ..narrow }.beyond(&instants[0]), 51);
     }
 
     #[test]
