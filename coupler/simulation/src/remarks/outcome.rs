@@ -76,7 +76,8 @@ pub fn outcome(scene: &Scene, report: &RunReport) -> Vec<String> {
         if energy.relative_residual > RESIDUAL {
             let percent = 100.0 * energy.relative_residual;
             all.push(format!(
-                "the energy ledger leaves {percent:.0} % unexplained: the time step is too long"
+                "the energy ledger leaves {percent:.0} % unexplained: the time step is too long, or the scene asks for \
+                 what cannot be, as a body between walls that close or joints that contradict each other"
             ));
         }
         for participant in &energy.participants {
