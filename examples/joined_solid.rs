@@ -2,7 +2,7 @@
 //!
 //! `halfstep run scenes/spring-block.toml --solid 'target/release/joined-solid 20000'`
 
-use halfstep_client::{Contact, Particles, Solid};
+use halfstep_client::{Contact, Particles, Run};
 use std::error::Error;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -11,11 +11,17 @@ fn main() -> Result<(), Box<dyn Error>> {
     let rest = Particles::of_scene()?;
     let mass: f64 = rest.mass.iter().sum();
 
+    // Displacement and velocity at n, and at the stage that was published. A run with a checkpoint goes on from there.
+    let mut run = Run::of_environment()?;
+    let mut at_n = run.saved("state").map_or((0.0, 0.0), |state| (state[0], state[1]));
+    let mut now = at_n;
+    run.keep("state", &[at_n.0, at_n.1])?;
+    let mut first = rest.clone();
+    first.position.iter_mut().for_each(|x| x[0] += now.0);
+    first.velocity.fill([now.1, 0.0, 0.0]);
     // It slides along the floor on a rail, so walls are its own business.
-    let mut solid = Solid::join(&rest, Contact::Own)?;
-    // Displacement and velocity at n, and at the stage that was published.
-    let (mut at_n, mut now) = ((0.0, 0.0), (0.0, 0.0));
-    let mut position = rest.position.clone();
+    let mut solid = run.join(&first, Contact::Own)?;
+    let mut position = first.position;
     while let Some(step) = solid.wait()? {
         let load: f64 = solid.forces().iter().map(|force| force[0]).sum();
         // The midpoint rule: both stages go from n, with the rates of the stage.
@@ -23,6 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         now = (at_n.0 + step.span * now.1, at_n.1 + step.span * acceleration);
         if step.stage == 1 {
             at_n = now;
+            solid.keep("state", &[at_n.0, at_n.1])?;
         }
         for (x, rest) in position.iter_mut().zip(&rest.position) {
             x[0] = rest[0] + now.0;

@@ -44,10 +44,18 @@ int main(int argc, char **argv)
     for (size_t k = 0; k < n; k++)
         total += mass[k];
 
+    /* Displacement and velocity at n: at the start, or at the checkpoint that the run goes on from. */
+    double at_n[2] = {0.0, 0.0};
+    check(halfstep_saved("state", 2, at_n));
+    check(halfstep_keep("state", 2, at_n));
+    double x_now = at_n[0], v_now = at_n[1]; /* the same at the stage that was published */
+    for (size_t k = 0; k < n; k++) {
+        position[3 * k] = rest[3 * k] + x_now;
+        position[3 * k + 1] = rest[3 * k + 1];
+        velocity[3 * k] = v_now;
+    }
     /* It slides along the floor on a rail, so walls are its own business. */
-    check(halfstep_open(n, rest, velocity, mass, density, NULL, 1));
-    double x = 0.0, v = 0.0;         /* displacement and velocity at n */
-    double x_now = x, v_now = v;     /* the same at the stage that was published */
+    check(halfstep_open(n, position, velocity, mass, density, NULL, 1));
     halfstep_step step;
     int code;
     while ((code = halfstep_wait(&step, n, forces)) == HALFSTEP_OK) {
@@ -56,12 +64,13 @@ int main(int argc, char **argv)
             load += forces[3 * k];
         const double acceleration = (load - stiffness * x_now) / total;
         /* The midpoint rule: both stages go from n, with the rates of the stage. */
-        const double x_next = x + step.span * v_now, v_next = v + step.span * acceleration;
+        const double x_next = at_n[0] + step.span * v_now, v_next = at_n[1] + step.span * acceleration;
         x_now = x_next;
         v_now = v_next;
         if (step.stage == 1) {
-            x = x_now;
-            v = v_now;
+            at_n[0] = x_now;
+            at_n[1] = v_now;
+            check(halfstep_keep("state", 2, at_n));
         }
         for (size_t k = 0; k < n; k++) {
             position[3 * k] = rest[3 * k] + x_now;

@@ -32,6 +32,7 @@ extern "C" {
 
 #define HALFSTEP_OK 0        /* done */
 #define HALFSTEP_STOPPED 1   /* halfstep_wait: the run has ended as it should, and the solid has left it */
+#define HALFSTEP_NOTHING 2   /* halfstep_saved: the run begins, or nothing was kept by that name */
 #define HALFSTEP_POINTER -1  /* a pointer is null or not aligned */
 #define HALFSTEP_COUNT -2    /* not the solid's number of particles, or more than the run has room for, or none */
 #define HALFSTEP_VALUE -3    /* a number is not finite, or not positive where it must be */
@@ -71,6 +72,22 @@ int halfstep_particle_count(size_t *count);
 int halfstep_particles(size_t count, double *position, double *velocity, double *mass, double *density,
                        uint8_t *clamped);
 
+/* Number of the connected body of each of them, from 0 on. Errors: POINTER, COUNT, RUN. */
+int halfstep_particle_bodies(size_t count, uint32_t *body);
+
+/* Says the body of each particle of the solid that is opened next, for frames; without it nothing is said of bodies.
+ * Errors: POINTER; STATE: a solid is open. */
+int halfstep_bodies(size_t count, const uint32_t *body);
+
+/* Keeps numbers by a name, whatever the solver needs to go on to the same bits: before halfstep_open those of the first
+ * state, then the run writes checkpoints and can be resumed; before halfstep_publish those of the state at n + 1.
+ * Errors: POINTER; VALUE: a number is not finite; STATE: nothing was kept before halfstep_open, or not now. */
+int halfstep_keep(const char *name, size_t count, const double *values);
+
+/* The numbers kept by a name at the checkpoint that the run goes on from, with which the solid opens in that very state.
+ * HALFSTEP_NOTHING: the run begins. Errors: POINTER, COUNT, RUN. */
+int halfstep_saved(const char *name, size_t count, double *values);
+
 /* Joins the run with `count` particles and publishes their first state: position (m) and velocity (m/s), 3 x count; mass
  * (kg) and density (kg/m3), count each, positive; `clamped`, count, not 0: the velocity is prescribed, or NULL: nowhere.
  * It returns when all processes of the run are connected. Walls that the scene lets the solid touch push it in two
@@ -91,6 +108,17 @@ int halfstep_publish(size_t count, const double *position, const double *velocit
 /* Deviatoric stress of the states from now on, for pictures and probes: xx, yy, zz, xy, yz, xz, Pa, 6 x count.
  * Errors: POINTER, COUNT, VALUE, STATE. */
 int halfstep_stress(size_t count, const double *stress);
+
+/* Pressure, Pa, for pictures and probes, and density, kg/m3, positive, of the states from now on, count each.
+ * Errors: POINTER, COUNT, VALUE, STATE. */
+int halfstep_pressure(size_t count, const double *pressure);
+int halfstep_density(size_t count, const double *density);
+
+/* In how many steps of its own the solid advances, for run.json. Errors: VALUE: none; STATE. */
+int halfstep_sub_steps(uint32_t count);
+
+/* Energy that the solid stores from the next state on, J (2D: J/m). Errors: VALUE, STATE. */
+int halfstep_stored_energy(double joules);
 
 /* Largest time step that the solid allows from the next state on, s; without it there is no limit.
  * Errors: VALUE, STATE. */

@@ -13,6 +13,8 @@ pub enum Code {
     Ok = 0,
     /// The run has ended as it should: the solid has left it.
     Stopped = 1,
+    /// The run begins, or nothing of that name was kept.
+    Nothing = 2,
     /// A pointer is null or not aligned.
     Pointer = -1,
     /// Another number of particles than the solid's, or one that the run has no room for.
@@ -147,6 +149,17 @@ pub(crate) unsafe fn optional<'a, T>(
     }
     // SAFETY: as of this function.
     unsafe { input(pointer, count, name) }.map(Some)
+}
+
+/// A text of the caller's.
+///
+/// # Safety
+/// The pointer is null or that of characters that a zero ends, which nobody changes meanwhile.
+pub(crate) unsafe fn name<'a>(pointer: *const c_char) -> Result<&'a str, Fault> {
+    usable(pointer, "name")?;
+    // SAFETY: as of this function.
+    let text = unsafe { std::ffi::CStr::from_ptr(pointer) };
+    text.to_str().map_err(|_| Fault::new(Code::Value, "the name is no UTF-8"))
 }
 
 /// An array of the caller's to write.

@@ -7,7 +7,7 @@
 mod call;
 
 pub use call::Code;
-use call::{Fault, call, input, optional, output, text, vectors, vectors_mut};
+use call::{Fault, call, input, name, optional, output, text, vectors, vectors_mut};
 use halfstep_client::{Contact, Particles, Quantity, Run, Solid};
 use std::cell::RefCell;
 use std::ffi::{c_char, c_int};
@@ -37,6 +37,9 @@ thread_local! {
     /// Not dropped where the thread ends: the transport's own objects of the thread may be gone by then.
     static SOLID: RefCell<Option<ManuallyDrop<Solid>>> = const { RefCell::new(None) };
     static PARTICLES: RefCell<Option<Particles>> = const { RefCell::new(None) };
+    /// What is said before the solid is opened: the bodies of its particles, and what it keeps.
+    static BODIES: RefCell<Vec<u32>> = const { RefCell::new(Vec::new()) };
+    static KEPT: RefCell<Vec<(String, Vec<f64>)>> = const { RefCell::new(Vec::new()) };
 }
 
 /// Calls `act` with the solid of this thread.
@@ -126,8 +129,9 @@ pub unsafe extern "C" fn halfstep_open(
         if SOLID.with_borrow(Option::is_some) {
             return Err(Fault::state("a solid is open already: a program is one participant"));
         }
-        let run = Run::of_environment()?;
+        let mut run = Run::of_environment()?;
         run.room_for(count)?;
+        KEPT.with_borrow(|kept| kept.iter().try_for_each(|(name, values)| run.keep(name, values)))?;
         // SAFETY: as of this function; the count fits into a message.
         let particles = unsafe {
             Particles {
@@ -139,6 +143,7 @@ pub unsafe extern "C" fn halfstep_open(
                     Some(clamped) => clamped.iter().map(|held| *held != 0).collect(),
                     None => vec![false; count],
                 },
+                body: BODIES.with_borrow(Clone::clone),
             }
         };
         let solid = run.join(&particles, if own_walls != 0 { Contact::Own } else { Contact::Coupler })?;
@@ -200,6 +205,124 @@ pub unsafe extern "C" fn halfstep_stress(count: usize, stress: *const f64) -> c_
     })
 }
 
+/// Number of the connected body of each particle that the scene gives this solid.
+///
+/// # Safety
+/// `body` is null or has `count` elements.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn halfstep_particle_bodies(count: usize, body: *mut u32) -> c_int {
+    call(|| {
+        let particles = Particles::of_scene()?;
+        call::same_count(count, particles.count())?;
+        // SAFETY: as of this function.
+        unsafe { output(body, count, "body")? }.copy_from_slice(&particles.body);
+        Ok(Code::Ok)
+    })
+}
+
+/// Says the connected body of each particle of the solid that is opened next.
+///
+/// # Safety
+/// `body` is null or has `count` elements.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn halfstep_bodies(count: usize, body: *const u32) -> c_int {
+    call(|| {
+        if SOLID.with_borrow(Option::is_some) {
+            return Err(Fault::state("the bodies are said before halfstep_open"));
+        }
+        // SAFETY: as of this function.
+        BODIES.set(unsafe { input(body, count, "body")? }.to_vec());
+        Ok(Code::Ok)
+    })
+}
+
+/// Keeps numbers for the checkpoint of the state that is published next.
+///
+/// # Safety
+/// `name` is null or ends with a zero, `values` is null or has `count` elements.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn halfstep_keep(key: *const c_char, count: usize, values: *const f64) -> c_int {
+    call(|| {
+        // SAFETY: as of this function.
+        let (key, values) = unsafe { (name(key)?, input(values, count, "values")?) };
+        if SOLID.with_borrow(Option::is_some) {
+            return with(|solid| Ok(solid.keep(key, values).map(|()| Code::Ok)?));
+        }
+        if values.iter().any(|x| !x.is_finite()) {
+            return Err(Fault::new(Code::Value, format!("`{key}` has a number that is not finite")));
+        }
+        KEPT.with_borrow_mut(|kept| {
+            kept.retain(|(other, _)| other != key);
+            kept.push((key.to_owned(), values.to_vec()));
+        });
+        Ok(Code::Ok)
+    })
+}
+
+/// Numbers that were kept at the checkpoint that the run goes on from.
+///
+/// # Safety
+/// `name` is null or ends with a zero, `values` is null or has `count` elements.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn halfstep_saved(key: *const c_char, count: usize, values: *mut f64) -> c_int {
+    call(|| {
+        let run = Run::of_environment()?;
+        // SAFETY: as of this function.
+        let (key, values) = unsafe { (name(key)?, output(values, count, "values")?) };
+        let Some(saved) = run.saved(key) else { return Ok(Code::Nothing) };
+        if saved.len() != count {
+            let text = format!("{count} numbers, but `{key}` has {}", saved.len());
+            return Err(Fault::new(Code::Count, text));
+        }
+        values.copy_from_slice(saved);
+        Ok(Code::Ok)
+    })
+}
+
+/// Gives the states from now on a pressure, for pictures and probes.
+///
+/// # Safety
+/// `pressure` is null or has `count` elements.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn halfstep_pressure(count: usize, pressure: *const f64) -> c_int {
+    call(|| {
+        with(|solid| {
+            call::same_count(count, solid.count())?;
+            // SAFETY: as of this function.
+            solid.pressure(unsafe { input(pressure, count, "pressure")? })?;
+            Ok(Code::Ok)
+        })
+    })
+}
+
+/// Gives the states from now on a density.
+///
+/// # Safety
+/// `density` is null or has `count` elements.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn halfstep_density(count: usize, density: *const f64) -> c_int {
+    call(|| {
+        with(|solid| {
+            call::same_count(count, solid.count())?;
+            // SAFETY: as of this function.
+            solid.density(unsafe { input(density, count, "density")? })?;
+            Ok(Code::Ok)
+        })
+    })
+}
+
+/// Says in how many steps of its own the solid advances.
+#[unsafe(no_mangle)]
+pub extern "C" fn halfstep_sub_steps(count: u32) -> c_int {
+    call(|| with(|solid| Ok(solid.sub_steps(count).map(|()| Code::Ok)?)))
+}
+
+/// Says what energy the solid stores, J (2D: J/m).
+#[unsafe(no_mangle)]
+pub extern "C" fn halfstep_stored_energy(joules: f64) -> c_int {
+    call(|| with(|solid| Ok(solid.stored_energy(joules).map(|()| Code::Ok)?)))
+}
+
 /// Says the largest time step that the solid allows from the next state on, s.
 #[unsafe(no_mangle)]
 pub extern "C" fn halfstep_dt_limit(seconds: f64) -> c_int {
@@ -227,6 +350,8 @@ pub extern "C" fn halfstep_diverged(quantity: c_int, particle: u32, value: f64) 
 /// Leaves the run. Where it is not over it ends with it: the solid has failed.
 #[unsafe(no_mangle)]
 pub extern "C" fn halfstep_close() -> c_int {
+    BODIES.take();
+    KEPT.take();
     call(|| match SOLID.take() {
         None => Ok(Code::Ok),
         Some(solid) => {

@@ -43,10 +43,10 @@ class Solid:
 
     `position`: N x D, m. `mass`: N or one for all, kg (2D: kg/m). `density`: the same, kg/m3. `velocity`: N x D or one
     for all, m/s. `clamped`: mask of particles whose velocity is prescribed. `body`: number of the connected body of
-    each. `dt_limit`: largest time step that the solid allows, s. `save`: a function that returns the state at n as a
-    dictionary of arrays; with it the run can be interrupted and resumed, and `saved()` has that dictionary then.
-    `own_walls`: the solver holds the solid against the scene's walls itself; else walls that the scene lets it touch
-    push it in the plane, and `forces` has that, too.
+    each, from 0 on. `dt_limit`: largest time step that the solid allows, s. `save`: a function that returns the state
+    at n as a dictionary of arrays; with it the run can be interrupted and resumed, and `saved()` has that dictionary
+    then. `own_walls`: the solver holds the solid against the scene's walls itself; else walls that the scene lets it
+    touch push it in the plane, and `forces` has that, too.
     """
 
     def __init__(
@@ -65,7 +65,8 @@ class Solid:
         if clamped is not None:
             flags |= np.where(clamped, wire.CLAMPED, 0).astype(np.uint32)
         if body is not None:
-            flags |= np.asarray(body, np.uint32) << wire.BODY_SHIFT
+            # 0 would say nothing of its body.
+            flags |= (np.asarray(body, np.uint32) + 1) << wire.BODY_SHIFT
         self.records["flags"] = flags
         self.header = {"dt_limit": dt_limit, "sub_steps": 1}
         self.save, self.safe = save, 0

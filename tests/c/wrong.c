@@ -18,6 +18,7 @@
 #define MOST 100000
 static double x[3 * MOST], v[3 * MOST], f[3 * MOST], s[6 * MOST], mass[MOST], density[MOST];
 static uint8_t clamped[MOST];
+static uint32_t body[MOST];
 
 static void outside(void)
 {
@@ -30,6 +31,11 @@ static void outside(void)
     EXPECT(HALFSTEP_STATE, halfstep_publish(1, x, v));
     EXPECT(HALFSTEP_STATE, halfstep_stress(1, s));
     EXPECT(HALFSTEP_STATE, halfstep_dt_limit(1.0));
+    EXPECT(HALFSTEP_STATE, halfstep_sub_steps(1));
+    EXPECT(HALFSTEP_STATE, halfstep_stored_energy(1.0));
+    EXPECT(HALFSTEP_STATE, halfstep_pressure(1, s));
+    EXPECT(HALFSTEP_RUN, halfstep_saved("x", 1, x));
+    EXPECT(HALFSTEP_RUN, halfstep_particle_bodies(1, body));
     EXPECT(HALFSTEP_STATE, halfstep_diverged(HALFSTEP_SPEED, 0, 1.0));
     EXPECT(HALFSTEP_OK, halfstep_close());
 }
@@ -58,7 +64,28 @@ int main(int argc, char **argv)
     EXPECT(HALFSTEP_VALUE, halfstep_open(n, x, v, mass, density, NULL, 0));
     x[4] = x[1];
     EXPECT(HALFSTEP_OK, halfstep_particles(n, x, v, mass, density, clamped));
+    EXPECT(HALFSTEP_POINTER, halfstep_keep(NULL, 1, x));
+    EXPECT(HALFSTEP_POINTER, halfstep_keep("x", 1, NULL));
+    x[4] = NAN;
+    EXPECT(HALFSTEP_VALUE, halfstep_keep("x", 3 * n, x));
+    x[4] = x[1];
+    EXPECT(HALFSTEP_OK, halfstep_particles(n, x, v, mass, density, clamped));
+    EXPECT(HALFSTEP_COUNT, halfstep_particle_bodies(n + 1, body));
+    EXPECT(HALFSTEP_OK, halfstep_particle_bodies(n, body));
+    EXPECT(HALFSTEP_OK, halfstep_bodies(n - 1, body));
+    EXPECT(HALFSTEP_COUNT, halfstep_open(n, x, v, mass, density, clamped, 1));
+    EXPECT(HALFSTEP_OK, halfstep_bodies(n, body));
+    EXPECT(HALFSTEP_NOTHING, halfstep_saved("x", 1, s));
     EXPECT(HALFSTEP_OK, halfstep_open(n, x, v, mass, density, clamped, 1));
+    EXPECT(HALFSTEP_STATE, halfstep_bodies(n, body));
+    EXPECT(HALFSTEP_STATE, halfstep_keep("x", 1, x));
+    EXPECT(HALFSTEP_VALUE, halfstep_sub_steps(0));
+    EXPECT(HALFSTEP_OK, halfstep_sub_steps(3));
+    EXPECT(HALFSTEP_VALUE, halfstep_stored_energy(NAN));
+    EXPECT(HALFSTEP_OK, halfstep_stored_energy(1.5));
+    EXPECT(HALFSTEP_COUNT, halfstep_pressure(n - 1, s));
+    EXPECT(HALFSTEP_VALUE, halfstep_density(n, s));
+    EXPECT(HALFSTEP_OK, halfstep_density(n, density));
     EXPECT(HALFSTEP_STATE, halfstep_open(n, x, v, mass, density, clamped, 1));
     EXPECT(HALFSTEP_STATE, halfstep_publish(n, x, v));
     EXPECT(HALFSTEP_VALUE, halfstep_dt_limit(0.0));

@@ -62,6 +62,44 @@ fn a_block_in_rust_or_in_c_moves_as_the_one_in_python() {
     assert!(said.contains("contact of the solid with walls: by itself, as it says"), "{said}");
 }
 
+/// Interrupted and resumed, the block in Rust, C or Python comes to the same bits as in one go, and frames know its body
+/// where it is said.
+#[test]
+fn runs_with_a_block_in_any_language_go_on() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let program = compiled(&repository().join("c/examples/spring_block.c"), folder.path());
+    let script = repository().join("tests/python/spring_block.py");
+    let script = std::fs::read_to_string(script).expect("a script");
+    let of_bodies = folder.path().join("bodies.py");
+    let saves = "save=lambda";
+    assert!(script.contains(saves));
+    let with_bodies = script.replace(saves, "body=np.zeros(len(rest), int), save=lambda");
+    std::fs::write(&of_bodies, with_bodies).expect("written");
+    let python = format!("{} {}", python().display(), of_bodies.display());
+    for (name, solid, bodies) in [
+        ("c", program.display().to_string(), false),
+        ("rust", IN_RUST.to_owned(), true),
+        ("python", python, true),
+    ] {
+        let line = format!("{solid} {STIFFNESS}");
+        let block = || {
+            let block = scene("spring-block").argument("--solid").argument(&line);
+            block.set("output.checkpoint_interval", 0.01).set("output.frame_interval", 0.02)
+        };
+        let whole = block().until(0.06).run();
+        let dir = folder.path().join(name);
+        block().until(0.035).out(&dir).run();
+        let resumed =
+            scene("spring-block").resume(&dir).argument("--solid").argument(&line).until(0.06).run();
+        assert!(resumed.report.resumed[0].step > 0);
+        assert_eq!(resumed.state_hash(), whole.state_hash(), "{name}");
+        assert_eq!(resumed.probes, whole.probes, "{name}");
+        let frames = whole.outcome.frames("solid");
+        assert_eq!(frames[1].body.len(), if bodies { frames[1].len() } else { 0 }, "{name}");
+        assert!(frames[1].body.iter().all(|body| *body == 0));
+    }
+}
+
 /// Null pointers, wrong counts, numbers that nothing has, calls out of order: a code and a text, outside of a run.
 #[test]
 fn what_is_wrong_is_a_code_and_a_text() {

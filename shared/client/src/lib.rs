@@ -18,12 +18,15 @@
 //! # Ok::<(), halfstep_client::Error>(())
 //! ```
 
+mod checkpoint;
 mod particles;
+mod run;
 mod solid;
 
 pub use halfstep_wire::failure::Quantity;
 pub use particles::Particles;
-pub use solid::{Contact, Run, Solid, Step};
+pub use run::{Contact, Run};
+pub use solid::{Solid, Step};
 
 /// Why a solid cannot go on.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -18,6 +18,8 @@ pub struct Particles {
     pub density: Vec<f64>,
     /// Held by a clamp of the scene.
     pub clamped: Vec<bool>,
+    /// Number of the connected body, from 0 on; empty: nothing is said of bodies.
+    pub body: Vec<u32>,
 }
 
 impl Particles {
@@ -39,12 +41,14 @@ impl Particles {
         let mut all = Self::default();
         for row in csv::Reader::from_reader(text.as_bytes()).deserialize() {
             let row: Vec<f64> = row.ok()?;
-            let &[x, y, z, u, v, w, mass, density, clamped, _, _] = row.as_slice().as_array::<COLUMNS>()?;
+            let &[x, y, z, u, v, w, mass, density, clamped, body, _] =
+                row.as_slice().as_array::<COLUMNS>()?;
             all.position.push([x, y, z]);
             all.velocity.push([u, v, w]);
             all.mass.push(mass);
             all.density.push(density);
             all.clamped.push(clamped != 0.0);
+            all.body.push(body as u32);
         }
         Some(all)
     }
@@ -63,13 +67,14 @@ mod tests {
     fn rows_by_hand() {
         let titles = "a,b,c,d,e,f,g,h,i,j,k\n";
         let table = |rows: &str| Particles::parse(&format!("{titles}{rows}"));
-        let found = table("1,2,3,4,5,6,7,8,1,0,2\n-1e-3,0,0,0,0,0,7,9,0,0,2\n").unwrap();
+        let found = table("1,2,3,4,5,6,7,8,1,0,2\n-1e-3,0,0,0,0,0,7,9,0,3,2\n").unwrap();
         let expected = Particles {
             position: vec![[1.0, 2.0, 3.0], [-1e-3, 0.0, 0.0]],
             velocity: vec![[4.0, 5.0, 6.0], [0.0; 3]],
             mass: vec![7.0; 2],
             density: vec![8.0, 9.0],
             clamped: vec![true, false],
+            body: vec![0, 3],
         };
         assert_eq!(found, expected);
         assert!(table("1,2\n").is_none() && table("1,2,3,4,5,6,7,8,1,0,no\n").is_none());

@@ -1,7 +1,9 @@
 //! A solid's half-steps: what is due, what was told.
 
+use crate::checkpoint::{Kept, Saved};
+use crate::run::{Contact, Run, finite, keep, place, same_count};
 use crate::{Error, Particles};
-use halfstep_link::{Expect, LinkConfig, Port, ProcessLink, Processes};
+use halfstep_link::{Expect, Port, ProcessLink, Processes};
 use halfstep_wire::Name;
 use halfstep_wire::failure::Quantity;
 use halfstep_wire::half_step::HalfStep;
@@ -27,132 +29,6 @@ pub struct Step {
     pub span: f64,
 }
 
-/// Who holds the solid against walls and other solids.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Contact {
-    /// The coupler, where the scene has such contacts.
-    #[default]
-    Coupler,
-    /// The solid itself.
-    Own,
-}
-
-/// What the launcher says of the run and this solid.
-#[derive(Debug)]
-pub struct Run {
-    config: LinkConfig,
-    name: Name,
-    place: u32,
-    capacity: u32,
-}
-
-impl Run {
-    /// The run that started this program.
-    ///
-    /// # Errors
-    /// [`Error::Run`]: there is none, or it speaks another version.
-    pub fn of_environment() -> Result<Self, Error> {
-        let config = LinkConfig::from_env().map_err(|error| {
-            Error::Run(format!("{error}: start this program with `halfstep run SCENE --solid COMMAND`"))
-        })?;
-        let told = std::env::var("HALFSTEP_NAME").unwrap_or_default();
-        let place = config.participants.iter().position(|p| p.name.as_str() == told);
-        let place = place.ok_or_else(|| Error::Run(format!("HALFSTEP_NAME: no participant `{told}`")))?;
-        let own = config.participants[place];
-        Ok(Self { config, name: own.name, place: place as u32, capacity: own.capacity })
-    }
-
-    /// Whether there is room for so many particles.
-    ///
-    /// # Errors
-    /// [`Error::Count`]: there is not, or there are none.
-    pub fn room_for(&self, count: usize) -> Result<(), Error> {
-        let room = self.capacity as usize;
-        match (1..=room).contains(&count) {
-            true => Ok(()),
-            false => Err(Error::Count(format!("{count} particles, where the run has room for 1 to {room}"))),
-        }
-    }
-
-    /// Joins it with these particles and publishes their first state.
-    ///
-    /// # Errors
-    /// [`Error::Count`], [`Error::Value`]: of the particles. [`Error::Run`]: the run has ended.
-    pub fn join(self, particles: &Particles, contact: Contact) -> Result<Solid, Error> {
-        self.room_for(particles.count())?;
-        let records = records(particles)?;
-        let mut solid = Solid {
-            link: ProcessLink::open(&self.config, self.name, None)?,
-            place: self.place,
-            told: vec![[0.0; 3]; records.len()],
-            records,
-            half_step: HalfStep::begin(0, 0.0),
-            next: Next::Publish,
-            dt_limit: UNLIMITED,
-            abilities: if contact == Contact::Own { ability::WALLS_AND_CONTACTS } else { 0 },
-            fluid: Vec::new(),
-            forces: Vec::new(),
-        };
-        solid.send()?;
-        Ok(solid)
-    }
-}
-
-/// A time step that is none: the solid allows any, s.
-const UNLIMITED: f64 = 1e30;
-
-/// The records of a first state.
-fn records(particles: &Particles) -> Result<Vec<StateRecord>, Error> {
-    let Particles { position, velocity, mass, density, clamped } = particles;
-    same_count(density.len(), mass.len())?;
-    same_count(clamped.len(), mass.len())?;
-    for (name, values) in [("mass", mass), ("density", density)] {
-        if let Some(k) = values.iter().position(|&x| !(x > 0.0 && x.is_finite())) {
-            let text = format!("{name} of particle {k} is {}: it must be positive", values[k]);
-            return Err(Error::Value(text));
-        }
-    }
-    let record = |k: usize| StateRecord {
-        id: k as u32,
-        flags: u32::from(clamped[k]),
-        mass: mass[k],
-        density: density[k],
-        ..StateRecord::default()
-    };
-    let mut all: Vec<StateRecord> = (0..mass.len()).map(record).collect();
-    place(&mut all, position, velocity)?;
-    Ok(all)
-}
-
-/// The caller means as many particles as there are.
-fn same_count(found: usize, expected: usize) -> Result<(), Error> {
-    match found == expected {
-        true => Ok(()),
-        false => Err(Error::Count(format!("{found} particles, but the solid has {expected}"))),
-    }
-}
-
-/// Puts particles where they are now.
-fn place(records: &mut [StateRecord], position: &[[f64; 3]], velocity: &[[f64; 3]]) -> Result<(), Error> {
-    for (name, values) in [("position", position), ("velocity", velocity)] {
-        same_count(values.len(), records.len())?;
-        finite(name, values)?;
-    }
-    for (record, (x, v)) in records.iter_mut().zip(position.iter().zip(velocity)) {
-        (record.position, record.velocity) = (*x, *v);
-    }
-    Ok(())
-}
-
-fn finite<const N: usize>(name: &str, values: &[[f64; N]]) -> Result<(), Error> {
-    let wrong =
-        values.iter().enumerate().find_map(|(k, value)| Some((k, value.iter().find(|x| !x.is_finite())?)));
-    match wrong {
-        None => Ok(()),
-        Some((k, value)) => Err(Error::Value(format!("{name} of particle {k} is {value}"))),
-    }
-}
-
 /// What the solid does next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Next {
@@ -165,18 +41,60 @@ enum Next {
 #[derive(Debug)]
 pub struct Solid {
     link: ProcessLink<Processes>,
+    name: Name,
     place: u32,
     records: Vec<StateRecord>,
     half_step: HalfStep,
     next: Next,
     dt_limit: f64,
+    sub_steps: u32,
+    stored_energy: f64,
     abilities: u32,
+    kept: Kept,
+    /// Number of the last checkpoint that is on disk.
+    safe: u32,
     fluid: Vec<StateRecord>,
     forces: Vec<ForceRecord>,
     told: Vec<[f64; 3]>,
 }
 
+/// What a solid begins with.
+pub(crate) struct Start {
+    pub(crate) link: ProcessLink<Processes>,
+    pub(crate) name: Name,
+    /// Among the participants.
+    pub(crate) place: u32,
+    pub(crate) records: Vec<StateRecord>,
+    pub(crate) saved: Saved,
+    pub(crate) abilities: u32,
+    pub(crate) kept: Kept,
+}
+
 impl Solid {
+    /// Publishes the first state.
+    pub(crate) fn begin(start: Start) -> Result<Self, Error> {
+        let Start { link, name, place, records, saved, abilities, kept } = start;
+        let mut solid = Self {
+            link,
+            name,
+            place,
+            told: vec![[0.0; 3]; records.len()],
+            records,
+            half_step: HalfStep::begin(saved.step, saved.time),
+            next: Next::Publish,
+            dt_limit: saved.dt_limit,
+            sub_steps: saved.sub_steps,
+            stored_energy: saved.stored_energy,
+            abilities,
+            kept,
+            safe: 0,
+            fluid: Vec::new(),
+            forces: Vec::new(),
+        };
+        solid.send()?;
+        Ok(solid)
+    }
+
     /// Joins the run that started this program, and publishes the first state.
     ///
     /// # Errors
@@ -198,12 +116,14 @@ impl Solid {
     fn header(&self) -> StateHeader {
         StateHeader {
             dt_limit: self.dt_limit,
-            sub_steps: 1,
+            sub_steps: self.sub_steps,
             abilities: self.abilities,
+            checkpoint_safe: self.safe,
             particles: self.records.len() as u64,
             audit: Audit {
                 mass: self.records.iter().map(|r| r.mass).sum(),
                 gap: f64::INFINITY,
+                stored_energy: self.stored_energy,
                 ..Audit::default()
             },
             ..self.half_step.state_header()
@@ -254,6 +174,11 @@ impl Solid {
             return Err(Error::Run("the fluid has ended".into()));
         }
         let answer = self.link.receive_forces(0, &expect, &mut self.forces)?;
+        if answer.order & order::WRITE_CHECKPOINT != 0 && self.abilities & ability::CHECKPOINTS != 0 {
+            let (step, time) = (answer.step, answer.time);
+            self.saved(step, time).write(self.name.as_str(), answer.checkpoint)?;
+            self.safe = answer.checkpoint as u32;
+        }
         if answer.order & order::STOP != 0 {
             self.last(status::FINISHED, Failure::default())?;
             return Ok(None);
@@ -295,6 +220,92 @@ impl Solid {
         for (record, stress) in self.records.iter_mut().zip(stress) {
             record.deviatoric_stress = *stress;
         }
+        Ok(())
+    }
+
+    /// Keeps numbers that a checkpoint of the state that is published next has: as [`Run::keep`] for the first state.
+    ///
+    /// # Errors
+    /// [`Error::Value`]: one is not finite. [`Error::State`]: nothing was kept of the first state, so the run knows that
+    /// the solid writes no checkpoints; or the state is published.
+    pub fn keep(&mut self, name: &str, values: &[f64]) -> Result<(), Error> {
+        if self.abilities & ability::CHECKPOINTS == 0 {
+            return Err(Error::State(
+                "what a checkpoint has is kept of the first state, before the solid joins",
+            ));
+        }
+        self.due(Next::Publish)?;
+        keep(&mut self.kept, name, values)
+    }
+
+    fn saved(&self, step: u64, time: f64) -> Saved {
+        let of = |value: fn(&StateRecord) -> f64| self.records.iter().map(value).collect();
+        Saved {
+            step,
+            time,
+            dt_limit: self.dt_limit,
+            sub_steps: self.sub_steps,
+            stored_energy: self.stored_energy,
+            stress: self.records.iter().map(|r| r.deviatoric_stress).collect(),
+            pressure: of(|r| r.pressure),
+            density: of(|r| r.density),
+            kept: self.kept.clone(),
+        }
+    }
+
+    /// Gives the states from now on a pressure, Pa: for pictures and probes.
+    ///
+    /// # Errors
+    /// [`Error::Count`], [`Error::Value`].
+    pub fn pressure(&mut self, pressure: &[f64]) -> Result<(), Error> {
+        self.column("pressure", pressure, f64::is_finite, |record, pressure| record.pressure = pressure)
+    }
+
+    /// Gives the states from now on a density, kg/m³.
+    ///
+    /// # Errors
+    /// [`Error::Count`], [`Error::Value`].
+    pub fn density(&mut self, density: &[f64]) -> Result<(), Error> {
+        let is_density = |x: f64| x > 0.0 && x.is_finite();
+        self.column("density", density, is_density, |record, density| record.density = density)
+    }
+
+    fn column(
+        &mut self,
+        name: &str,
+        values: &[f64],
+        is_good: fn(f64) -> bool,
+        set: fn(&mut StateRecord, f64),
+    ) -> Result<(), Error> {
+        same_count(values.len(), self.count())?;
+        if let Some(k) = values.iter().position(|&x| !is_good(x)) {
+            return Err(Error::Value(format!("{name} of particle {k} is {}", values[k])));
+        }
+        self.records.iter_mut().zip(values).for_each(|(record, &value)| set(record, value));
+        Ok(())
+    }
+
+    /// Says in how many steps of its own the solid advances, for run.json.
+    ///
+    /// # Errors
+    /// [`Error::Value`]: none.
+    pub fn sub_steps(&mut self, count: u32) -> Result<(), Error> {
+        if count == 0 {
+            return Err(Error::Value("no sub-steps: at least one".into()));
+        }
+        self.sub_steps = count;
+        Ok(())
+    }
+
+    /// Says what energy the solid stores from the next state on, J (2D: J/m), for the ledger.
+    ///
+    /// # Errors
+    /// [`Error::Value`]: it is not finite.
+    pub fn stored_energy(&mut self, joules: f64) -> Result<(), Error> {
+        if !joules.is_finite() {
+            return Err(Error::Value(format!("a stored energy of {joules}")));
+        }
+        self.stored_energy = joules;
         Ok(())
     }
 
@@ -360,29 +371,5 @@ impl Drop for Solid {
     fn drop(&mut self) {
         // Nobody is there to be told that nobody could be told.
         let _ = self.leave();
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn particles_that_nothing_has() {
-        let one = Particles {
-            position: vec![[0.0; 3]],
-            velocity: vec![[0.0; 3]],
-            mass: vec![2.0],
-            density: vec![1000.0],
-            clamped: vec![true],
-        };
-        let found = records(&one).unwrap();
-        assert_eq!((found.len(), found[0].mass, found[0].flags), (1, 2.0, 1));
-        let light = records(&Particles { mass: vec![0.0], ..one.clone() });
-        assert_eq!(light, Err(Error::Value("mass of particle 0 is 0: it must be positive".into())));
-        let far = records(&Particles { position: vec![[0.0, f64::NAN, 0.0]], ..one.clone() });
-        assert_eq!(far, Err(Error::Value("position of particle 0 is NaN".into())));
-        let short = records(&Particles { clamped: Vec::new(), ..one });
-        assert_eq!(short, Err(Error::Count("0 particles, but the solid has 1".into())));
     }
 }
