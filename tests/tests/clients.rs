@@ -62,8 +62,8 @@ fn a_block_in_rust_or_in_c_moves_as_the_one_in_python() {
     assert!(said.contains("contact of the solid with walls: by itself, as it says"), "{said}");
 }
 
-/// Interrupted and resumed, the block in Rust, C or Python comes to the same bits as in one go, and frames know its body
-/// where it is said.
+/// Interrupted and resumed, the block in Rust, C or Python comes to the same bits as in one go, and frames know its
+/// body where it is said.
 #[test]
 fn runs_with_a_block_in_any_language_go_on() {
     let folder = tempfile::tempdir().expect("a folder");

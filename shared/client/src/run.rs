@@ -73,8 +73,8 @@ impl Run {
         }
     }
 
-    /// Joins it with these particles and publishes their first state: where the run goes on, that of the checkpoint, bit
-    /// for bit.
+    /// Joins it with these particles and publishes their first state: where the run goes on, that of the checkpoint,
+    /// bit for bit.
     ///
     /// # Errors
     /// [`Error::Count`], [`Error::Value`]: of the particles. [`Error::Run`]: the run has ended.

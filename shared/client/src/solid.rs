@@ -226,8 +226,8 @@ impl Solid {
     /// Keeps numbers that a checkpoint of the state that is published next has: as [`Run::keep`] for the first state.
     ///
     /// # Errors
-    /// [`Error::Value`]: one is not finite. [`Error::State`]: nothing was kept of the first state, so the run knows that
-    /// the solid writes no checkpoints; or the state is published.
+    /// [`Error::Value`]: one is not finite. [`Error::State`]: nothing was kept of the first state, so the run knows
+    /// that the solid writes no checkpoints; or the state is published.
     pub fn keep(&mut self, name: &str, values: &[f64]) -> Result<(), Error> {
         if self.abilities & ability::CHECKPOINTS == 0 {
             return Err(Error::State(
