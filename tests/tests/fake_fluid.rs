@@ -127,7 +127,7 @@ fn a_run_in_the_folder_is_kept() {
         serde_json::from_slice(&std::fs::read(folder.path().join("trial.json")).unwrap()).unwrap();
     assert_eq!((&told["command"], &told["force"][0]), (&"exit 3".into(), &1.0.into()));
     let run = Command::new(program())
-        .args(["run", "scenes/spring-block.toml", "--until", "0", "--out"])
+        .args(["run", "scenes/spring-block.toml", "--until", "0.001", "--out"])
         .arg(folder.path())
         .current_dir(repository())
         .output()
