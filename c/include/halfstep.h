@@ -81,11 +81,12 @@ int halfstep_bodies(size_t count, const uint32_t *body);
 
 /* Keeps numbers by a name, whatever the solver needs to go on to the same bits: before halfstep_open those of the first
  * state, then the run writes checkpoints and can be resumed; before halfstep_publish those of the state at n + 1.
- * Errors: POINTER; VALUE: a number is not finite; STATE: nothing was kept before halfstep_open, or not now. */
+ * Errors: POINTER; VALUE: a number is not finite, or the name no UTF-8; STATE: nothing was kept before halfstep_open, or
+ * not now. */
 int halfstep_keep(const char *name, size_t count, const double *values);
 
 /* The numbers kept by a name at the checkpoint that the run goes on from, with which the solid opens in that very state.
- * HALFSTEP_NOTHING: the run begins. Errors: POINTER, COUNT, RUN. */
+ * HALFSTEP_NOTHING: the run begins. Errors: POINTER, COUNT, VALUE, RUN. */
 int halfstep_saved(const char *name, size_t count, double *values);
 
 /* Joins the run with `count` particles and publishes their first state: position (m) and velocity (m/s), 3 x count; mass
@@ -128,8 +129,8 @@ int halfstep_dt_limit(double seconds);
  * Errors: COUNT: no such particle; VALUE: no such quantity; STATE, RUN. */
 int halfstep_diverged(int quantity, uint32_t particle, double value);
 
-/* Leaves the run. Where it is not over it ends, too: the solid has failed. Without an open solid it does nothing.
- * Errors: RUN. */
+/* Leaves the run. Where it is not over it ends, too: the solid has failed. What was said of bodies
+ * and kept before halfstep_open is forgotten. Without an open solid it does nothing more. Errors: RUN. */
 int halfstep_close(void);
 
 #ifdef __cplusplus

@@ -350,13 +350,12 @@ pub extern "C" fn halfstep_diverged(quantity: c_int, particle: u32, value: f64) 
 /// Leaves the run. Where it is not over it ends with it: the solid has failed.
 #[unsafe(no_mangle)]
 pub extern "C" fn halfstep_close() -> c_int {
-    BODIES.take();
-    KEPT.take();
-    call(|| match SOLID.take() {
-        None => Ok(Code::Ok),
-        Some(solid) => {
-            ManuallyDrop::into_inner(solid).close()?;
-            Ok(Code::Ok)
-        }
+    call(|| {
+        let left = SOLID.take().map(|solid| ManuallyDrop::into_inner(solid).close());
+        // At the end of the thread they are gone already.
+        let _ = BODIES.try_with(RefCell::take);
+        let _ = KEPT.try_with(RefCell::take);
+        left.transpose()?;
+        Ok(Code::Ok)
     })
 }

@@ -65,8 +65,11 @@ class Solid:
         if clamped is not None:
             flags |= np.where(clamped, wire.CLAMPED, 0).astype(np.uint32)
         if body is not None:
+            body = np.asarray(body, np.int64)
+            if body.min() < 0 or body.max() >= wire.BODIES:
+                raise ValueError(f"bodies have the numbers 0 to {wire.BODIES - 1}, not {body.min()} to {body.max()}")
             # 0 would say nothing of its body.
-            flags |= (np.asarray(body, np.uint32) + 1) << wire.BODY_SHIFT
+            flags |= (body + 1).astype(np.uint32) << wire.BODY_SHIFT
         self.records["flags"] = flags
         self.header = {"dt_limit": dt_limit, "sub_steps": 1}
         self.save, self.safe = save, 0

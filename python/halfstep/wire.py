@@ -23,6 +23,7 @@ LAST_STAGE = 2
 CLAMPED = 1
 # Place of a record's body within its `flags`.
 BODY_SHIFT = 8
+BODIES = (1 << 24) - 1  # most that a record tells apart
 # What `failure.quantity` can be.
 QUANTITIES = {"density": 1, "speed": 2, "position": 3, "stress": 4, "time step": 5, "energy": 6}
 

@@ -115,6 +115,7 @@ fn a_run_in_the_folder_is_kept() {
     std::fs::write(&occupied, "somebody's").unwrap();
     let output = trial("spring-block.toml", "exit 3", folder.path(), &["--force=1,0"]);
     let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1));
     assert!(error.contains("holds a run (probes.csv)") && error.contains("--replace"), "{error}");
     assert_eq!(std::fs::read_to_string(&occupied).unwrap(), "somebody's");
     // Both begin, and end for the solid's sake.

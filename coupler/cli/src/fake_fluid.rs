@@ -3,8 +3,10 @@
 use crate::{SceneArguments, external_solids, load, usage};
 use halfstep::fake_fluid::{self, Load, Trial, Tried};
 use halfstep::options::SolidSource;
+use halfstep_coupling::error::RunError;
 use halfstep_coupling::say;
 use halfstep_coupling::supervise::StopFlags;
+use halfstep_output::OutputError;
 use halfstep_scene::{Block, Scene};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -82,6 +84,10 @@ pub(crate) fn try_solid(arguments: FakeFluidArguments) -> ExitCode {
         Ok(tried) => {
             say::tell(format_args!("{}", text(&tried, &trial).trim_end()));
             ExitCode::from(if trial.stop.stop.load(std::sync::atomic::Ordering::Relaxed) { 130 } else { 0 })
+        }
+        // Nothing was tried, and the log there is another run's.
+        Err(RunError::Output(error @ (OutputError::HoldsRun { .. } | OutputError::InUse { .. }))) => {
+            usage(&error.to_string())
         }
         Err(error) => {
             let log = trial.out.join("log.txt");

@@ -218,6 +218,13 @@ impl Recorder {
     /// As [`Self::warn`], and in the report.
     pub(crate) fn note_warning(&mut self, warning: String) {
         self.warn(&warning);
+        if let Some((path, report)) = self.report.as_mut() {
+            report.warnings.push(warning.clone());
+            // A run that is killed has said it, too.
+            if let Err(error) = report.write(path) {
+                tracing::warn!("{error}");
+            }
+        }
         self.told.push(warning);
     }
 

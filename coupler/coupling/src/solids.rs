@@ -437,7 +437,7 @@ impl<const D: usize> State for CoupledSolid<D> {
     fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
         fields.part("by_kind", &mut self.by_kind)?;
         fields.optional_count("count", &mut self.continuity.count)?;
-        fields.count("published", &mut self.saved)?;
+        fields.count("state_published", &mut self.saved)?;
         fields.points("position", &mut self.at_n)?;
         let mut cross_viscosity = self.forces.iter().map(|f| f.cross_viscosity).collect();
         let mut stress_force = self.forces.iter().map(|f| f.stress_force).collect();

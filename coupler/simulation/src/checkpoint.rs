@@ -105,6 +105,13 @@ impl Checkpoint {
         }
     }
 
+    /// Whether another program computed the scene's solid of that index when it was written.
+    pub(crate) fn is_external(&self, solid: usize) -> bool {
+        let name = format!("solid_{solid}");
+        let saved = self.part("coupler").ok().and_then(|coupler| coupler.groups.get(&name));
+        saved.is_some_and(|solid| solid.groups.contains_key("external"))
+    }
+
     /// Number of frames of each participant before the checkpoint.
     pub(crate) fn frames(&self) -> Result<u64, RunError> {
         match self.part("coupler")?.columns.get("frame") {

@@ -108,7 +108,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     joints::angles(scene, &mut all);
     joints::springs(scene, layout, &mut all);
     joints::locks(scene, &mut all);
-    joints::starts(scene, &mut all);
+    joints::starts(scene, layout, &mut all);
     joints::idle(scene, &mut all);
     joints::still(scene, &mut all);
     joints::far_hinges(scene, &mut all);

@@ -93,8 +93,8 @@ pub fn resume(options: &RunOptions, until: Option<f64>) -> Result<(Scene, Ended)
     let mut scene = read_scene(dir)?;
     check_external(&scene, options)?;
     let earlier = RunReport::read(&dir.join("run.json")).unwrap_or_default();
-    check_sources(&earlier, options)?;
     let checkpoint = Checkpoint::newest(dir, &scene, options.isa)?;
+    check_sources(&scene, &checkpoint, options)?;
     match until {
         None if earlier.status == Some(RunStatus::Finished) => {
             let reason = format!(
@@ -184,20 +184,20 @@ fn check_external(scene: &Scene, options: &RunOptions) -> Result<(), RunError> {
 }
 
 /// A run's solids are computed on by whom they were computed by.
-fn check_sources(earlier: &RunReport, options: &RunOptions) -> Result<(), RunError> {
+fn check_sources(scene: &Scene, checkpoint: &Checkpoint, options: &RunOptions) -> Result<(), RunError> {
     let names = options.external_names();
-    let other = names.iter().find(|name| !earlier.external.iter().any(|solid| solid.name == name.as_str()));
-    if let Some(name) = other {
-        return Err(RunError::Resume(format!(
-            "`{name}` of this run was computed by halfstep itself: go on without --solid for it"
-        )));
+    for (solid, name) in scene.solids.iter().map(|solid| solid.name.as_str()).enumerate() {
+        let is_told = names.iter().any(|told| told.as_str() == name);
+        let why = match (checkpoint.is_external(solid), is_told) {
+            (false, true) => "was computed by halfstep itself: go on without --solid for it",
+            (true, false) => {
+                "was computed by another program: --solid or --await-solid say by which it is from here on"
+            }
+            _ => continue,
+        };
+        return Err(RunError::Resume(format!("`{name}` of this run {why}")));
     }
-    let missing = earlier.external.iter().find(|solid| !names.iter().any(|name| name.as_str() == solid.name));
-    let Some(solid) = missing else { return Ok(()) };
-    Err(RunError::Resume(format!(
-        "`{}` of this run was computed by another program: --solid or --await-solid say by which it is from here on",
-        solid.name
-    )))
+    Ok(())
 }
 
 /// What the report of a run says at its start, and the shapes as they are computed.

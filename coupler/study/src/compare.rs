@@ -152,6 +152,9 @@ pub fn default_probe(scene: &Scene) -> Option<String> {
 
 /// Root of the mean square of the difference of two curves over the time that both have.
 fn distance(a: &[(f64, f64)], b: &[(f64, f64)]) -> Option<f64> {
+    if b.len() < 2 {
+        return None;
+    }
     let end = a.last()?.0.min(b.last()?.0) * (1.0 + 1e-12);
     let at = |t: f64| {
         let k = b.partition_point(|p| p.0 < t).clamp(1, b.len() - 1);
@@ -385,6 +388,9 @@ mod tests {
         };
         assert!((distance(&line(10, 0.0), &line(7, 0.25)).unwrap() - 0.25).abs() < 1e-12);
         assert_eq!(distance(&line(10, 0.0), &[]), None);
+        // A run that failed in its first step left one row.
+        assert_eq!(distance(&line(10, 0.0), &[(0.0, 0.0)]), None);
+        assert_eq!(distance(&[(0.0, 0.0)], &line(10, 0.0)), None);
         // A run that ended early is compared as far as it went.
         let half: Vec<_> = line(10, 0.1).into_iter().filter(|p| p.0 < 0.51).collect();
         assert!((distance(&line(10, 0.0), &half).unwrap() - 0.1).abs() < 1e-12);

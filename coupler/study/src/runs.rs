@@ -123,9 +123,8 @@ impl Job {
             .arg(&self.scene)
             .arg("--out")
             .arg(&self.dir);
-        if !self.alone {
-            command.args(["--quiet", "--force"]);
-        }
+        // What is in the folder was made here.
+        command.args(if self.alone { &["--replace"][..] } else { &["--quiet", "--force"] });
         command.args(self.overrides.iter().flat_map(|o| ["--set", o]));
         command.args(&self.more);
         let said = File::create(self.dir.join(MESSAGES))?;
@@ -150,25 +149,26 @@ impl Job {
     }
 
     /// Refuses a folder in which a run goes on, and one with a run that no study made.
-    fn check_folder(&self) -> Result<(), StudyError> {
+    /// Nobody else has one that is there while the result lives.
+    fn check_folder(&self) -> Result<Option<RunDirectory>, StudyError> {
         if !self.dir.is_dir() {
-            return Ok(());
+            return Ok(None);
         }
         if self.dir.join(MESSAGES).is_file() {
-            RunDirectory::reopen(&self.dir)?;
-            return Ok(());
+            return Ok(Some(RunDirectory::reopen(&self.dir)?));
         }
         match RunDirectory::create(&self.dir, false) {
             Err(OutputError::Occupied { dir, found }) => Err(StudyError::Usage(format!(
                 "{} holds a run that was not made here ({found}), which would be replaced: give another --out",
                 dir.display()
             ))),
-            other => other.map(drop).map_err(StudyError::from),
+            other => other.map(Some).map_err(StudyError::from),
         }
     }
 
     fn start(&self) -> Result<Child, StudyError> {
         let what = self.dir.display().to_string();
+        let own = self.check_folder()?;
         std::fs::create_dir_all(&self.dir).map_err(StudyError::system(&what))?;
         // A run that is refused before it begins leaves no report; the one before is not taken for its own.
         for stale in [DONE, "run.json", "probes.csv"] {
@@ -179,6 +179,7 @@ impl Job {
                 _ => (),
             }
         }
+        drop(own);
         self.command().and_then(|mut command| command.spawn()).map_err(StudyError::system(&what))
     }
 
@@ -222,7 +223,7 @@ pub fn execute(
     program: &Program,
     stop: &AtomicBool,
 ) -> Result<bool, StudyError> {
-    jobs.iter().try_for_each(Job::check_folder)?;
+    jobs.iter().try_for_each(|job| job.check_folder().map(drop))?;
     let bar = ProgressBar::new(1000);
     let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}");
     bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));

@@ -51,6 +51,8 @@ pub struct Solid {
     stored_energy: f64,
     abilities: u32,
     kept: Kept,
+    /// What a checkpoint of the state has that was published last, where that is one at n.
+    published: Saved,
     /// Number of the last checkpoint that is on disk.
     safe: u32,
     fluid: Vec<StateRecord>,
@@ -87,6 +89,7 @@ impl Solid {
             stored_energy: saved.stored_energy,
             abilities,
             kept,
+            published: Saved::default(),
             safe: 0,
             fluid: Vec::new(),
             forces: Vec::new(),
@@ -138,6 +141,9 @@ impl Solid {
                 *sum += r.mass * v;
             }
         }
+        if self.abilities & ability::CHECKPOINTS != 0 && header.stage == 0 {
+            self.published = self.saved(header.step, header.time);
+        }
         self.link.send_state(0, &header, &self.records)?;
         self.next = Next::Wait;
         Ok(())
@@ -155,7 +161,8 @@ impl Solid {
     /// Waits for the forces on the state that was published last; `None` where the run has ended as it should.
     ///
     /// # Errors
-    /// [`Error::State`]: a state is due. [`Error::Run`]: another process has ended; the solid has left the run then.
+    /// [`Error::State`]: a state is due. [`Error::Run`]: another process has ended, or a checkpoint could not be written;
+    /// the solid has left the run then.
     pub fn wait(&mut self) -> Result<Option<Step>, Error> {
         self.due(Next::Wait)?;
         let found = self.receive();
@@ -175,8 +182,11 @@ impl Solid {
         }
         let answer = self.link.receive_forces(0, &expect, &mut self.forces)?;
         if answer.order & order::WRITE_CHECKPOINT != 0 && self.abilities & ability::CHECKPOINTS != 0 {
-            let (step, time) = (answer.step, answer.time);
-            self.saved(step, time).write(self.name.as_str(), answer.checkpoint)?;
+            if let Err(error) = self.published.write(self.name.as_str(), answer.checkpoint) {
+                // The run shall not wait for somebody who cannot go on.
+                let _ = self.last(status::FAILED, Failure::default());
+                return Err(error);
+            }
             self.safe = answer.checkpoint as u32;
         }
         if answer.order & order::STOP != 0 {

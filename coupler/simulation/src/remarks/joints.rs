@@ -134,7 +134,7 @@ pub(super) fn still(scene: &Scene, all: &mut Vec<String>) {
 }
 
 /// Velocities at the start that a joint takes away.
-pub(super) fn starts(scene: &Scene, all: &mut Vec<String>) {
+pub(super) fn starts<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mut Vec<String>) {
     for (solid, keys) in rigid(scene) {
         for joint in keys.joints.iter().filter(|joint| is_grounded(scene, joint)) {
             let (name, body) = (&joint.name, &joint.body);
@@ -151,7 +151,11 @@ pub(super) fn starts(scene: &Scene, all: &mut Vec<String>) {
                     "it is across the rail"
                 }
                 JointKind::Hinge { at, .. }
-                    if moves && scene.dimension == 2 && along_arm(scene, solid, body, &at) =>
+                    if moves && !turns && D == 2 && {
+                        let center = || Mass::of(scene, layout, solid, body).map(|mass| mass.center());
+                        let center = said.and_then(|said| said.center).or_else(center);
+                        center.is_some_and(|center| along_arm(scene, (solid, body), &center, &at))
+                    } =>
                 {
                     "it is along the arm"
                 }
@@ -168,11 +172,9 @@ fn is_across(v: &[f64; 3], axis: &[f64; 3]) -> bool {
     (0..3).map(|d| v[d] * axis[d]).sum::<f64>().abs() <= 1e-9 * size
 }
 
-/// All shapes of a body begin with a velocity toward or away from a point.
-fn along_arm(scene: &Scene, solid: usize, body: &str, at: &[f64; 3]) -> bool {
-    let boxes = shapes(scene, solid, body).map(|shape| geometry::bounding_box(shape, scene));
-    let Some(around) = geometry::around(boxes) else { return false };
-    let arm = [0, 1].map(|d| 0.5 * (around.min[d] + around.max[d]) - at[d]);
+/// All shapes of a body begin with one velocity, from a point toward the body's centre or back.
+fn along_arm(scene: &Scene, (solid, body): (usize, &str), center: &[f64; 3], at: &[f64; 3]) -> bool {
+    let arm = [0, 1].map(|d| center[d] - at[d]);
     let across = [-arm[1], arm[0], 0.0];
     across != [0.0; 3] && shapes(scene, solid, body).all(|shape| is_across(&shape.velocity, &across))
 }
