@@ -161,8 +161,8 @@ impl Solid {
     /// Waits for the forces on the state that was published last; `None` where the run has ended as it should.
     ///
     /// # Errors
-    /// [`Error::State`]: a state is due. [`Error::Run`]: another process has ended, or a checkpoint could not be written;
-    /// the solid has left the run then.
+    /// [`Error::State`]: a state is due. [`Error::Run`]: another process has ended, or a checkpoint could not be
+    /// written; the solid has left the run then.
     pub fn wait(&mut self) -> Result<Option<Step>, Error> {
         self.due(Next::Wait)?;
         let found = self.receive();
