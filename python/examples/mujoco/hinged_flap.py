@@ -10,6 +10,8 @@ import mujoco
 import numpy as np
 from body import Body
 
+if len(sys.argv) != 3:
+    sys.exit("usage: hinged_flap.py STIFFNESS DAMPING, N and N s a radian")
 stiffness, damping = float(sys.argv[1]), float(sys.argv[2])
 scene, points = halfstep.description(), halfstep.particles()
 box = scene["shapes"][points.shape[0]]["geometry"]["box"]

@@ -11,6 +11,8 @@ import mujoco
 import numpy as np
 from body import Body
 
+if len(sys.argv) != 3:
+    sys.exit("usage: wave_flap.py DAMPING STIFFNESS, N s and N a radian")
 damping, stiffness = float(sys.argv[1]), float(sys.argv[2])
 scene, points = halfstep.description(), halfstep.particles()
 box = scene["shapes"][points.shape[0]]["geometry"]["box"]
