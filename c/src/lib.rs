@@ -10,6 +10,7 @@ pub use call::Code;
 use call::{Fault, call, input, name, optional, output, text, vectors, vectors_mut};
 use halfstep_client::{Contact, Particles, Quantity, Run, Solid};
 use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::ffi::{c_char, c_int};
 use std::mem::ManuallyDrop;
 
@@ -39,7 +40,7 @@ thread_local! {
     static PARTICLES: RefCell<Option<Particles>> = const { RefCell::new(None) };
     /// What is said before the solid is opened: the bodies of its particles, and what it keeps.
     static BODIES: RefCell<Vec<u32>> = const { RefCell::new(Vec::new()) };
-    static KEPT: RefCell<Vec<(String, Vec<f64>)>> = const { RefCell::new(Vec::new()) };
+    static KEPT: RefCell<BTreeMap<String, Vec<f64>>> = const { RefCell::new(BTreeMap::new()) };
 }
 
 /// Calls `act` with the solid of this thread.
@@ -251,10 +252,7 @@ pub unsafe extern "C" fn halfstep_keep(key: *const c_char, count: usize, values:
         if values.iter().any(|x| !x.is_finite()) {
             return Err(Fault::new(Code::Value, format!("`{key}` has a number that is not finite")));
         }
-        KEPT.with_borrow_mut(|kept| {
-            kept.retain(|(other, _)| other != key);
-            kept.push((key.to_owned(), values.to_vec()));
-        });
+        KEPT.with_borrow_mut(|kept| kept.insert(key.to_owned(), values.to_vec()));
         Ok(Code::Ok)
     })
 }
