@@ -4,6 +4,12 @@ use crate::run::repository;
 use std::path::PathBuf;
 use std::process::Command;
 
+/// A solid that stays where it is, and fails at step 3.
+pub const FAILING_SOLID: &str = "import halfstep\npoints = halfstep.particles()\n\
+    solid = halfstep.Solid(points.position, points.mass, points.density)\n\
+    for step in solid:\n    if step.number == 3: raise ValueError('no convergence')\n\
+    \x20   step.publish(points.position, 0.0)\n";
+
 /// The interpreter that has the package `halfstep` and what tests and the small examples need.
 pub fn python() -> PathBuf {
     interpreter(&[])

@@ -1,6 +1,6 @@
 //! `halfstep compare`: the table has a built-in model and a program of one's own, and the picture is drawn.
 
-use halfstep_tests::python::{python, python_of};
+use halfstep_tests::python::{FAILING_SOLID, python, python_of};
 use halfstep_tests::run::{program, repository, whole_machine};
 use std::process::{Command, Output};
 
@@ -139,11 +139,7 @@ fn a_solid_that_fails_is_told() {
     let _machine = whole_machine();
     let folder = tempfile::tempdir().unwrap();
     let script = folder.path().join("failing.py");
-    let text = "import halfstep\npoints = halfstep.particles()\n\
-        solid = halfstep.Solid(points.position, points.mass, points.density)\n\
-        for step in solid:\n    if step.number == 3: raise ValueError('no convergence')\n\
-        \x20   step.publish(points.position, 0.0)\n";
-    std::fs::write(&script, text).unwrap();
+    std::fs::write(&script, FAILING_SOLID).unwrap();
     let failing = format!("failing={} {}", python().display(), script.display());
     let out = folder.path().join("out");
     let arguments = ["--set", "resolution=0.004", "--until", "0.01", "--out", out.to_str().unwrap()];

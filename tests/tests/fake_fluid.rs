@@ -4,7 +4,7 @@ use halfstep_output::run_json::RunStatus;
 use halfstep_output::{RunReport, read_probes};
 use halfstep_tests::Curve;
 use halfstep_tests::process::leftovers;
-use halfstep_tests::python::python;
+use halfstep_tests::python::{FAILING_SOLID, python};
 use halfstep_tests::run::{program, repository, whole_machine};
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -55,14 +55,10 @@ fn a_solid_that_fails_says_why() {
     let _machine = whole_machine();
     let folder = tempfile::tempdir().unwrap();
     let script = folder.path().join("failing.py");
-    let text = "import halfstep\npoints = halfstep.particles()\n\
-        solid = halfstep.Solid(points.position, points.mass, points.density)\n\
-        for step in solid:\n    if step.number == 3: raise ValueError('no convergence')\n\
-        \x20   step.publish(points.position, 0.0)\n";
-    std::fs::write(&script, text).unwrap();
+    std::fs::write(&script, FAILING_SOLID).unwrap();
     let jumping = folder.path().join("jumping.py");
     // 0.1 m in no time, and no velocity.
-    let jumps = text.replace("raise ValueError('no convergence')", "points.position[5] += 0.1");
+    let jumps = FAILING_SOLID.replace("raise ValueError('no convergence')", "points.position[5] += 0.1");
     std::fs::write(&jumping, jumps).unwrap();
     let line = format!("{} {}", python().display(), script.display());
     let jumping = format!("{} {}", python().display(), jumping.display());

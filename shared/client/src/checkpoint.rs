@@ -2,6 +2,7 @@
 //! them. The file's name is the participant's, as the protocol has it.
 
 use crate::Error;
+use halfstep_wire::checkpoint::{file_name, folder};
 use halfstep_wire::protocol::StateRecord;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -36,10 +37,6 @@ fn failed(path: &Path, why: impl std::fmt::Display) -> Error {
     Error::Run(format!("{}: {why}", path.display()))
 }
 
-fn file_name(participant: &str) -> String {
-    format!("{participant}.hdf")
-}
-
 impl Saved {
     /// What the run goes on from; `None` where it begins.
     pub(crate) fn of_environment(participant: &str) -> Result<Option<Self>, Error> {
@@ -53,8 +50,7 @@ impl Saved {
     /// Writes checkpoint `number`: under its name only when it is whole and on disk.
     pub(crate) fn write(&self, participant: &str, number: u64) -> Result<(), Error> {
         let run = std::env::var_os(RUN).ok_or_else(|| Error::Run(format!("{RUN} is not set")))?;
-        let folder = if number.is_multiple_of(2) { "checkpoint-b" } else { "checkpoint-a" };
-        self.write_in(&PathBuf::from(run).join(folder), &file_name(participant))
+        self.write_in(&folder(Path::new(&run), number), &file_name(participant))
     }
 
     fn write_in(&self, folder: &Path, name: &str) -> Result<(), Error> {

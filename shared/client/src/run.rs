@@ -5,6 +5,7 @@ use crate::solid::{Solid, Start};
 use crate::{Error, Particles};
 use halfstep_link::{LinkConfig, ProcessLink};
 use halfstep_wire::Name;
+use halfstep_wire::frame::flags_of;
 use halfstep_wire::protocol::{StateRecord, ability};
 
 /// Who holds the solid against walls and other solids.
@@ -135,7 +136,7 @@ fn records(particles: &Particles) -> Result<Vec<StateRecord>, Error> {
     }
     let record = |k: usize| StateRecord {
         id: k as u32,
-        flags: u32::from(clamped[k]) | body.get(k).map_or(0, |body| (body + 1) << 8),
+        flags: flags_of(clamped[k], body.get(k).copied()),
         mass: mass[k],
         density: density[k],
         ..StateRecord::default()

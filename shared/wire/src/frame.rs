@@ -59,6 +59,11 @@ pub trait FrameSink: Send {
     fn finish(self: Box<Self>) -> Result<u32, SinkError>;
 }
 
+/// Flags of a record: the particle is moved by others than its model, and its body, from 0 on.
+pub fn flags_of(held: bool, body: Option<u32>) -> u32 {
+    u32::from(held) | body.map_or(0, |body| (body + 1) << 8)
+}
+
 /// The body that a record says, from 0 on; `None` where it says none.
 pub fn body_of(record: &StateRecord) -> Option<u32> {
     (record.flags >> 8).checked_sub(1)

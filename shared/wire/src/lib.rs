@@ -9,6 +9,7 @@
 //! assert_eq!((first.before(), second.before(), second.after()), (0.5, 0.55, 0.6));
 //! ```
 
+pub mod checkpoint;
 pub mod failure;
 pub mod frame;
 pub mod half_step;

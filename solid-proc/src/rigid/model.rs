@@ -14,6 +14,7 @@ use halfstep_scene::geometry::{self, SolidPoint};
 use halfstep_scene::{EnergyPart, Scene};
 use halfstep_sph::lane::Isa;
 use halfstep_sph::quantity::Quantity;
+use halfstep_wire::frame::flags_of;
 use halfstep_wire::half_step::{HalfStep, Stage};
 use halfstep_wire::protocol::StateRecord;
 use halfstep_wire::wide;
@@ -156,7 +157,7 @@ impl<const D: usize> Rigid<D> {
         let driven = !self.system.bodies[body as usize].gives_way();
         StateRecord {
             id: particle,
-            flags: u32::from(driven) | (body + 1) << 8,
+            flags: flags_of(driven, Some(body)),
             position: wide(self.shown.position[particle as usize]),
             velocity: wide(self.shown_velocity.of(particle)),
             density: self.density,

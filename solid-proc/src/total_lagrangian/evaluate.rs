@@ -1,14 +1,12 @@
 //! Inner acceleration of a state: deformation gradient, stress, momentum, contacts.
 
-use super::bounds::keep_worse;
 use super::contact::{Contact, Present};
 use super::fracture::Fracture;
 use super::material::{Cauchy, Matrix};
 use super::model::TotalLagrangian;
 use super::pass::{Damping, Deformation, DeformationSum, Moment, MomentSum, Momentum, Viscous};
-use super::relaxation::{Arms, Relaxation};
+use super::relaxation::Arms;
 use halfstep_role::role::{Costs, fastest};
-use halfstep_scene::bounds::Excess;
 use halfstep_scene::{ArtificialViscosity, EffectName, EnergyPart};
 use halfstep_sph::lane::LANES;
 use halfstep_sph::neighbours::PADDING;
@@ -68,38 +66,6 @@ impl<const D: usize> TotalLagrangian<D> {
             scale: self.volume / self.material.density,
         };
         pair::fixed_pass(self.isa, &law, &self.pairs, sums);
-    }
-
-    /// F of every particle from the sums of the first pass, and the second pass' brackets. Of the first evaluation
-    /// in which volumes leave their bounds, the one farthest out is kept in `failure`.
-    fn stresses<R: Relaxation<D>>(&mut self, relaxation: &mut R) {
-        let mut worst: Option<(u32, Excess)> = None;
-        let screen = self.fracture.as_ref().map_or(f64::INFINITY, Fracture::screen);
-        let mut candidates = Vec::new();
-        for slot in 0..self.id.len() {
-            if self.id[slot] == PADDING {
-                continue;
-            }
-            let correction = self.correction[slot];
-            let h = at(&self.deformations[slot / LANES].gradient, slot % LANES) * correction;
-            let f = Matrix::identity() + h;
-            let j = self.law.volume_ratio(&f);
-            keep_worse(&mut worst, self.id[slot], self.bounds.excess(j, 0.0));
-            let mut p = self.stress_at(slot, &f, j);
-            let tense = screen < f64::INFINITY && (p.norm_squared() > screen || self.damage_at(slot) > 0.0);
-            if tense && self.fixed.clamped[slot] == 0.0 {
-                candidates.push(slot);
-            }
-            if R::ACTS {
-                p += f * relaxation.advance(slot, &f);
-            }
-            let bracket = p * correction - h * self.hourglass[slot];
-            self.gradient[slot] = f;
-            self.volume_ratio[slot] = j;
-            self.set_bracket(slot, &bracket);
-        }
-        self.failure = self.failure.or(worst);
-        self.grow(candidates);
     }
 
     /// B of a slot, Pa.

@@ -126,6 +126,19 @@ impl Law {
 
     /// First Piola-Kirchhoff stress, Pa; `j` is [`Self::volume_ratio`].
     pub(crate) fn first_piola_kirchhoff<const D: usize>(&self, f: &Matrix<D>, j: f64) -> Matrix<D> {
+        self.nominal(f, j, self.log(j))
+    }
+
+    /// ln J where the law needs it.
+    fn log(&self, j: f64) -> f64 {
+        match self.material {
+            Material::StVenantKirchhoff => 0.0,
+            Material::NeoHookean => libm::log(j),
+        }
+    }
+
+    /// P for F, J and [`Self::log`], Pa.
+    fn nominal<const D: usize>(&self, f: &Matrix<D>, j: f64, log: f64) -> Matrix<D> {
         match self.material {
             Material::StVenantKirchhoff => f * self.second_piola_kirchhoff(&green(f)),
             Material::NeoHookean => {
@@ -134,7 +147,7 @@ impl Law {
                     Plane::Stress => tensor::determinant(f),
                 };
                 let Some(inverse) = tensor::inverse(f, in_plane) else { return Matrix::repeat(f64::NAN) };
-                f * self.mu + inverse.transpose() * (self.lambda * libm::log(j) - self.mu)
+                f * self.mu + inverse.transpose() * (self.lambda * log - self.mu)
             }
         }
     }
@@ -180,10 +193,11 @@ impl Law {
 
     /// Cauchy stress P F^T / J as pressure and deviator; in 2D sigma_zz is that of plane strain, or none.
     pub(crate) fn cauchy<const D: usize>(&self, f: &Matrix<D>, j: f64) -> Cauchy<D> {
-        let sigma = self.first_piola_kirchhoff(f, j) * f.transpose() / j;
+        let log = self.log(j);
+        let sigma = self.nominal(f, j, log) * f.transpose() / j;
         let out_of_plane = match (D, self.plane, self.material) {
             (2, Plane::Strain, Material::StVenantKirchhoff) => self.lambda * green(f).trace() / j,
-            (2, Plane::Strain, Material::NeoHookean) => self.lambda * libm::log(j) / j,
+            (2, Plane::Strain, Material::NeoHookean) => self.lambda * log / j,
             _ => 0.0,
         };
         let pressure = -(sigma.trace() + out_of_plane) / 3.0;

@@ -17,6 +17,7 @@ mod pass;
 mod relaxation;
 mod state;
 pub(crate) mod step_limit;
+mod stress;
 #[cfg(test)]
 mod tests;
 

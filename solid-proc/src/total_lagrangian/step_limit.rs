@@ -13,10 +13,12 @@
 
 use super::material::{Law, Matrix, green};
 use super::model::TotalLagrangian;
+use super::stress::TASK;
 use halfstep_scene::Material;
 use halfstep_sph::lane::{Arch, LANES, Lane, Lanes};
 use halfstep_sph::neighbours::PADDING;
 use halfstep_sph::pair::{self, FixedLaw, dot, pair_sum};
+use rayon::prelude::*;
 
 /// Largest stable sub-step at rest over dx over the speed of the fastest wave: measured with h = 0.75 dx for nu from 0
 /// to 0.49 and alpha from 0 to 10.
@@ -72,7 +74,9 @@ impl<const D: usize> TotalLagrangian<D> {
             };
             self.law.stiffness(f, self.volume_ratio[slot], squares) + arms
         };
-        let stiffest = self.slot_of.iter().map(stiffness).fold(0.0, f64::max);
+        // The largest of all whatever the order.
+        let slots = self.slot_of.par_iter().with_min_len(TASK);
+        let stiffest = slots.map(stiffness).reduce(|| 0.0, f64::max);
         let (springs, walls) =
             self.contact.as_ref().map_or((0.0, 0.0), |contact| contact.stiffness(&self.material));
         let waves = (stiffest + self.hourglass_modulus) / density;

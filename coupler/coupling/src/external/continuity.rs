@@ -57,13 +57,16 @@ impl Ways {
             return;
         }
         for ((record, from), velocity) in records.iter().zip(&self.at_n).zip(&self.halfway) {
-            let way: [f64; 3] = std::array::from_fn(|d| record.position[d] - from[d]);
-            let left = std::array::from_fn(|d| way[d] - dt * velocity[d]);
-            [way, left].map(length).iter().zip(&mut self.squares).for_each(|(l, sum)| *sum += l * l);
+            let led = std::array::from_fn(|d| from[d] + dt * velocity[d]);
+            [*from, led]
+                .map(|x| distance(record.position, x))
+                .iter()
+                .zip(&mut self.squares)
+                .for_each(|(l, sum)| *sum += l * l);
         }
         let come = records.iter().zip(&self.first);
-        let come = come.map(|(r, (first, _))| length(std::array::from_fn(|d| r.position[d] - first[d])));
-        self.farthest = come.fold(self.farthest, f64::max);
+        self.farthest =
+            come.map(|(r, (first, _))| distance(r.position, *first)).fold(self.farthest, f64::max);
         self.steps += u64::from(!self.halfway.is_empty());
         self.halfway.clear();
         self.at_n.clear();
@@ -84,6 +87,10 @@ impl Ways {
 
 fn length(v: [f64; 3]) -> f64 {
     v.iter().map(|v| v * v).sum::<f64>().sqrt()
+}
+
+fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    length(std::array::from_fn(|d| a[d] - b[d]))
 }
 
 impl Continuity {
@@ -127,8 +134,7 @@ impl Continuity {
         }
         self.ways.add(records, stage, dt);
         let speed = records.iter().map(|r| length(r.velocity)).fold(0.0, f64::max);
-        let way = |(r, x): (&StateRecord, &[f64; 3])| length(std::array::from_fn(|d| r.position[d] - x[d]));
-        let far = records.iter().zip(&self.before).map(|pair| (pair.0.id, way(pair)));
+        let far = records.iter().zip(&self.before).map(|(r, x)| (r.id, distance(r.position, *x)));
         let jump = far
             .max_by(|a, b| a.1.total_cmp(&b.1))
             .filter(|(_, distance)| *distance > reach + 2.0 * speed * dt);
