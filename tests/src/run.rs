@@ -8,6 +8,7 @@ use crate::process::kill;
 use halfstep_output::checkpoint::{FOLDERS, Manifest};
 use halfstep_output::run_json::RunStatus;
 use halfstep_output::{Frame, RunReport, Table, read_probes, series::Series, vtkhdf};
+use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -29,6 +30,15 @@ pub fn program() -> &'static Path {
         let mut programs = folders.map(|folder| folder.join("halfstep-under-test"));
         programs.find(|program| program.exists()).expect("halfstep-under-test: cargo test builds it")
     })
+}
+
+/// Probes and frames of a run, by their names.
+pub fn files(dir: &Path) -> BTreeMap<String, Vec<u8>> {
+    let frames =
+        std::fs::read_dir(dir.join("frames")).expect("frames").map(|entry| entry.expect("a file").path());
+    let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let all = frames.chain([dir.join("probes.csv")]);
+    all.map(|path| (name(&path), std::fs::read(&path).expect("a file that can be read"))).collect()
 }
 
 /// The repository's top folder.

@@ -5,7 +5,7 @@ use halfstep_tests::conformance::link::eventually;
 use halfstep_tests::curve::Curve;
 use halfstep_tests::process::{kill, leftovers};
 use halfstep_tests::python::python;
-use halfstep_tests::run::{repository, scene, whole_machine};
+use halfstep_tests::run::{files, repository, scene, whole_machine};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -90,7 +90,10 @@ fn a_run_with_the_block_goes_on_after_an_interruption() {
     assert_eq!(built_in.code(), Some(1));
     let said = "`solid` of this run was computed by another program: --solid or --await-solid";
     assert!(built_in.stderr.contains(said), "{}", built_in.stderr);
-    // The block forgets how far it was, how fast, or how heavy.
+    // The block forgets how far it was, how fast, or how heavy: the run is as it was.
+    let told =
+        || (files(&dir), ["run.json", "scene.json"].map(|name| std::fs::read(dir.join(name)).unwrap()));
+    let before = told();
     for (honest, lie) in [
         ("x, v = float(saved", "x, v = 1e-3 + float(saved"),
         ("velocity=v * along_x", "velocity=0.0"),
@@ -103,9 +106,18 @@ fn a_run_with_the_block_goes_on_after_an_interruption() {
             .argument(forgetful.line())
             .until(0.07)
             .outcome();
-        assert_eq!(refused.code(), Some(2));
-        let said = "the solid shows another state than that of the checkpoint";
+        assert_eq!(refused.code(), Some(1));
+        let said = "the solid shows another state than that of the checkpoint: the run has not gone on";
         assert!(refused.stderr.contains(said), "{}", refused.stderr);
+        assert!(told() == before, "{}", refused.stderr);
+    }
+    // A program that is not there, and one that nobody starts.
+    for arguments in [&["--solid", "no-such-program"][..], &["--await-solid", "--solid-wait", "0.5"]] {
+        let missing =
+            arguments.iter().fold(scene("spring-block").resume(&dir), |run, word| run.argument(*word));
+        let missing = missing.until(0.07).outcome();
+        assert_eq!(missing.code(), Some(1), "{}", missing.stderr);
+        assert!(told() == before, "{}", missing.stderr);
     }
     // Its last frames stand behind the others: one that remembers goes on.
     let going = scene("spring-block").resume(&dir).argument("--solid").argument(command()).until(0.07).run();

@@ -5,9 +5,8 @@ use halfstep_output::run_json::RunStatus;
 use halfstep_sph::lane::Isa;
 use halfstep_tests::baseline::baselines;
 use halfstep_tests::process::{kill, role_of};
-use halfstep_tests::run::{Outcome, repository, whole_machine};
+use halfstep_tests::run::{Outcome, files, repository, whole_machine};
 use halfstep_tests::scene;
-use std::collections::BTreeMap;
 use std::hash::{BuildHasher, RandomState};
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -88,14 +87,6 @@ fn interrupted(run: halfstep_tests::RunBuilder, dir: &Path, signal: i32, checkpo
     // SAFETY: the launcher is a child of this process that has not been waited for.
     unsafe { libc::kill(running.pid() as i32, signal) };
     running.wait()
-}
-
-/// Probes and frames of a run.
-fn files(dir: &Path) -> BTreeMap<String, Vec<u8>> {
-    let frames = std::fs::read_dir(dir.join("frames")).unwrap().map(|entry| entry.unwrap().path());
-    let all = frames.chain([dir.join("probes.csv")]);
-    all.map(|path| (path.file_name().unwrap().to_string_lossy().into_owned(), std::fs::read(path).unwrap()))
-        .collect()
 }
 
 #[test]

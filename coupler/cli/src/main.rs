@@ -11,6 +11,7 @@ use clap::{CommandFactory, Parser};
 use halfstep::Launcher;
 use halfstep::options::{RunOptions, SolidSource, Trace, known_solid};
 use halfstep::{isa, run};
+use halfstep_coupling::error::RunError;
 use halfstep_coupling::say;
 use halfstep_coupling::supervise::StopFlags;
 use halfstep_output::RunReport;
@@ -189,7 +190,13 @@ fn resume(arguments: &ResumeArguments, isa: Isa) -> ExitCode {
         Err(error) => return usage(&error),
     };
     match run::resume(&options, arguments.until) {
-        Err(error) => usage(&error),
+        Err(error) => {
+            let status = usage(&error);
+            match error {
+                RunError::NotGoneOn(why) if matches!(*why, RunError::StoppedEarly) => ExitCode::from(130),
+                _ => status,
+            }
+        }
         Ok((scene, ended)) => tell(&scene, &options.out, ended),
     }
 }

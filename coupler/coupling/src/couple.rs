@@ -148,7 +148,10 @@ impl<P: CouplerPort, const D: usize> Coupler<P, D> {
             }
             let changed = self.solids.leave_walls(&self.states, self.resumed);
             match self.resumed {
-                true => self.check_resumed(changed)?,
+                true => {
+                    self.check_resumed(changed)?;
+                    course.go_on()?;
+                }
                 false => self.solids.begin(&self.states),
             }
             let first = self.solids.first_messages(&self.states);

@@ -3,6 +3,7 @@
 use crate::checkpoints::Checkpoints;
 use crate::clock::Clock;
 use crate::recorder::Recorder;
+use halfstep_output::{OutputError, SetAside};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 
@@ -18,8 +19,17 @@ pub struct Course {
     pub must_save: bool,
     /// Set, it ends the run at the next state n.
     pub stop: Arc<AtomicBool>,
+    /// What an interrupted run wrote after the checkpoint that this one goes on from, until it goes on.
+    pub set_aside: Option<SetAside>,
     /// For who watches the run.
     pub progress: Arc<Progress>,
+}
+
+impl Course {
+    /// The participants have shown the state that the run goes on from.
+    pub(crate) fn go_on(&mut self) -> Result<(), OutputError> {
+        self.set_aside.take().map_or(Ok(()), SetAside::forget)
+    }
 }
 
 /// How far a run is, seen from another thread.

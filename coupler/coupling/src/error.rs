@@ -48,6 +48,9 @@ pub enum RunError {
     /// Somebody stopped the run before its roles had met.
     #[error("stopped before the start")]
     StoppedEarly,
+    /// A resumed run has not gone on.
+    #[error("{0}: the run has not gone on, and its folder is as before")]
+    NotGoneOn(Box<RunError>),
     /// Somebody stopped the run while a role was silent.
     #[error("stopped without waiting for the {role}, which has been silent for {seconds:.1} s")]
     StoppedAtOnce {

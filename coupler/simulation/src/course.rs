@@ -34,15 +34,15 @@ pub(crate) fn begin(
 ) -> Result<Course, RunError> {
     let probes = folder.map(|folder| folder.file("probes.csv"));
     let unwritable = |e: serde_json::Error| RunError::System(format!("scene.json: {e}"));
+    let mut set_aside = None;
     let recorder = match from {
         Some(from) => {
             let (frames, state) = (from.frames()?, from.part("recorder")?);
             for participant in scene.participants() {
                 folder.map_or(Ok(()), |folder| folder.check_frames(&participant.name, frames))?;
             }
-            let recorder = Recorder::new(scene, None, quiet).resume(scene, probes.as_deref(), state)?;
-            folder.map_or(Ok(()), |folder| folder.forget_frames(frames))?;
-            recorder
+            set_aside = folder.map(|folder| folder.set_aside(frames)).transpose()?;
+            Recorder::new(scene, None, quiet).resume(scene, probes.as_deref(), state)?
         }
         None => {
             let create = |path| ProbeLog::create(path, &Recorder::columns(scene));
@@ -65,6 +65,7 @@ pub(crate) fn begin(
         recorder,
         checkpoints,
         must_save: false,
+        set_aside,
         stop,
         progress: Arc::default(),
     })

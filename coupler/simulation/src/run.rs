@@ -283,6 +283,11 @@ fn execute_in<const D: usize>(
         course = ended;
         stopped
     };
+    if course.set_aside.take().is_some() {
+        let why = result.err().unwrap_or(RunError::StoppedEarly);
+        tracing::error!("{why}: the run has not gone on");
+        return Err(RunError::NotGoneOn(Box::new(why)));
+    }
     Ok(course::end(&mut course, result, scene, &options.external, Some(directory), report))
 }
 

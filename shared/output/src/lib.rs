@@ -45,7 +45,7 @@ pub use halfstep_wire::frame::{Frame, FramePoint};
 #[cfg(feature = "pictures")]
 pub use pictures::{draw_contact, draw_plot, draw_start, draw_timeline};
 pub use probes::{ProbeLog, Table, read_probes};
-pub use run_dir::RunDirectory;
+pub use run_dir::{RunDirectory, SetAside};
 pub use run_json::RunReport;
 pub use writer::FrameWriter;
 

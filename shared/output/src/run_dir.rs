@@ -6,7 +6,9 @@ use std::os::fd::BorrowedFd;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+mod aside;
 mod lock;
+pub use aside::SetAside;
 use lock::Lock;
 
 /// Files that a run leaves in its folder, beside the frames.
@@ -116,21 +118,6 @@ impl RunDirectory {
         Ok(())
     }
 
-    /// Forgets the frames from this number on, and what an interrupted write left.
-    ///
-    /// # Errors
-    /// The folder cannot be read or changed.
-    pub fn forget_frames(&self, from: u64) -> Result<(), OutputError> {
-        let folder = self.frames();
-        std::fs::create_dir_all(&folder).map_err(OutputError::io("create", &folder))?;
-        let stems = stems(&folder)?;
-        for stem in &stems {
-            let own = |name: &str| is_frame_file(name, std::slice::from_ref(stem));
-            series::forget_from(&folder, stem, from as u32, own)?;
-        }
-        remove(self.temporaries(&stems)?)
-    }
-
     /// What interrupted writes left of the run's files and of the frames of these participants.
     fn temporaries(&self, stems: &[String]) -> Result<Vec<PathBuf>, OutputError> {
         let mut found = files(&self.path, |name| is_temporary(name, is_run_file))?;
@@ -166,13 +153,13 @@ fn remove(files: Vec<PathBuf>) -> Result<(), OutputError> {
     files.try_for_each(|file| std::fs::remove_file(&file).map_err(OutputError::io("remove", &file)))
 }
 
-/// The regular files in a folder whose name `wanted` accepts, sorted.
+/// The files in a folder whose name `wanted` accepts, sorted; links count, whatever they lead to.
 fn files(folder: &Path, wanted: impl Fn(&str) -> bool) -> Result<Vec<PathBuf>, OutputError> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(OutputError::io("read", folder))? {
         let entry = entry.map_err(OutputError::io("read", folder))?;
         let kind = entry.file_type().map_err(OutputError::io("read", &entry.path()))?;
-        if kind.is_file() && entry.file_name().to_str().is_some_and(&wanted) {
+        if !kind.is_dir() && entry.file_name().to_str().is_some_and(&wanted) {
             found.push(entry.path());
         }
     }

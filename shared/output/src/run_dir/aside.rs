@@ -1,0 +1,153 @@
+//! What a run wrote after the checkpoint that it is to go on from: set aside until it goes on, else put back.
+
+use super::{RunDirectory, files, is_frame_file, remove, stems};
+use crate::{OutputError, atomic, series};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Frames, indexes, rows and report of a run from a checkpoint on. Dropped, they are put back.
+#[derive(Debug)]
+#[must_use]
+pub struct SetAside {
+    /// What a run that goes on writes anew: file and content.
+    told: Vec<(PathBuf, Vec<u8>)>,
+    /// The names of the files, each with the temporary one that it has meanwhile.
+    files: Vec<[PathBuf; 2]>,
+}
+
+impl SetAside {
+    /// The run goes on: what it wrote after the checkpoint is forgotten.
+    ///
+    /// # Errors
+    /// The folder cannot be changed.
+    pub fn forget(mut self) -> Result<(), OutputError> {
+        self.told.clear();
+        remove(std::mem::take(&mut self.files).into_iter().map(|[_, aside]| aside).collect())
+    }
+
+    fn keep(
+        &mut self,
+        path: PathBuf,
+        by: impl Fn(&Path, &Path) -> std::io::Result<()>,
+    ) -> Result<(), OutputError> {
+        let aside = atomic::temporary(&path);
+        by(&path, &aside).map_err(OutputError::io("set aside", &path))?;
+        self.files.push([path, aside]);
+        Ok(())
+    }
+
+    fn copy(&mut self, path: PathBuf) -> Result<(), OutputError> {
+        self.keep(path, |from, to| fs::copy(from, to).map(|_| ()))
+    }
+}
+
+impl Drop for SetAside {
+    fn drop(&mut self) {
+        for [path, aside] in &self.files {
+            if let Err(error) = fs::rename(aside, path) {
+                tracing::error!("{} stays {}: {error}", path.display(), aside.display());
+            }
+        }
+        for (path, content) in &self.told {
+            if let Err(error) = atomic::replace_bytes(path, content) {
+                tracing::error!("{error}");
+            }
+        }
+    }
+}
+
+impl RunDirectory {
+    /// Sets aside what the run wrote after a checkpoint with so many frames, and removes what an interrupted write
+    /// left.
+    ///
+    /// # Errors
+    /// The folder cannot be read or changed.
+    pub fn set_aside(&self, frames: u64) -> Result<SetAside, OutputError> {
+        let folder = self.frames();
+        fs::create_dir_all(&folder).map_err(OutputError::io("create", &folder))?;
+        let stems = stems(&folder)?;
+        remove(self.temporaries(&stems)?)?;
+        let mut aside = SetAside { told: Vec::new(), files: Vec::new() };
+        for path in ["run.json", "scene.json"].map(|name| self.file(name)) {
+            let content = fs::read(&path).map_err(OutputError::io("read", &path))?;
+            aside.told.push((path, content));
+        }
+        let rows = self.file("probes.csv");
+        if rows.is_file() {
+            aside.copy(rows)?;
+        }
+        for stem in &stems {
+            let index = folder.join(series::index_name(stem));
+            if !index.is_file() {
+                continue;
+            }
+            aside.copy(index)?;
+            let own = std::slice::from_ref(stem);
+            let first = series::frame_name(stem, frames as u32);
+            let is_later = |name: &str| {
+                name != series::index_name(stem) && is_frame_file(name, own) && name >= first.as_str()
+            };
+            for path in files(&folder, is_later)? {
+                aside.keep(path, |from, to| fs::rename(from, to))?;
+            }
+            series::forget_from(&folder, stem, frames as u32, |name| is_frame_file(name, own))?;
+        }
+        Ok(aside)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::writer::FrameWriter;
+    use halfstep_wire::frame::{Frame, FrameSink};
+
+    /// Name and content of each file of a folder and of its frames.
+    fn content(dir: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+        let all = [dir.to_owned(), series::frames_folder(dir)];
+        let paths = all.iter().flat_map(|folder| files(folder, |_| true).unwrap());
+        paths.map(|path| (path.clone(), fs::read(path).unwrap())).collect()
+    }
+
+    #[test]
+    fn what_came_later_is_put_back_unless_the_run_goes_on() {
+        let folder = tempfile::tempdir().unwrap();
+        let dir = folder.path();
+        let run = RunDirectory::create(dir, false).unwrap();
+        let mut writer: Box<dyn FrameSink> = Box::new(FrameWriter::start(dir, "fluid").unwrap());
+        for number in 0..4 {
+            writer.submit(number, &mut |frame: &mut Frame| frame.time = f64::from(number)).unwrap();
+        }
+        writer.finish().unwrap();
+        for (name, text) in [
+            ("run.json", "failed"),
+            ("scene.json", "until 4"),
+            ("probes.csv", "a\n1\n2\n"),
+            ("notes.txt", "mine"),
+        ] {
+            fs::write(dir.join(name), text).unwrap();
+        }
+        let whole = content(dir);
+        let set = || run.set_aside(2).unwrap();
+        let shorten = || {
+            fs::write(dir.join("probes.csv"), "a\n1\n").unwrap();
+            fs::write(dir.join("run.json"), "begun").unwrap();
+            fs::write(dir.join("scene.json"), "until 9").unwrap();
+        };
+        let aside = set();
+        let listed = series::Series::of_run(dir, "fluid").unwrap();
+        assert_eq!((listed.len(), dir.join("frames/fluid_000002.hdf").exists()), (2, false));
+        shorten();
+        drop(aside);
+        assert_eq!(content(dir), whole);
+        let aside = set();
+        shorten();
+        aside.forget().unwrap();
+        let names: Vec<_> = content(dir).into_iter().map(|(path, _)| path).collect();
+        let told = ["notes.txt", "probes.csv", "run.json", "scene.json"].map(|name| dir.join(name));
+        let frames = ["fluid.hdf.series", "fluid_000000.hdf", "fluid_000001.hdf"];
+        let frames = frames.map(|name| dir.join("frames").join(name));
+        assert_eq!(names, [told, frames].concat());
+        assert_eq!(fs::read(dir.join("probes.csv")).unwrap(), b"a\n1\n");
+    }
+}
