@@ -149,7 +149,9 @@ impl<const D: usize> Measured<'_, D> {
             return self.contact.to_vec();
         }
         let mut force = vec![[0.0; D]; self.model.particles().len()];
-        self.model.contact_forces(&mut |p, given| force[p as usize] = given);
+        self.model.contact_forces(&mut |p, given| {
+            (0..D).for_each(|d| force[p as usize][d] += given[d]);
+        });
         force
     }
 }

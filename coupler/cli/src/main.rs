@@ -286,9 +286,8 @@ fn tell(scene: &Scene, out: &Path, (report, error): run::Ended) -> ExitCode {
     if !finished && FOLDERS.iter().any(|folder| out.join(folder).join(MANIFEST).exists()) {
         say::tell(format_args!("halfstep resume '{}' goes on from the last checkpoint", out.display()));
     }
-    let remarked = halfstep::remarks::outcome(scene, &report);
-    if !remarked.is_empty() {
-        say::warn(format_args!("warning: {}", remarked.join("; ")));
+    if !report.warnings_at_end.is_empty() {
+        say::warn(format_args!("warning: {}", report.warnings_at_end.join("; ")));
     }
     match report.status {
         Some(RunStatus::Finished) => ExitCode::SUCCESS,

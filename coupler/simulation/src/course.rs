@@ -125,7 +125,8 @@ pub(crate) fn end(
         }
     }
     remarked.iter().for_each(|warning| tracing::warn!("{warning}"));
-    report.warnings.extend(remarked);
+    report.warnings.extend(remarked.iter().cloned());
+    report.warnings_at_end = remarked;
     if let Some(folder) = folder {
         // The run has been computed: that its report cannot be written is how it ended.
         if let Err(unwritten) = report.write(&folder.file("run.json")) {

@@ -20,6 +20,9 @@ pub struct RunReport {
     pub error: Option<String>,
     /// What the author of the scene, or the reader of its results, should know.
     pub warnings: Vec<String>,
+    /// Those of them that the end of the run has shown; the file has them among the others.
+    #[serde(skip)]
+    pub warnings_at_end: Vec<String>,
     /// The scene as resolved.
     pub scene: serde_json::Value,
     /// The shapes as asked and as computed, as `halfstep check --json` lists them.

@@ -109,6 +109,7 @@ pub(super) fn system<const D: usize>(
         poses,
     };
     system.drive(0.0);
+    system.turn_about_hinges();
     (system, names)
 }
 

@@ -17,6 +17,7 @@ mod limit;
 mod model;
 mod row;
 mod solve;
+mod start;
 mod state;
 mod step;
 #[cfg(test)]

@@ -147,7 +147,7 @@ fn friction_of_what_strains_is_about_walls_and_bodies() {
 
 #[test]
 fn debris_is_not_known_to_contact() {
-    let of = |more: &str| {
+    let of = |stone: &str, more: &str| {
         let shape = |name: &str, from: f64| {
             format!(
                 "[[shape]]\nname = \"{name}\"\nphase = \"solid\"\nsolid = \"{name}\"\nvelocity = [0.1, 0.0]\n\
@@ -163,15 +163,20 @@ fn debris_is_not_known_to_contact() {
         let text = format!(
             "resolution = 0.005\nend_time = 1.0\n{}{}{}{}{more}",
             solid("glass", "fracture = { strength = 1e5, energy = 10.0 }"),
-            solid("stone", ""),
+            solid("stone", stone),
             shape("glass", 0.0),
             shape("stone", 0.1)
         );
         remarks(&parse(&text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}")))
     };
-    let found = of("");
-    let text =
-        "`glass` and `stone` touch with the surfaces that they begin with: a piece that breaks off `glass`";
+    let found = of("", "");
+    let text = "`glass` and `stone` touch with the surfaces that they begin with: a piece that breaks off `glass` takes";
     assert!(found.len() == 1 && found[0].starts_with(text), "{found:?}");
-    assert_eq!(of("[[contact]]\nsolids = [\"glass\", \"stone\"]\ntouch = false\n"), [""; 0]);
+    let apart = "[[contact]]\nsolids = [\"glass\", \"stone\"]\ntouch = false\n";
+    assert_eq!(of("", apart), [""; 0]);
+    // Friction of what breaks is that within one solid.
+    let found = of("fracture = { strength = 1e5, energy = 10.0, friction = 0.3 }", "");
+    let [debris, smooth] = found.as_slice() else { panic!("{found:?}") };
+    assert!(debris.contains("a piece that breaks off `glass` or `stone` takes"), "{debris}");
+    assert!(smooth.starts_with("`glass` and `stone` touch without friction: their own friction"), "{smooth}");
 }

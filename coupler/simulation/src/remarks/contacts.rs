@@ -178,12 +178,16 @@ pub(super) fn of_walls(scene: &Scene, bodies: &[Body], all: &mut Vec<String>) {
 pub(super) fn debris(scene: &Scene, all: &mut Vec<String>) {
     let breaks = |k: &usize| scene.fracture(*k).is_some();
     for contact in scene.contacts() {
-        let Some(broken) = contact.solids.iter().copied().find(breaks) else { continue };
+        let broken: Vec<&str> =
+            contact.solids.iter().filter(|k| breaks(k)).map(|&k| scene.solids[k].name.as_str()).collect();
+        if broken.is_empty() {
+            continue;
+        }
         let [a, b] = contact.solids.map(|k| &scene.solids[k].name);
         all.push(format!(
-            "`{a}` and `{b}` touch with the surfaces that they begin with: a piece that breaks off `{}` takes its part \
+            "`{a}` and `{b}` touch with the surfaces that they begin with: a piece that breaks off {} takes its part \
              along, and where cracks leave none, its particles are held one by one",
-            scene.solids[broken].name
+            broken.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" or ")
         ));
     }
 }
@@ -241,14 +245,15 @@ fn parted(scene: &Scene, [a, b]: [usize; 2]) -> bool {
 
 /// Two solids touch as no table says, although their own bodies rub.
 pub(super) fn unsaid(scene: &Scene, all: &mut Vec<String>) {
-    let friction = |k: usize| scene.solids[k].contact().map_or(0.0, |keys| keys.friction);
+    let of_debris = |k: usize| scene.fracture(k).map_or(0.0, |keys| keys.friction);
+    let friction = |k: usize| scene.solids[k].contact().map_or(0.0, |keys| keys.friction).max(of_debris(k));
     for contact in scene.contacts() {
         let said = scene.pair_contacts.iter().any(|other| other.solids == contact.solids);
         let [a, b] = contact.solids;
         if !said && friction(a).max(friction(b)) > 0.0 && !parted(scene, [a, b]) {
             let [a, b] = [a, b].map(|k| &scene.solids[k].name);
             all.push(format!(
-                "`{a}` and `{b}` touch without friction: their own `contact` is about walls and bodies of one solid \
+                "`{a}` and `{b}` touch without friction: their own friction is about walls and bodies of one solid \
                  ([[contact]] with solids = [\"{a}\", \"{b}\"] says how the two touch)"
             ));
         }

@@ -108,7 +108,9 @@ pub(super) struct Fracture<const D: usize> {
     thin: u32,
     /// Neighbours with which a particle lacks none; more than it can have at the surface.
     whole: Vec<usize>,
-    /// Whether each particle began in a body of five rows or more.
+    /// Rows of a thick body.
+    thick_rows: usize,
+    /// Whether each particle began in a thick body.
     was_thick: Vec<bool>,
     /// What sees contacts once there is a cut.
     dormant: Option<Contact<D>>,
@@ -179,6 +181,7 @@ impl<const D: usize> Fracture<D> {
             loose: 0,
             thin: 0,
             whole: Vec::new(),
+            thick_rows: thin::rows_of_a_thick_body(scene, dx),
             was_thick: Vec::new(),
             dormant,
             #[cfg(test)]

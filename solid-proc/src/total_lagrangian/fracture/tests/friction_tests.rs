@@ -1,7 +1,8 @@
 //! Friction between fragments, and between them and walls.
 
 use super::Run;
-use crate::model::SolidModel;
+use crate::model::{Load, SolidModel};
+use crate::probes::Measured;
 use halfstep_scene::EnergyPart;
 use halfstep_wire::half_step::HalfStep;
 use halfstep_wire::state::State;
@@ -120,7 +121,10 @@ fn forces_of_contact_have_their_friction() {
     let mut sum = [0.0; 2];
     for k in 1..=50 {
         rub_on(&mut run, 0.05 + 0.001 * f64::from(k));
-        run.model.contact_forces(&mut |_, force| (0..2).for_each(|d| sum[d] += force[d] / 50.0));
+        let load = Load::none(0);
+        let probed = Measured { model: &run.model, load: &load, ledger: None, contact: &[] };
+        let forces = probed.contact_forces();
+        forces.iter().for_each(|force| (0..2).for_each(|d| sum[d] += force[d] / 50.0));
     }
     // 5 kg/m.
     assert!(
