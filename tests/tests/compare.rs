@@ -1,8 +1,10 @@
 //! `halfstep compare`: the table has a built-in model and a program of one's own, and the picture is drawn.
 
-use halfstep_tests::python::{FAILING_SOLID, python, python_of};
+use halfstep_tests::conformance::link::eventually;
+use halfstep_tests::process::{is_alive, kill, with_variable};
+use halfstep_tests::python::{FAILING_SOLID, HANGING_SOLID, python, python_of};
 use halfstep_tests::run::{program, repository, whole_machine};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 fn compare(arguments: &[&str]) -> Output {
     compare_in("elastic-gate", arguments)
@@ -157,6 +159,38 @@ fn a_solid_that_fails_is_told() {
     assert_eq!(output.status.code(), Some(1), "{errors}");
     assert!(errors.contains("a run that was not made here"), "{errors}");
     assert_eq!(std::fs::read(out.join("runs/total-lagrangian/run.json")).unwrap(), before);
+}
+
+/// A comparison ends with a solid that hangs: at Ctrl-C, and when it is killed itself.
+#[test]
+fn no_solid_outlives_its_comparison() {
+    let _machine = whole_machine();
+    for signal in [libc::SIGINT, libc::SIGKILL] {
+        let folder = tempfile::tempdir().unwrap();
+        let (script, out) = (folder.path().join("hanging.py"), folder.path().join("out"));
+        std::fs::write(&script, HANGING_SOLID).unwrap();
+        let hanging = format!("hanging={} {}", python().display(), script.display());
+        let mut comparison = Command::new(program())
+            .arg("compare")
+            .arg(repository().join("scenes/oscillating-plate.toml"))
+            .args(["--set", "resolution=0.004", "--until", "0.01", "--quiet", "--solid", &hanging, "--out"])
+            .arg(&out)
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let own = out.join("runs/hanging");
+        eventually(60.0, "the solid to hang", || own.join("hangs").exists());
+        let told = own.canonicalize().unwrap();
+        let solids = with_variable("HALFSTEP_OUT", told.to_str().unwrap());
+        assert_eq!(solids.len(), 1);
+        kill(comparison.id(), signal);
+        let status = comparison.wait().unwrap();
+        assert_eq!(status.code(), (signal == libc::SIGINT).then_some(130));
+        eventually(10.0, "the solid to end", || !is_alive(solids[0]));
+        let ended =
+            || std::fs::read_to_string(own.join("run.json")).is_ok_and(|text| text.contains("stopped"));
+        eventually(10.0, "the trial to end", ended);
+    }
 }
 
 /// The stand-in knows one solid.
