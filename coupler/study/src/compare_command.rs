@@ -122,7 +122,7 @@ fn run(arguments: CompareArguments) -> Result<ExitCode, StudyError> {
             cost: 1.0,
         });
     }
-    let stop = StopFlags::of_signals().map_err(StudyError::system("cannot watch for signals"))?.stop;
+    let stop = StopFlags::of_signals().map_err(StudyError::system("cannot watch for signals"))?;
     if !runs::execute(&jobs, 1, arguments.quiet, &Program::own()?, &stop)? {
         say::warn(format_args!("interrupted"));
         return Ok(ExitCode::from(130));

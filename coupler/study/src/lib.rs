@@ -24,6 +24,7 @@ pub mod target;
 use choose::Surprise;
 use error::StudyError;
 use halfstep_coupling::say;
+use halfstep_coupling::supervise::StopFlags;
 use halfstep_output::RunReport;
 use halfstep_output::run_json::RunStatus;
 use halfstep_scene::{Metric, Scene};
@@ -33,7 +34,6 @@ use result::{Against, MetricResult, Row};
 use runs::{Job, Program};
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
 
 /// What to study.
 #[derive(Clone, Debug)]
@@ -64,7 +64,7 @@ pub struct Options {
 pub struct Session<'s> {
     options: &'s Options,
     program: Program,
-    stop: &'s AtomicBool,
+    stop: &'s StopFlags,
     folder: PathBuf,
     scene: Scene,
     metrics: Vec<Metric>,
@@ -80,7 +80,7 @@ impl<'s> Session<'s> {
     ///
     /// # Errors
     /// The scene is not valid, or has no metric that its run is long enough for.
-    pub fn new(options: &'s Options, stop: &'s AtomicBool) -> Result<Self, StudyError> {
+    pub fn new(options: &'s Options, stop: &'s StopFlags) -> Result<Self, StudyError> {
         let scene = Setting::load(&options.scene, &options.base, &[])?.scene;
         let (metrics, left_out): (Vec<Metric>, Vec<Metric>) =
             scene.metrics.iter().cloned().partition(|m| m.needs() <= scene.end_time);

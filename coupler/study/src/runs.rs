@@ -6,6 +6,7 @@
 
 use super::error::StudyError;
 use super::ladder::{Setting, content, strip};
+use halfstep_coupling::supervise::StopFlags;
 use halfstep_output::run_dir::RunDirectory;
 use halfstep_output::run_json::RunStatus;
 use halfstep_output::{OutputError, RunReport, atomic};
@@ -25,6 +26,8 @@ const DONE: &str = "done.json";
 pub(super) const MESSAGES: &str = "messages.txt";
 /// Pause between two looks at the runs.
 const TICK: Duration = Duration::from_millis(50);
+/// How long a run that was asked to stop is waited for, until it is asked again and until it is killed.
+const PATIENCE: Duration = Duration::from_secs(10);
 
 /// Which program made a run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -221,7 +224,7 @@ pub fn execute(
     at_a_time: usize,
     quiet: bool,
     program: &Program,
-    stop: &AtomicBool,
+    stop: &StopFlags,
 ) -> Result<bool, StudyError> {
     jobs.iter().try_for_each(|job| job.check_folder().map(drop))?;
     let bar = ProgressBar::new(1000);
@@ -235,12 +238,12 @@ pub fn execute(
     let (mut next, mut done) = (0, 0.0);
     let total: f64 = jobs.iter().map(|job| job.cost).sum();
     while next < jobs.len() || !running.is_empty() {
-        while next < jobs.len() && running.len() < at_a_time && !stop.load(Ordering::Relaxed) {
+        while next < jobs.len() && running.len() < at_a_time && !stop.stop.load(Ordering::Relaxed) {
             running.push((next, jobs[next].start()?));
             next += 1;
         }
-        if stop.load(Ordering::Relaxed) {
-            end(&mut running);
+        if stop.stop.load(Ordering::Relaxed) {
+            end(&mut running, &stop.at_once);
             bar.finish_and_clear();
             return Ok(false);
         }
@@ -276,15 +279,38 @@ fn remaining(elapsed: Duration, part: f64) -> String {
     HumanDuration(elapsed.mul_f64((1.0 / part - 1.0).max(0.0))).to_string()
 }
 
-/// Asks the runs to stop after their step under way, and waits for that.
-fn end(running: &mut [(usize, Child)]) {
-    for (_, child) in running.iter() {
-        // SAFETY: no memory is passed; the child has not been waited for, so its number is its own.
-        unsafe { libc::kill(child.id() as libc::pid_t, libc::SIGTERM) };
+/// Asks the runs to stop after their step under way, and waits for that; then, or at the second Ctrl-C, asks them to
+/// stop at once, and kills those that do neither.
+fn end(running: &mut Vec<(usize, Child)>, at_once: &AtomicBool) {
+    signal(running, libc::SIGTERM);
+    if wait(running, || at_once.load(Ordering::Relaxed)) {
+        return;
     }
-    for (_, child) in running.iter_mut() {
+    signal(running, libc::SIGTERM);
+    if !wait(running, || false) {
+        signal(running, libc::SIGKILL);
+        wait(running, || false);
+    }
+}
+
+fn signal(running: &[(usize, Child)], signal: i32) {
+    for (_, child) in running {
+        // SAFETY: no memory is passed; the child has not been waited for, so its number is its own.
+        unsafe { libc::kill(child.id() as libc::pid_t, signal) };
+    }
+}
+
+/// Waits until all have ended; returns whether they have before it was `enough` or has taken too long.
+fn wait(running: &mut Vec<(usize, Child)>, enough: impl Fn() -> bool) -> bool {
+    let since = Instant::now();
+    loop {
+        // Two signals at once may arrive as one.
+        std::thread::sleep(TICK);
         // A child that cannot be waited for is gone.
-        let _ = child.wait();
+        running.retain_mut(|(_, child)| matches!(child.try_wait(), Ok(None)));
+        if running.is_empty() || enough() || since.elapsed() > PATIENCE {
+            return running.is_empty();
+        }
     }
 }
 
@@ -363,6 +389,23 @@ mod tests {
         let _under_way = RunDirectory::reopen(&own).unwrap();
         let refused = job.check_folder().unwrap_err().to_string();
         assert!(refused.starts_with("a run goes on in "), "{refused}");
+    }
+
+    #[test]
+    fn a_run_that_does_not_stop_is_asked_again() {
+        let deaf = "trap 'echo asked >> said; test $(wc -l < said) = 2 && exit' TERM; echo > ready; \
+                    while :; do sleep 0.01; done";
+        let dir = tempfile::tempdir().unwrap();
+        let mut command = Command::new("sh");
+        let child = command.args(["-c", deaf]).current_dir(dir.path()).spawn().unwrap();
+        while !dir.path().join("ready").exists() {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        let started = Instant::now();
+        end(&mut vec![(0, child)], &AtomicBool::new(true));
+        let asked = std::fs::read_to_string(dir.path().join("said")).unwrap();
+        assert_eq!(asked.lines().count(), 2);
+        assert!(started.elapsed() < PATIENCE);
     }
 
     #[test]
