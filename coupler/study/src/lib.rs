@@ -12,8 +12,10 @@ pub mod error;
 pub mod fit;
 pub mod ladder;
 pub mod measure;
+mod named;
 pub mod pareto;
 pub mod pictures;
+pub mod program;
 pub mod reference;
 pub mod report;
 pub mod result;
@@ -29,9 +31,10 @@ use halfstep_output::RunReport;
 use halfstep_output::run_json::RunStatus;
 use halfstep_scene::{Metric, Scene};
 use ladder::{Setting, Vary};
+use program::Program;
 use report::Study;
 use result::{Against, MetricResult, Row};
-use runs::{Job, Program};
+use runs::Job;
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
 
@@ -93,7 +96,10 @@ impl<'s> Session<'s> {
         std::fs::create_dir_all(&folder).map_err(StudyError::system(folder.display()))?;
         let claim = claim(&folder)?;
         let left_out = left_out.into_iter().map(|m| m.name).collect();
-        let program = Program::own()?.with_solids(&options.solids);
+        let (program, unknown) = Program::own()?.with_solids(&options.solids);
+        if let (Some(why), true) = (unknown.first(), folder.join("runs").is_dir()) {
+            say::warn(format_args!("warning: runs that are there are not used again: {why}"));
+        }
         Ok(Self {
             options,
             program,

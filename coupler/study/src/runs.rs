@@ -6,12 +6,12 @@
 
 use super::error::StudyError;
 use super::ladder::{Setting, content, strip};
+use super::program::{Program, own_path};
 use halfstep_coupling::supervise::StopFlags;
 use halfstep_output::run_dir::RunDirectory;
 use halfstep_output::run_json::RunStatus;
 use halfstep_output::{OutputError, RunReport, atomic};
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
-use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::os::unix::process::CommandExt;
@@ -19,7 +19,6 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
-use xxhash_rust::xxh3::xxh3_64;
 
 const DONE: &str = "done.json";
 /// What a run of a study prints; no other run's folder has it.
@@ -28,57 +27,6 @@ pub(super) const MESSAGES: &str = "messages.txt";
 const TICK: Duration = Duration::from_millis(50);
 /// How long a run that was asked to stop is waited for, until it is asked again and until it is killed.
 const PATIENCE: Duration = Duration::from_secs(10);
-
-/// Which program made a run.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Program {
-    /// Version of the program.
-    pub version: String,
-    /// Hash of its file: versions under development have the same number.
-    pub build: String,
-    /// The instruction set that it computes with.
-    #[serde(default)]
-    pub isa: String,
-    /// The programs that compute solids, each with a hash of the files that its command names.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub solids: Vec<(String, String)>,
-}
-
-impl Program {
-    /// The one that is running.
-    ///
-    /// # Errors
-    /// The program's file cannot be read.
-    pub fn own() -> Result<Self, StudyError> {
-        let bytes = own_path().and_then(std::fs::read).map_err(StudyError::system("the own program"))?;
-        let build = format!("{:016x}", xxh3_64(&bytes));
-        let isa = halfstep::isa::of_environment().map_err(|e| StudyError::System(e.to_string()))?;
-        Ok(Self {
-            version: env!("CARGO_PKG_VERSION").into(),
-            build,
-            isa: format!("{isa:?}"),
-            solids: Vec::new(),
-        })
-    }
-
-    /// With solids that these commands compute, `[NAME=]COMMAND`.
-    pub fn with_solids(mut self, commands: &[String]) -> Self {
-        let with_files =
-            |command: &String| (command.clone(), format!("{:016x}", xxh3_64(&files_of(command))));
-        self.solids = commands.iter().map(with_files).collect();
-        self
-    }
-}
-
-/// The content of all files that a command names, one after the other.
-fn files_of(command: &str) -> Vec<u8> {
-    let words = command.split(|c: char| c.is_whitespace() || "='\"".contains(c));
-    words.filter(|word| !word.is_empty()).filter_map(|word| std::fs::read(word).ok()).flatten().collect()
-}
-
-fn own_path() -> std::io::Result<PathBuf> {
-    std::env::current_exe()
-}
 
 /// One run to make.
 #[derive(Clone, Debug)]
@@ -343,15 +291,21 @@ mod tests {
         assert!(!matches(&Program { isa: "baseline".into(), ..program.clone() }, &report, &own, &program));
         assert!(!matches(&program, &report, &load(&["fluid.density=900"]), &program));
         // A program that computes a solid is another one when its file changes.
-        let script = dir.path().join("plate.py");
+        let script = dir.path().join("the plate.py");
         let with_script = |text: &str| {
             std::fs::write(&script, text).unwrap();
-            program.clone().with_solids(&[format!("plate=python3 '{}'", script.display())])
+            program.clone().with_solids(&[format!("plate=python3 '{}'", script.display())]).0
         };
         let before = with_script("E = 1");
         assert!(matches(&before, &report, &own, &before));
         assert!(!matches(&program, &report, &own, &before));
         assert!(!matches(&before, &report, &own, &with_script("E = 2")));
+        // What is not there to be looked at may have changed.
+        std::fs::remove_file(&script).unwrap();
+        let commands = [format!("plate=python3 '{}'", script.display())];
+        let [(one, why), (other, _)] = [0, 1].map(|_| program.clone().with_solids(&commands));
+        assert!(matches(&one, &report, &own, &one) && !matches(&one, &report, &own, &other));
+        assert!(why[0].contains("the plate.py`"), "{why:?}");
         // A metric changes what is made of a run, not the run.
         let metric = "[[metric]]\nname = \"reach\"\nprobe = \"front.x\"\nkind = \"peak\"\n";
         std::fs::write(&path, format!("{text}{metric}")).unwrap();
