@@ -48,6 +48,7 @@ fn what_cannot_be_compared_is_refused() {
         (&["--solid", "hypoelastic", "--solid", "hypoelastic"][..], "two solids are called `hypoelastic`"),
         (&["--solid", "hypoelastic", "--set", "solid.model=none"], "solid.model"),
         (&["--solid", "hypoelastic", "--solid", "finite-elements"], "`finite-elements` is no model"),
+        (&["--solid", "hypoelastic", "--solid", "..=sleep 1"], "`..` names no solid"),
     ] {
         let output = compare(arguments);
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -61,7 +62,8 @@ fn what_cannot_be_compared_is_refused() {
 fn one_of_several_solids_is_exchanged() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
-    let short = ["--until", "0.002", "--out", out, "--json"];
+    let counts = ["--set", "solid.soft.sub_steps=2", "--set", "solid.stiff.sub_steps=20"];
+    let short = [&["--until", "0.002", "--out", out, "--json"], &counts[..]].concat();
     let models = ["--solid", "total-lagrangian", "--solid", "finite-element"];
     let unsaid = compare_in("two-plates", &[&short[..], &models].concat());
     assert_eq!(unsaid.status.code(), Some(1));
@@ -69,12 +71,22 @@ fn one_of_several_solids_is_exchanged() {
     assert!(said.contains("say which with --of NAME, one of soft, stiff"), "{said}");
     let output = compare_in("two-plates", &[&short[..], &models, &["--of", "soft"]].concat());
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    for (model, runs) in [("total-lagrangian", "total-lagrangian"), ("finite-element", "finite-element")] {
-        let path = folder.path().join("runs").join(runs).join("run.json");
+    let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(told["solids"][0]["sub_steps"], 2, "{told}");
+    for (k, model) in ["total-lagrangian", "finite-element"].into_iter().enumerate() {
+        let path = folder.path().join("runs").join(model).join("run.json");
         let report: serde_json::Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
         let solids = report["scene"]["solid"].as_array().unwrap();
         let of = |name: &str| &solids.iter().find(|solid| solid["name"] == name).unwrap()["model"];
         assert_eq!((of("soft"), of("stiff")), (&model.into(), &"hypoelastic".into()), "{report}");
+        // The table tells of the one that is exchanged, not of the other's sub-steps and energy.
+        let [_, soft, stiff] = report["participants"].as_array().unwrap().as_slice() else {
+            panic!("{report}")
+        };
+        assert_eq!((&stiff["sub_steps"], &report["sub_steps"]), (&20.into(), &20.into()), "{report}");
+        assert_eq!(told["solids"][k]["sub_steps"], soft["sub_steps"], "{told}");
+        assert_eq!(told["solids"][k]["energy_growth"][1], soft["energy_growth"], "{told}");
+        assert!(soft["energy_growth"].is_number() && stiff["energy_growth"].is_number(), "{report}");
     }
 }
 

@@ -212,7 +212,7 @@ fn a_sweep_tells_what_physics_does() {
     assert!(study.out().join("sweep.png").metadata().unwrap().len() > 5000);
 }
 
-/// The block on a spring is a program: each run starts it, and a program that has changed, or may have, makes other runs.
+/// The block on a spring is a program: each run starts it, and one that has changed, or may have, makes other runs.
 #[test]
 fn a_solid_of_ones_own_takes_part_in_a_study() {
     let study = Study::of(repository().join("scenes/spring-block.toml"));

@@ -1,8 +1,9 @@
 //! The command line of `halfstep compare`.
 
 use super::adapted::{Adapted, adapted};
+use super::candidate::Candidate;
 use super::command::{ended, tell};
-use super::compare::{Candidate, Comparison, Ran, default_probe};
+use super::compare::{Comparison, Ran, default_probe};
 use super::error::StudyError;
 use super::program::Program;
 use super::runs::{self, Job};
@@ -134,7 +135,7 @@ fn run(arguments: CompareArguments) -> Result<ExitCode, StudyError> {
         let report = report_of(job);
         ended.push(Ran { solid: candidate, folder: job.dir.clone(), report, table, note, stable_step });
     }
-    let comparison = Comparison::new(&scene, &probe, ended)?;
+    let comparison = Comparison::new(&scene, &probe, index, ended)?;
     comparison.write(&scene, &folder)?;
     let json = arguments.json.then(|| comparison.json()).transpose()?;
     let unfinished = comparison.solids.iter().find(|solid| solid.status != Some(RunStatus::Finished));

@@ -2,6 +2,7 @@
 //! settings for a wanted error or budget.
 
 mod adapted;
+pub mod candidate;
 mod chart;
 pub mod choose;
 pub mod command;

@@ -104,6 +104,10 @@ pub struct ParticipantReport {
     pub outside: u64,
     /// Largest number of its particles in a message; `null` where nothing was exchanged.
     pub capacity: Option<u32>,
+    /// Largest number of its sub-steps in a step, of a solid.
+    pub sub_steps: Option<u32>,
+    /// Its energy that nothing explains, over the energy in play; `null` where it is not judged by itself.
+    pub energy_growth: Option<f64>,
     /// Where its time went, s.
     pub times: Option<RoleSeconds>,
 }
