@@ -4,6 +4,7 @@ use halfstep_tests::conformance::link::eventually;
 use halfstep_tests::process::{is_alive, kill, with_variable};
 use halfstep_tests::python::{FAILING_SOLID, HANGING_SOLID, python, python_of};
 use halfstep_tests::run::{program, repository, whole_machine};
+use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
 fn compare(arguments: &[&str]) -> Output {
@@ -164,13 +165,30 @@ fn a_solid_that_fails_is_told() {
     assert_eq!(output.status.code(), Some(2), "{said}\n{errors}");
     assert!(said.contains(" % until ") && said.contains("failing: the solid failed at step 3"), "{said}");
     assert!(errors.contains("failing did not run to the end"), "{errors}");
-    std::fs::remove_file(out.join("runs/total-lagrangian/messages.txt")).unwrap();
-    let before = std::fs::read(out.join("runs/total-lagrangian/run.json")).unwrap();
-    let output = compare_in("oscillating-plate", &arguments);
+    // Where a comparison's run was is now one of somebody's own, by hand; where it left nothing, too.
+    let own = out.join("runs/total-lagrangian");
+    for by_hand in [true, false] {
+        if by_hand {
+            let scene = repository().join("scenes/oscillating-plate.toml");
+            let made = ["--set", "resolution=0.004", "--until", "0.001", "--quiet", "--force", "--out"];
+            let made = Command::new(program()).arg("run").arg(scene).args(made).arg(&own).output().unwrap();
+            assert!(made.status.success(), "{made:?}");
+            assert!(own.join("messages.txt").is_file());
+        } else {
+            std::fs::remove_file(own.join("messages.txt")).unwrap();
+        }
+        refused(&arguments, &own);
+    }
+}
+
+/// A comparison keeps the run in this folder.
+fn refused(arguments: &[&str], own: &Path) {
+    let before = std::fs::read(own.join("run.json")).unwrap();
+    let output = compare_in("oscillating-plate", arguments);
     let errors = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(1), "{errors}");
     assert!(errors.contains("a run that was not made here"), "{errors}");
-    assert_eq!(std::fs::read(out.join("runs/total-lagrangian/run.json")).unwrap(), before);
+    assert_eq!(std::fs::read(own.join("run.json")).unwrap(), before);
 }
 
 /// A comparison ends with a solid that hangs: at Ctrl-C, and when it is killed itself.

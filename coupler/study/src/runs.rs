@@ -21,7 +21,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 const DONE: &str = "done.json";
-/// What a run of a study prints; no other run's folder has it.
+/// What a run of a study prints; its folder has it, whoever runs something there later.
 pub(super) const MESSAGES: &str = "messages.txt";
 /// Pause between two looks at the runs.
 const TICK: Duration = Duration::from_millis(50);
@@ -76,6 +76,7 @@ impl Job {
             .arg(&self.dir);
         // What is in the folder was made here.
         command.args(if self.alone { &["--replace"][..] } else { &["--quiet", "--force"] });
+        command.arg("--by-study");
         command.args(self.overrides.iter().flat_map(|o| ["--set", o]));
         command.args(&self.more);
         let said = File::create(self.dir.join(MESSAGES))?;
@@ -99,22 +100,33 @@ impl Job {
         Ok(command)
     }
 
-    /// Refuses a folder in which a run goes on, and one with a run that no study made.
-    /// Nobody else has one that is there while the result lives.
+    /// Refuses a folder in which a run goes on, and one with a run that no study made, or that somebody made or resumed
+    /// in the place of a study's. Nobody else has one that is there while the result lives.
     fn check_folder(&self) -> Result<Option<RunDirectory>, StudyError> {
         if !self.dir.is_dir() {
             return Ok(None);
         }
         if self.dir.join(MESSAGES).is_file() {
-            return Ok(Some(RunDirectory::reopen(&self.dir)?));
+            let own = RunDirectory::reopen(&self.dir)?;
+            let report = self.dir.join("run.json");
+            return match RunReport::read(&report) {
+                // A study that was killed leaves none; a run of somebody else writes one at its start.
+                Err(_) if !report.exists() => Ok(Some(own)),
+                Ok(RunReport { by_study: true, .. }) => Ok(Some(own)),
+                _ => Err(self.refused("run.json")),
+            };
         }
         match RunDirectory::create(&self.dir, false) {
-            Err(OutputError::Occupied { dir, found }) => Err(StudyError::Usage(format!(
-                "{} holds a run that was not made here ({found}), which would be replaced: give another --out",
-                dir.display()
-            ))),
+            Err(OutputError::Occupied { found, .. }) => Err(self.refused(&found)),
             other => other.map(Some).map_err(StudyError::from),
         }
+    }
+
+    fn refused(&self, found: &str) -> StudyError {
+        StudyError::Usage(format!(
+            "{} holds a run that was not made here ({found}), which would be replaced: give another --out",
+            self.dir.display()
+        ))
     }
 
     fn start(&self) -> Result<Child, StudyError> {
@@ -160,7 +172,7 @@ fn matches(done: &Program, report: &RunReport, setting: &Setting, program: &Prog
     let mut scene = report.scene.clone();
     strip(&mut scene);
     let over = matches!(report.status, Some(RunStatus::Finished | RunStatus::Diverged));
-    over && done == program && content(&setting.scene).is_some_and(|own| own == scene)
+    over && report.by_study && done == program && content(&setting.scene).is_some_and(|own| own == scene)
 }
 
 /// Makes runs, so many at a time; returns whether all were made, or somebody stopped it.
@@ -282,10 +294,13 @@ mod tests {
         let program = Program { version: "1".into(), build: "a".into(), isa, solids: Vec::new() };
         let mut report = RunReport {
             status: Some(RunStatus::Finished),
+            by_study: true,
             scene: serde_json::to_value(&own.scene).unwrap(),
             ..RunReport::default()
         };
         assert!(matches(&program, &report, &own, &program));
+        let by_hand = RunReport { by_study: false, ..report.clone() };
+        assert!(!matches(&program, &by_hand, &own, &program));
         assert!(!matches(&Program { build: "b".into(), ..program.clone() }, &report, &own, &program));
         assert!(!matches(&Program { version: "2".into(), ..program.clone() }, &report, &own, &program));
         assert!(!matches(&Program { isa: "baseline".into(), ..program.clone() }, &report, &own, &program));
@@ -339,6 +354,11 @@ mod tests {
         let refused = job.check_folder().unwrap_err().to_string();
         assert!(refused.contains("a run that was not made here (run.json)"), "{refused}");
         std::fs::write(own.join(MESSAGES), "").unwrap();
+        let refused = job.check_folder().unwrap_err().to_string();
+        assert!(refused.contains("a run that was not made here (run.json)"), "in its place: {refused}");
+        std::fs::write(own.join("run.json"), "{\"by_study\": true}").unwrap();
+        job.check_folder().unwrap();
+        std::fs::remove_file(own.join("run.json")).unwrap();
         job.check_folder().unwrap();
         let _under_way = RunDirectory::reopen(&own).unwrap();
         let refused = job.check_folder().unwrap_err().to_string();

@@ -26,6 +26,8 @@ pub struct RunReport {
     pub shapes: Vec<serde_json::Value>,
     /// Version of the program.
     pub version: String,
+    /// `halfstep study` or `compare` made the run, and may replace it.
+    pub by_study: bool,
     /// Where the run went on after interruptions, in their order.
     pub resumed: Vec<Resumption>,
     /// Steps done.
