@@ -208,7 +208,8 @@ fn a_trial_that_is_stopped_before_its_solid_came_has_not_failed() {
     assert_eq!(output.status.code(), Some(130), "{error}");
     assert!(error.contains("stopped before the start"), "{error}");
     let report = RunReport::read(&folder.path().join("run.json")).unwrap();
-    assert_eq!((report.status, report.steps, solids(folder.path())), (Some(RunStatus::Stopped), 0, vec![]));
+    assert_eq!((report.status, report.error, report.steps), (Some(RunStatus::Stopped), None, 0));
+    assert_eq!(solids(folder.path()), Vec::<u32>::new());
 }
 
 /// Steps with which the time stays the same.
@@ -224,4 +225,18 @@ fn steps_that_never_reach_the_end_are_refused() {
     let error = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(2), "{error}");
     assert!(error.contains("the solid diverged at step 1") && error.contains("1.0000e-300 s"), "{error}");
+}
+
+/// As on a full disk.
+#[test]
+fn a_report_that_cannot_be_written_hides_no_reason() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("run.json")).unwrap();
+    let output = trial("spring-block.toml", "exit 3", folder.path(), &["--force=1,0"]);
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{error}");
+    assert!(
+        error.contains("(exit status: 3) before the run had begun") && error.contains("run.json"),
+        "{error}"
+    );
 }

@@ -202,7 +202,8 @@ pub fn run(scene: &Scene, trial: &Trial) -> Result<Tried, RunError> {
             };
         }
         let ended = culprit(&mut children, &error);
-        if stopped && waiting {
+        // The handshake may have ended at the same moment.
+        if stopped && (waiting || steps == 0) {
             return RunError::StoppedEarly;
         }
         let failed = match later {
@@ -218,7 +219,8 @@ pub fn run(scene: &Scene, trial: &Trial) -> Result<Tried, RunError> {
         Err(RunError::Diverged { .. }) => RunStatus::Diverged,
         Err(_) => RunStatus::Failed,
     });
-    report.error = ended.as_ref().err().map(ToString::to_string);
+    let why = ended.as_ref().err().filter(|error| !matches!(error, RunError::StoppedEarly));
+    report.error = why.map(ToString::to_string);
     match (ended, report.write(&file("run.json"))) {
         (Ok(()), Ok(())) => {
             children.wait(Duration::from_secs(5));
