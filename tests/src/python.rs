@@ -10,6 +10,12 @@ pub const FAILING_SOLID: &str = "import halfstep\npoints = halfstep.particles()\
     for step in solid:\n    if step.number == 3: raise ValueError('no convergence')\n\
     \x20   step.publish(points.position, 0.0)\n";
 
+/// A solid that stays where it is, and hangs at step 3: then there is a file `hangs` in the run's folder.
+pub const HANGING_SOLID: &str = "import halfstep, os, time\npoints = halfstep.particles()\n\
+    solid = halfstep.Solid(points.position, points.mass, points.density)\n\
+    for step in solid:\n    if step.number == 3:\n        open(os.environ['HALFSTEP_OUT'] + '/hangs', 'w').close()\n\
+    \x20       time.sleep(600)\n    step.publish(points.position, 0.0)\n";
+
 /// The interpreter that has the package `halfstep` and what tests and the small examples need.
 pub fn python() -> PathBuf {
     interpreter(&[])

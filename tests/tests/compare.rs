@@ -1,8 +1,11 @@
 //! `halfstep compare`: the table has a built-in model and a program of one's own, and the picture is drawn.
 
-use halfstep_tests::python::{FAILING_SOLID, python, python_of};
+use halfstep_tests::conformance::link::eventually;
+use halfstep_tests::process::{is_alive, kill, with_variable};
+use halfstep_tests::python::{FAILING_SOLID, HANGING_SOLID, python, python_of};
 use halfstep_tests::run::{program, repository, whole_machine};
-use std::process::{Command, Output};
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
 
 fn compare(arguments: &[&str]) -> Output {
     compare_in("elastic-gate", arguments)
@@ -46,6 +49,7 @@ fn what_cannot_be_compared_is_refused() {
         (&["--solid", "hypoelastic", "--solid", "hypoelastic"][..], "two solids are called `hypoelastic`"),
         (&["--solid", "hypoelastic", "--set", "solid.model=none"], "solid.model"),
         (&["--solid", "hypoelastic", "--solid", "finite-elements"], "`finite-elements` is no model"),
+        (&["--solid", "hypoelastic", "--solid", "..=sleep 1"], "`..` names no solid"),
     ] {
         let output = compare(arguments);
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -59,7 +63,8 @@ fn what_cannot_be_compared_is_refused() {
 fn one_of_several_solids_is_exchanged() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
-    let short = ["--until", "0.002", "--out", out, "--json"];
+    let counts = ["--set", "solid.soft.sub_steps=2", "--set", "solid.stiff.sub_steps=20"];
+    let short = [&["--until", "0.002", "--out", out, "--json"], &counts[..]].concat();
     let models = ["--solid", "total-lagrangian", "--solid", "finite-element"];
     let unsaid = compare_in("two-plates", &[&short[..], &models].concat());
     assert_eq!(unsaid.status.code(), Some(1));
@@ -67,12 +72,22 @@ fn one_of_several_solids_is_exchanged() {
     assert!(said.contains("say which with --of NAME, one of soft, stiff"), "{said}");
     let output = compare_in("two-plates", &[&short[..], &models, &["--of", "soft"]].concat());
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    for (model, runs) in [("total-lagrangian", "total-lagrangian"), ("finite-element", "finite-element")] {
-        let path = folder.path().join("runs").join(runs).join("run.json");
+    let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(told["solids"][0]["sub_steps"], 2, "{told}");
+    for (k, model) in ["total-lagrangian", "finite-element"].into_iter().enumerate() {
+        let path = folder.path().join("runs").join(model).join("run.json");
         let report: serde_json::Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
         let solids = report["scene"]["solid"].as_array().unwrap();
         let of = |name: &str| &solids.iter().find(|solid| solid["name"] == name).unwrap()["model"];
         assert_eq!((of("soft"), of("stiff")), (&model.into(), &"hypoelastic".into()), "{report}");
+        // The table tells of the one that is exchanged, not of the other's sub-steps and energy.
+        let [_, soft, stiff] = report["participants"].as_array().unwrap().as_slice() else {
+            panic!("{report}")
+        };
+        assert_eq!((&stiff["sub_steps"], &report["sub_steps"]), (&20.into(), &20.into()), "{report}");
+        assert_eq!(told["solids"][k]["sub_steps"], soft["sub_steps"], "{told}");
+        assert_eq!(told["solids"][k]["energy_growth"][1], soft["energy_growth"], "{told}");
+        assert!(soft["energy_growth"].is_number() && stiff["energy_growth"].is_number(), "{report}");
     }
 }
 
@@ -150,13 +165,62 @@ fn a_solid_that_fails_is_told() {
     assert_eq!(output.status.code(), Some(2), "{said}\n{errors}");
     assert!(said.contains(" % until ") && said.contains("failing: the solid failed at step 3"), "{said}");
     assert!(errors.contains("failing did not run to the end"), "{errors}");
-    std::fs::remove_file(out.join("runs/total-lagrangian/messages.txt")).unwrap();
-    let before = std::fs::read(out.join("runs/total-lagrangian/run.json")).unwrap();
-    let output = compare_in("oscillating-plate", &arguments);
+    // Where a comparison's run was is now one of somebody's own, by hand; where it left nothing, too.
+    let own = out.join("runs/total-lagrangian");
+    for by_hand in [true, false] {
+        if by_hand {
+            let scene = repository().join("scenes/oscillating-plate.toml");
+            let made = ["--set", "resolution=0.004", "--until", "0.001", "--quiet", "--force", "--out"];
+            let made = Command::new(program()).arg("run").arg(scene).args(made).arg(&own).output().unwrap();
+            assert!(made.status.success(), "{made:?}");
+            assert!(own.join("messages.txt").is_file());
+        } else {
+            std::fs::remove_file(own.join("messages.txt")).unwrap();
+        }
+        refused(&arguments, &own);
+    }
+}
+
+/// A comparison keeps the run in this folder.
+fn refused(arguments: &[&str], own: &Path) {
+    let before = std::fs::read(own.join("run.json")).unwrap();
+    let output = compare_in("oscillating-plate", arguments);
     let errors = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(1), "{errors}");
     assert!(errors.contains("a run that was not made here"), "{errors}");
-    assert_eq!(std::fs::read(out.join("runs/total-lagrangian/run.json")).unwrap(), before);
+    assert_eq!(std::fs::read(own.join("run.json")).unwrap(), before);
+}
+
+/// A comparison ends with a solid that hangs: at Ctrl-C, and when it is killed itself.
+#[test]
+fn no_solid_outlives_its_comparison() {
+    let _machine = whole_machine();
+    for signal in [libc::SIGINT, libc::SIGKILL] {
+        let folder = tempfile::tempdir().unwrap();
+        let (script, out) = (folder.path().join("hanging.py"), folder.path().join("out"));
+        std::fs::write(&script, HANGING_SOLID).unwrap();
+        let hanging = format!("hanging={} {}", python().display(), script.display());
+        let mut comparison = Command::new(program())
+            .arg("compare")
+            .arg(repository().join("scenes/oscillating-plate.toml"))
+            .args(["--set", "resolution=0.004", "--until", "0.01", "--quiet", "--solid", &hanging, "--out"])
+            .arg(&out)
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let own = out.join("runs/hanging");
+        eventually(60.0, "the solid to hang", || own.join("hangs").exists());
+        let told = own.canonicalize().unwrap();
+        let solids = with_variable("HALFSTEP_OUT", told.to_str().unwrap());
+        assert_eq!(solids.len(), 1);
+        kill(comparison.id(), signal);
+        let status = comparison.wait().unwrap();
+        assert_eq!(status.code(), (signal == libc::SIGINT).then_some(130));
+        eventually(10.0, "the solid to end", || !is_alive(solids[0]));
+        let ended =
+            || std::fs::read_to_string(own.join("run.json")).is_ok_and(|text| text.contains("stopped"));
+        eventually(10.0, "the trial to end", ended);
+    }
 }
 
 /// The stand-in knows one solid.

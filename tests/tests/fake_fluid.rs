@@ -3,21 +3,38 @@
 use halfstep_output::run_json::RunStatus;
 use halfstep_output::{RunReport, read_probes};
 use halfstep_tests::Curve;
-use halfstep_tests::process::leftovers;
-use halfstep_tests::python::{FAILING_SOLID, python};
+use halfstep_tests::conformance::link::eventually;
+use halfstep_tests::process::{is_alive, kill, leftovers, with_variable};
+use halfstep_tests::python::{FAILING_SOLID, HANGING_SOLID, python};
 use halfstep_tests::run::{program, repository, whole_machine};
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
 
-fn trial(scene: &str, solid: &str, out: &Path, more: &[&str]) -> Output {
+fn start(scene: &str, solid: &str, out: &Path, more: &[&str]) -> Child {
     let scene = repository().join("scenes").join(scene);
     let mut command = Command::new(program());
     command.arg("fake-fluid").arg(scene).arg("--out").arg(out).arg("--solid").arg(solid).args(more);
-    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+fn ended(child: Child) -> Output {
     let launcher = child.id();
     let output = child.wait_with_output().unwrap();
     assert_eq!(leftovers(launcher), Vec::<String>::new());
     output
+}
+
+fn trial(scene: &str, solid: &str, out: &Path, more: &[&str]) -> Output {
+    ended(start(scene, solid, out, more))
+}
+
+/// Processes of the trial in a folder: its solid.
+fn solids(out: &Path) -> Vec<u32> {
+    let told = out.canonicalize().unwrap();
+    let mut found = with_variable("HALFSTEP_OUT", told.to_str().unwrap());
+    found.retain(|pid| is_alive(*pid));
+    found
 }
 
 /// A mass on a spring under a sudden load: x = F/k (1 - cos(omega t)).
@@ -138,4 +155,88 @@ fn a_run_in_the_folder_is_kept() {
         let output = trial("spring-block.toml", "exit 3", folder.path(), arguments);
         assert!(String::from_utf8_lossy(&output.stderr).contains(reason), "{output:?}");
     }
+}
+
+/// A solid that hangs keeps no trial: not from Ctrl-C, after two seconds or at once at the second, and not for ever.
+#[test]
+fn a_solid_that_hangs_is_given_up() {
+    let _machine = whole_machine();
+    for signals in [0, 1, 2] {
+        let folder = tempfile::tempdir().unwrap();
+        let (script, out) = (folder.path().join("hanging.py"), folder.path().join("out"));
+        std::fs::write(&script, HANGING_SOLID).unwrap();
+        let line = format!("{} {}", python().display(), script.display());
+        let child = start("spring-block.toml", &line, &out, &["--force=1,0", "--patience", "8"]);
+        eventually(60.0, "the solid to hang", || out.join("hangs").exists());
+        assert_eq!(solids(&out).len(), 1);
+        let moment = Instant::now();
+        for _ in 0..signals {
+            kill(child.id(), libc::SIGINT);
+            std::thread::sleep(Duration::from_millis(100));
+        }
+        let output = ended(child);
+        let (seconds, error) = (moment.elapsed().as_secs_f64(), String::from_utf8_lossy(&output.stderr));
+        let report = RunReport::read(&out.join("run.json")).unwrap();
+        assert_eq!((report.steps, solids(&out)), (3, vec![]), "{error}");
+        if signals == 0 {
+            assert_eq!((output.status.code(), report.status), (Some(2), Some(RunStatus::Failed)), "{error}");
+            assert!(error.contains("waiting for the solid since "), "{error}");
+            assert!(report.error.is_some_and(|error| error.contains("the solid") && error.contains("8 s")));
+        } else {
+            assert_eq!(
+                (output.status.code(), report.status),
+                (Some(130), Some(RunStatus::Stopped)),
+                "{error}"
+            );
+            assert!(
+                error.contains("stopped without waiting for the solid, which has been silent"),
+                "{error}"
+            );
+            assert!(seconds < if signals == 1 { 7.0 } else { 2.0 }, "{seconds} s");
+        }
+    }
+}
+
+#[test]
+fn a_trial_that_is_stopped_before_its_solid_came_has_not_failed() {
+    let folder = tempfile::tempdir().unwrap();
+    let child = start("spring-block.toml", "sleep 600", folder.path(), &["--force=1,0"]);
+    eventually(60.0, "the solid to start", || !solids(folder.path()).is_empty());
+    kill(child.id(), libc::SIGINT);
+    let output = ended(child);
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(130), "{error}");
+    assert!(error.contains("stopped before the start"), "{error}");
+    let report = RunReport::read(&folder.path().join("run.json")).unwrap();
+    assert_eq!((report.status, report.error, report.steps), (Some(RunStatus::Stopped), None, 0));
+    assert_eq!(solids(folder.path()), Vec::<u32>::new());
+}
+
+/// Steps with which the time stays the same.
+#[test]
+fn steps_that_never_reach_the_end_are_refused() {
+    let _machine = whole_machine();
+    let folder = tempfile::tempdir().unwrap();
+    let script = folder.path().join("slow.py");
+    let slow = FAILING_SOLID.replace("0.0)\n", "0.0, dt_limit=1e-300)\n");
+    std::fs::write(&script, slow).unwrap();
+    let line = format!("{} {}", python().display(), script.display());
+    let output = trial("spring-block.toml", &line, &folder.path().join("out"), &["--force=1,0"]);
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{error}");
+    assert!(error.contains("the solid diverged at step 1") && error.contains("1.0000e-300 s"), "{error}");
+}
+
+/// As on a full disk.
+#[test]
+fn a_report_that_cannot_be_written_hides_no_reason() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("run.json")).unwrap();
+    let output = trial("spring-block.toml", "exit 3", folder.path(), &["--force=1,0"]);
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{error}");
+    assert!(
+        error.contains("(exit status: 3) before the run had begun") && error.contains("run.json"),
+        "{error}"
+    );
 }

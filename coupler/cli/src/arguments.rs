@@ -100,6 +100,9 @@ pub(crate) struct RunArguments {
     /// Removes an earlier run in the folder
     #[arg(long)]
     pub(crate) force: bool,
+    /// `study` or `compare` made the run, and may replace it
+    #[arg(long, hide = true)]
+    pub(crate) by_study: bool,
     /// Writes a timeline of half-steps, who does what and waits for whom: a trace event file (JSON), which Perfetto
     /// and chrome://tracing open, and trace.png in the run's folder
     #[arg(long, value_name = "FILE")]

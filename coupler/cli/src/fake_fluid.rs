@@ -39,6 +39,12 @@ pub(crate) struct FakeFluidArguments {
     /// Replaces the files of a run in that folder, too
     #[arg(long)]
     replace: bool,
+    /// How long the solid may be silent, s
+    #[arg(long, value_name = "SECONDS", default_value_t = 600.0, value_parser = crate::arguments::seconds)]
+    patience: f64,
+    /// `study` or `compare` made the trial, and may replace it
+    #[arg(long, hide = true)]
+    by_study: bool,
 }
 
 fn numbers(text: &str) -> Result<Vec<f64>, String> {
@@ -89,6 +95,10 @@ pub(crate) fn try_solid(arguments: FakeFluidArguments) -> ExitCode {
         Err(RunError::Output(error @ (OutputError::HoldsRun { .. } | OutputError::InUse { .. }))) => {
             usage(&error.to_string())
         }
+        Err(error @ (RunError::StoppedEarly | RunError::StoppedAtOnce { .. })) => {
+            say::warn(format_args!("{error}"));
+            ExitCode::from(130)
+        }
         Err(error) => {
             let log = trial.out.join("log.txt");
             say::warn(format_args!("error: {error}"));
@@ -124,6 +134,8 @@ fn trial(scene: &Scene, arguments: FakeFluidArguments) -> Result<Trial, String> 
         time_step,
         out: arguments.out.unwrap_or(out),
         replace: arguments.replace,
+        patience: arguments.patience,
+        by_study: arguments.by_study,
         stop: StopFlags::of_signals().map_err(|e| format!("cannot watch for signals: {e}"))?,
     })
 }

@@ -172,7 +172,7 @@ fn run_scene(arguments: RunArguments, isa: Isa) -> ExitCode {
         Err(error) => return usage(&error),
     };
     let trace = arguments.trace.map(|file| Trace { file, window: arguments.trace_steps });
-    let options = RunOptions { trace, ..options };
+    let options = RunOptions { trace, by_study: arguments.by_study, ..options };
     match run::run(&scene, &options) {
         Err(error) => usage(&error),
         Ok(ended) => tell(&scene, &options.out, ended),

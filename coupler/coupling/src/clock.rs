@@ -49,6 +49,11 @@ pub fn times_above_limit(dt: f64, whose: &str, limit: f64) -> String {
     format!("{}, {:.2} times (time_step = \"auto\" keeps to it)", above_limit(dt, whose, limit), dt / limit)
 }
 
+/// Whether steps of this length, s, reach an end, s, in less than a lifetime.
+pub fn reaches_end(dt: f64, end: f64) -> bool {
+    dt.is_finite() && dt > 1e-9 * end.min(1.0) * 1e-3
+}
+
 #[derive(Clone, Debug)]
 struct Periodic {
     interval: f64,
@@ -172,7 +177,7 @@ impl Clock {
         let frame = self.frames.due(self.time).is_some();
         let row = self.rows.due(self.time).is_some();
         let mut dt = self.whole_step(limits);
-        if !(dt.is_finite() && dt > 1e-9 * self.end.min(1.0) * 1e-3) {
+        if !reaches_end(dt, self.end) {
             return Err(Diverged {
                 participant: Name::COUPLER,
                 particle: 0,

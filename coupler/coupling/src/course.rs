@@ -57,13 +57,13 @@ impl Progress {
     }
 
     /// A participant's message is awaited.
-    pub(crate) fn await_message(&self, place: usize) {
+    pub fn await_message(&self, place: usize) {
         self.awaited.store(place, Ordering::Relaxed);
         self.waits.store(true, Ordering::Relaxed);
     }
 
     /// The awaited message has come.
-    pub(crate) fn note_message(&self) {
+    pub fn note_message(&self) {
         self.waits.store(false, Ordering::Relaxed);
         self.messages.fetch_add(1, Ordering::Relaxed);
     }

@@ -185,6 +185,12 @@ impl EnergyBalance {
         &mut self.ledgers[place].2
     }
 
+    /// Largest growth of a participant so far; `None` where it is not judged by itself.
+    pub fn growth_of(&self, name: &str) -> Option<f64> {
+        let own = self.ledgers.iter().find(|(known, ..)| known.as_str() == name);
+        own.map(|(.., ledger)| ledger.growth)
+    }
+
     /// Largest growth so far.
     pub fn growth(&self) -> EnergyGrowth {
         let of = |wanted: Phase| {

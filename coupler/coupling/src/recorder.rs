@@ -68,7 +68,8 @@ pub struct Recorder {
     time: f64,
     dt: (f64, f64, f64),
     particle_steps: f64,
-    sub_steps: u32,
+    /// Largest number of sub-steps in a step of each participant; 0 of the fluid.
+    sub_steps: Vec<u32>,
     first_momentum: Option<[f64; 3]>,
     momentum_scale: f64,
     momentum_drift: f64,
@@ -125,7 +126,7 @@ impl Recorder {
             time: 0.0,
             dt: (f64::INFINITY, 0.0, 0.0),
             particle_steps: 0.0,
-            sub_steps: 0,
+            sub_steps: Vec::new(),
             first_momentum: None,
             momentum_scale: 0.0,
             momentum_drift: 0.0,
@@ -280,9 +281,9 @@ impl Recorder {
         if tick.frame && self.renewed.elapsed() > RENEWAL {
             self.renew_report()?;
         }
-        for solid in measured.iter().filter(|m| m.phase == Phase::Solid) {
-            self.sub_steps = self.sub_steps.max(solid.sub_steps);
-        }
+        self.sub_steps.resize(measured.len(), 0);
+        let own = self.sub_steps.iter_mut().zip(measured);
+        own.filter(|(_, m)| m.phase == Phase::Solid).for_each(|(most, m)| *most = m.sub_steps.max(*most));
         if self.shown.elapsed() > Duration::from_millis(200) {
             self.shown = Instant::now();
             self.tell_line();
@@ -361,7 +362,11 @@ impl Recorder {
                 max: Some(self.dt.2),
             };
         }
-        report.sub_steps = (self.sub_steps > 0).then_some(self.sub_steps);
+        report.sub_steps = self.sub_steps.iter().copied().max().filter(|most| *most > 0);
+        for (participant, most) in report.participants.iter_mut().zip(&self.sub_steps) {
+            participant.sub_steps = Some(*most).filter(|most| *most > 0);
+            participant.energy_growth = self.balance.growth_of(&participant.name);
+        }
         report.audit.momentum_drift = self.isolated.then_some(self.momentum_drift);
         report.audit.energy_drift = self
             .first_energy
@@ -396,7 +401,7 @@ impl State for Recorder {
         fields.real("sum_of_dt", &mut self.dt.1)?;
         fields.real("largest_dt", &mut self.dt.2)?;
         fields.real("particle_steps", &mut self.particle_steps)?;
-        fields.small_count("sub_steps", &mut self.sub_steps)?;
+        fields.numbers("sub_steps", &mut self.sub_steps)?;
         let mut momentum: Vec<[f64; 3]> = self.first_momentum.into_iter().collect();
         fields.points("first_momentum", &mut momentum)?;
         self.first_momentum = momentum.first().copied();

@@ -1,31 +1,32 @@
 //! `halfstep fake-fluid`: pushes a solid of another program with a known load, so that it can be tried alone. The
 //! solid's side of the exchange is that of a run; fluid and coupler are stand-ins.
 
+mod push;
+
 use crate::cause::{Cause, culprit};
 use crate::particles::{self, PARTICLES_VARIABLE};
 use crate::run::check_gravity;
-use crate::session::watch;
+use crate::session::{Raised, watch};
+use crate::silence::{Ended, Silence};
+use halfstep_coupling::course::Progress;
 use halfstep_coupling::error::RunError;
-use halfstep_coupling::external::{Continuity, ExternalSolid, WallContact};
+use halfstep_coupling::external::ExternalSolid;
 use halfstep_coupling::roles::probes_of;
-use halfstep_coupling::say;
 use halfstep_coupling::supervise::{Children, StopFlags};
 use halfstep_link::{
-    self as link, Claim, CouplerLink, CouplerPort, Expect, FLUID, LinkConfig, LinkError, Participant, Port,
-    ProcessLink, Processes, StateMessage,
+    self as link, Claim, CouplerLink, Expect, LinkConfig, LinkError, Participant, Port, ProcessLink,
+    Processes,
 };
 use halfstep_output::probes::ProbeLog;
 use halfstep_output::run_dir::TRIAL;
 use halfstep_output::run_json::{Percentiles, RunStatus, TimeSteps};
 use halfstep_output::{OutputError, RunDirectory, RunReport, Table, atomic, read_probes};
 use halfstep_role::serve::{FOLDER_VARIABLE, SCENE_VARIABLE};
-use halfstep_scene::geometry::{self, holds};
-use halfstep_scene::{Block, Scene, dispatch};
+use halfstep_scene::{Block, Scene, dispatch, geometry};
 use halfstep_wire::Name;
 use halfstep_wire::half_step::HalfStep;
-use halfstep_wire::protocol::{
-    ForceHeader, ForceRecord, LAST_STAGE, StateHeader, StateRecord, order, status,
-};
+use halfstep_wire::protocol::{LAST_STAGE, StateHeader, order, status};
+use push::Pusher;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -60,6 +61,10 @@ pub struct Trial {
     pub out: PathBuf,
     /// Replaces the files of a run in the folder, too.
     pub replace: bool,
+    /// How long the solid may be silent, s.
+    pub patience: f64,
+    /// `halfstep study` or `compare` tries it, and may replace the trial.
+    pub by_study: bool,
     /// Ends the trial.
     pub stop: StopFlags,
 }
@@ -123,7 +128,8 @@ pub fn run(scene: &Scene, trial: &Trial) -> Result<Tried, RunError> {
 
     let alone = |name: Name, capacity| Participant { name, process: name, capacity, probes: 0 };
     let capacity = particles.lines().count().max(4096) as u32;
-    let config = LinkConfig::new(vec![alone(Name::FLUID, 1), alone(trial.solid, capacity)]);
+    let mut config = LinkConfig::new(vec![alone(Name::FLUID, 1), alone(trial.solid, capacity)]);
+    config.patience_seconds = trial.patience;
     let _claim = Claim::new(&config)?;
     let log = file("log.txt");
     std::fs::write(&log, "").map_err(|e| system("log.txt", e))?;
@@ -137,23 +143,19 @@ pub fn run(scene: &Scene, trial: &Trial) -> Result<Tried, RunError> {
     let stand_in = ExternalSolid::new(scene, of_run, trial.solid, &out)?;
     let columns: Vec<String> = probes_of(scene, of_run).flat_map(|p| p.columns(scene.dimension)).collect();
     let path = file("probes.csv");
-    let mut pusher = Pusher {
-        scene,
-        trial,
-        solid: stand_in,
-        continuity: Continuity::new(scene, place - 1, true),
-        walls: WallContact::new(scene, place - 1),
-        log: ProbeLog::create(&path, &columns)?,
-        clock: (0, 0.0),
-        pushed: Vec::new(),
-        half_steps: Vec::new(),
-        remarks: Vec::new(),
-    };
+    let progress = Progress::default();
+    let log_of_probes = ProbeLog::create(&path, &columns)?;
+    let mut pusher = Pusher::new(scene, trial, (place - 1, stand_in), log_of_probes, &progress);
     let started = Instant::now();
     let (abort, connected, done) =
         (Arc::new(AtomicBool::new(false)), AtomicBool::new(false), AtomicBool::new(false));
-    let (ended, early) = std::thread::scope(|threads| {
-        let watcher = threads.spawn(|| watch(&mut children, &abort, &connected, &done, &trial.stop.stop));
+    let (names, stop) = (config.names(), &trial.stop);
+    let (ended, early, later) = std::thread::scope(|threads| {
+        let watcher = threads.spawn(|| {
+            let early = watch(&mut children, &abort, &connected, &done, &stop.stop);
+            (early, Silence::new(&progress, &names).watch(&mut children, &abort, &done, stop))
+        });
+        let over = Raised(&done);
         let raised = Arc::clone(&abort);
         let config = &config;
         let fluid = threads.spawn(move || fluid(config, raised));
@@ -161,24 +163,26 @@ pub fn run(scene: &Scene, trial: &Trial) -> Result<Tried, RunError> {
             .inspect(|_| connected.store(true, Ordering::Relaxed))
             .map_err(RunError::from)
             .and_then(|link| pusher.run(link));
-        done.store(true, Ordering::Relaxed);
+        drop(over);
         if ended.is_err() {
             abort.store(true, Ordering::Relaxed);
         }
         // What the fluid misses, the coupler misses, too.
         let _ = fluid.join();
-        (ended, watcher.join().unwrap_or(None))
+        let (early, later) = watcher.join().unwrap_or((None, None));
+        (ended, early, later)
     });
     let (steps, time) = pusher.clock;
     let particles = [pusher.pushed.len(), pusher.pushed.iter().filter(|share| **share > 0.0).count()];
-    let half_step_us = percentiles(std::mem::take(&mut pusher.half_steps));
-    pusher.solid.finish()?;
+    let half_step_us = pusher.half_step_us();
+    let ended = ended.and(pusher.solid.finish().map_err(RunError::from));
     let warnings = std::mem::take(&mut pusher.remarks);
     drop(pusher);
     let mean = (steps > 0).then(|| time / steps as f64);
     let mut report = RunReport {
         scene: serde_json::to_value(scene).map_err(|e| RunError::System(e.to_string()))?,
         version: env!("CARGO_PKG_VERSION").into(),
+        by_study: trial.by_study,
         steps,
         time,
         wall_seconds: started.elapsed().as_secs_f64(),
@@ -187,37 +191,46 @@ pub fn run(scene: &Scene, trial: &Trial) -> Result<Tried, RunError> {
         warnings,
         ..RunReport::default()
     };
+    let stopped = stop.stop.load(Ordering::Relaxed);
+    let waiting = !connected.load(Ordering::Relaxed);
     let ended = ended.map_err(|error| {
+        if let (RunError::Link(_), Some(Ended::Silent(role, silence))) = (&error, later) {
+            children.stop(Duration::from_millis(300));
+            return match waiting {
+                true => RunError::StoppedEarly,
+                false => RunError::StoppedAtOnce { role, seconds: silence.as_secs_f64() },
+            };
+        }
         let ended = culprit(&mut children, &error);
-        let cause = early.or(ended);
-        let at = connected.load(Ordering::Relaxed).then_some((steps, time));
-        Cause { log: &log, external: &[trial.solid], at }.of(error, cause)
+        // The handshake may have ended at the same moment.
+        if stopped && (waiting || steps == 0) {
+            return RunError::StoppedEarly;
+        }
+        let failed = match later {
+            Some(Ended::Failed(role, status)) => Some((role, status)),
+            _ => None,
+        };
+        Cause { log: &log, external: &[trial.solid], at: (!waiting).then_some((steps, time)) }
+            .of(error, early.or(failed).or(ended))
     });
-    let stopped = trial.stop.stop.load(Ordering::Relaxed);
     report.status = Some(match &ended {
-        Ok(()) if stopped => RunStatus::Stopped,
-        Ok(()) => RunStatus::Finished,
+        Ok(()) if !stopped => RunStatus::Finished,
+        Ok(()) | Err(RunError::StoppedEarly | RunError::StoppedAtOnce { .. }) => RunStatus::Stopped,
+        Err(RunError::Diverged { .. }) => RunStatus::Diverged,
         Err(_) => RunStatus::Failed,
     });
-    report.error = ended.as_ref().err().map(ToString::to_string);
-    report.write(&file("run.json"))?;
-    match ended {
-        Ok(()) => {
+    let why = ended.as_ref().err().filter(|error| !matches!(error, RunError::StoppedEarly));
+    report.error = why.map(ToString::to_string);
+    match (ended, report.write(&file("run.json"))) {
+        (Ok(()), Ok(())) => {
             children.wait(Duration::from_secs(5));
             Ok(Tried { steps, time, particles, probes: read_probes(&path)?, half_step_us })
         }
-        Err(error) => Err(error),
+        (Err(error), Ok(())) => Err(error),
+        (Ok(()), Err(unwritten)) => Err(unwritten.into()),
+        // A full disk may be the reason for both: the first says what was tried.
+        (Err(error), Err(unwritten)) => Err(RunError::System(format!("{error}; and {unwritten}"))),
     }
-}
-
-/// Median, and what one in a hundred exceeds; zeros of nothing.
-fn percentiles(mut durations: Vec<f32>) -> Percentiles {
-    durations.sort_unstable_by(f32::total_cmp);
-    let of = |share: f64| {
-        let place = (durations.len() as f64 * share) as usize;
-        durations.get(place).or(durations.last()).map_or(0.0, |us| f64::from(*us))
-    };
-    Percentiles { p50: of(0.5), p99: of(0.99) }
 }
 
 /// A fluid that says nothing of interest, on time.
@@ -239,128 +252,6 @@ fn fluid(config: &LinkConfig, abort: Arc<AtomicBool>) -> Result<(), LinkError> {
             return link.send_state(0, &last, &[]);
         }
         half_step = half_step.with_step(answer.dt, answer.next_time).next();
-    }
-}
-
-/// A coupler that answers with the load.
-struct Pusher<'a> {
-    scene: &'a Scene,
-    trial: &'a Trial,
-    solid: ExternalSolid,
-    continuity: Continuity,
-    /// Contact with walls, unless the solid evaluates it itself.
-    walls: Option<WallContact>,
-    log: ProbeLog,
-    /// Step n and its time, s.
-    clock: (u64, f64),
-    /// Share of the load of each particle.
-    pushed: Vec<f64>,
-    /// Duration of each of the solid's half-steps, µs.
-    half_steps: Vec<f32>,
-    /// What the trial was warned of.
-    remarks: Vec<String>,
-}
-
-impl Pusher<'_> {
-    fn run(&mut self, mut link: CouplerLink<Processes>) -> Result<(), RunError> {
-        let mut sent: Option<Instant> = None;
-        let mut last_dt = 0.0;
-        loop {
-            let (step, time) = self.clock;
-            let stops = time >= self.scene.end_time || self.trial.stop.stop.load(Ordering::Relaxed);
-            let (mut dt, mut next_time) = (0.0, time);
-            for stage in 0..2 {
-                let half_step = HalfStep::begin(step, time).with_step(dt, next_time).both()[stage];
-                let expect = Expect::of(&half_step).dt(half_step.state_header().dt);
-                // The solid first: one that fails says so, and then the stand-in for the fluid ends, too.
-                let state = link.receive_state(SOLID, &expect)?;
-                self.half_steps.extend(sent.map(|sent| sent.elapsed().as_secs_f32() * 1e6));
-                if state.header().status != status::OK {
-                    return Err(RunError::RoleFailed { role: self.trial.solid, step, said: None });
-                }
-                drop(link.receive_state(FLUID, &expect)?);
-                let records = state.records();
-                self.continuity.check(
-                    records,
-                    if stage == 0 { last_dt } else { dt },
-                    (step, stage as u32),
-                )?;
-                if let Some(remark) = self.continuity.remark() {
-                    say::warn(format_args!("warning: {remark}"));
-                    self.remarks.push(remark);
-                }
-                if step == 0 && stage == 0 {
-                    if state.header().holds_own_walls() {
-                        self.walls = None;
-                    }
-                    self.begin(records)?;
-                }
-                if stage == 0 && !stops {
-                    let left = self.scene.end_time - time;
-                    let contact = self.walls.as_ref().map_or(f64::INFINITY, WallContact::limit);
-                    dt = self.trial.time_step.min(state.header().dt_limit).min(contact).min(left);
-                    next_time = if dt < left { time + dt } else { self.scene.end_time };
-                }
-                // The last state has no step: contacts then take that of their limit.
-                let step_length = if stops { f64::INFINITY } else { dt };
-                let contact = self.touch([half_step.before(), step_length], records, stage == 0);
-                let forces = self.forces(half_step.before(), records, &contact);
-                if stage == 0 {
-                    self.log.row(time, self.solid.measure(records, &forces, &contact))?;
-                }
-                let order = if stops { order::STOP } else { order::GO };
-                let header = ForceHeader { order, ..half_step.with_step(dt, next_time).force_header() };
-                link.send_forces(SOLID, &header, if stops { &[] } else { &forces })?;
-                sent = Some(Instant::now());
-                drop(state);
-                link.send_forces(FLUID, &header, &[])?;
-                if stops {
-                    for place in [FLUID, SOLID] {
-                        drop(link.receive_state(place, &Expect::last(step))?);
-                    }
-                    return Ok(());
-                }
-            }
-            self.clock = (step + 1, next_time);
-            last_dt = dt;
-        }
-    }
-
-    fn begin(&mut self, records: &[StateRecord]) -> Result<(), RunError> {
-        self.solid.begin(records);
-        if let Some(walls) = &mut self.walls {
-            walls.begin(records);
-        }
-        let is_pushed = |r: &StateRecord| self.trial.load.within.is_none_or(|b| holds(&b, &r.position, 0.0));
-        let shares = records.iter().map(|r| if is_pushed(r) { r.mass } else { 0.0 });
-        self.pushed = shares.collect();
-        let sum: f64 = self.pushed.iter().sum();
-        if sum <= 0.0 {
-            return Err(RunError::System(
-                "none of the solid's particles begins in the box of --within".into(),
-            ));
-        }
-        self.pushed.iter_mut().for_each(|share| *share /= sum);
-        Ok(())
-    }
-
-    /// Force of walls on each record at a time, s, in a time step `dt`, s. `whole`: of a state at n.
-    fn touch(&mut self, [time, dt]: [f64; 2], records: &[StateRecord], whole: bool) -> Vec<[f64; 2]> {
-        let Some(walls) = &mut self.walls else { return vec![[0.0; 2]; records.len()] };
-        walls.evaluate(records, [time, dt], whole);
-        (0..records.len()).map(|k| walls.on(k)).collect()
-    }
-
-    /// Load at a time, s, and contact.
-    fn forces(&self, time: f64, records: &[StateRecord], contact: &[[f64; 2]]) -> Vec<ForceRecord> {
-        let load = self.trial.load;
-        let grown = if load.ramp > 0.0 { (time / load.ramp).min(1.0) } else { 1.0 };
-        let on = |((record, share), contact): ((&StateRecord, &f64), &[f64; 2])| {
-            let [x, y, z] = load.force.map(|f| grown * share * f);
-            let stress_force = [x + contact[0], y + contact[1], z];
-            ForceRecord { id: record.id, flags: 0, cross_viscosity: [0.0; 3], stress_force }
-        };
-        records.iter().zip(&self.pushed).zip(contact).map(on).collect()
     }
 }
 

@@ -51,6 +51,8 @@ pub struct RunOptions {
     pub quiet: bool,
     /// An earlier run in the folder is removed.
     pub force: bool,
+    /// The run is one of `halfstep study` or `compare`, which may replace it.
+    pub by_study: bool,
     /// Solids that are not built in, by name.
     pub external: Vec<(Name, SolidSource)>,
     /// How long to wait for a solid started by hand, s.
@@ -76,6 +78,7 @@ impl RunOptions {
             log: false,
             quiet: true,
             force: false,
+            by_study: false,
             external: Vec::new(),
             solid_wait: 60.0,
             patience: 600.0,

@@ -164,6 +164,9 @@ pub(crate) fn report_participants(
             mass: outcome.last[place].audit.mass,
             outside: 0,
             capacity: config.map(|c| c.participants[place].capacity),
+            // The recorder has counted and judged.
+            sub_steps: None,
+            energy_growth: None,
             times,
         });
     }

@@ -246,6 +246,7 @@ fn execute_in<const D: usize>(
     let (mut report, placed) = begin_report(scene, &layout, options.isa)?;
     let cores = std::thread::available_parallelism().map_or(usize::MAX, usize::from);
     report.warnings.extend(crowded(scene, options, cores));
+    report.by_study = options.by_study;
     let checkpoint = resumed.map(|(checkpoint, earlier)| {
         report.external = earlier.external;
         report.resumed = earlier.resumed;

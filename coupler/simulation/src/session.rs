@@ -384,7 +384,7 @@ impl<'a, const D: usize> Session<'a, D> {
 
 /// Raises a flag when it goes, also where a panic unwinds: the other threads of a scope, which is left only after them,
 /// look at it.
-struct Raised<'a>(&'a AtomicBool);
+pub(crate) struct Raised<'a>(pub(crate) &'a AtomicBool);
 
 impl Drop for Raised<'_> {
     fn drop(&mut self) {

@@ -162,7 +162,7 @@ fn run(arguments: StudyArguments) -> Result<ExitCode, StudyError> {
         against: arguments.against,
         quiet: arguments.quiet,
     };
-    let stop = StopFlags::of_signals().map_err(StudyError::system("cannot watch for signals"))?.stop;
+    let stop = StopFlags::of_signals().map_err(StudyError::system("cannot watch for signals"))?;
     let mut session = Session::new(&options, &stop)?;
     let metric = metric(&session, arguments.metric.as_deref())?;
     if !session.ladder()? {

@@ -1,6 +1,7 @@
 //! `halfstep compare`: one scene with different solids, built-in models and other people's programs: a table and a
 //! picture.
 
+use super::candidate::Candidate;
 use super::chart::{Axis, Chart, Entry, Mark, Scale, legend, legend_height, linear_axis, px, stroke};
 use super::error::StudyError;
 use super::pictures::{HEAD, picture};
@@ -8,72 +9,12 @@ use super::report::{aligned, short};
 use halfstep_output::probes::split_unit;
 use halfstep_output::run_json::RunStatus;
 use halfstep_output::{OutputError, RunReport, Table, atomic};
-use halfstep_scene::{Scene, SolidModelName};
+use halfstep_scene::Scene;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
 /// Size of the picture's chart, pixels.
 const CHART: (i32, i32) = (1000, 520);
-
-/// A solid that takes part.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Candidate {
-    /// A model that comes with the program, by its name in scenes.
-    Model(String),
-    /// A program: what it is called, and the line for the shell that starts it.
-    Program {
-        /// Small letters, digits, `-`, `_` and `.`; names the folder of the run.
-        name: String,
-        /// The line.
-        command: String,
-    },
-}
-
-impl Candidate {
-    /// From the command line: the name of a model, a command, or NAME=COMMAND.
-    pub fn parse(text: &str) -> Self {
-        if SolidModelName::ALL.iter().any(|(name, _)| *name == text) {
-            return Self::Model(text.into());
-        }
-        // A variable of the command's environment is in capitals.
-        let is_name = |name: &str| {
-            !name.is_empty()
-                && name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || "-_.".contains(c))
-        };
-        if let Some((name, command)) = text.split_once('=').filter(|(name, _)| is_name(name)) {
-            return Self::Program { name: name.into(), command: command.into() };
-        }
-        // The script, not its interpreter or its arguments.
-        let stem =
-            |word: &str| Some(Path::new(word.trim_matches(['\'', '"'])).file_stem()?.to_str()?.to_owned());
-        let is_script = |word: &&str| Path::new(word.trim_matches(['\'', '"'])).extension().is_some();
-        let words = || text.split_whitespace();
-        let name = words().find(is_script).or(words().next()).and_then(stem).filter(|name| is_name(name));
-        Self::Program { name: name.unwrap_or_else(|| "program".into()), command: text.into() }
-    }
-
-    /// Why no shell would start it, where it is a single word that is neither a model nor a program.
-    pub fn unknown(&self) -> Option<String> {
-        let Self::Program { command, .. } = self else { return None };
-        if command.is_empty() || command.contains(|c: char| c.is_whitespace() || "/=;&|$`'\"".contains(c)) {
-            return None;
-        }
-        let path = std::env::var_os("PATH").unwrap_or_default();
-        if std::env::split_paths(&path).any(|folder| folder.join(command).is_file()) {
-            return None;
-        }
-        let models = SolidModelName::ALL.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
-        Some(format!("`{command}` is no model ({models}) and no program on PATH"))
-    }
-
-    /// What the solid is called in table, picture and folder.
-    pub fn name(&self) -> &str {
-        match self {
-            Self::Model(name) | Self::Program { name, .. } => name,
-        }
-    }
-}
 
 /// A run of a solid.
 #[derive(Clone, Debug)]
@@ -122,7 +63,7 @@ pub struct Compared {
     pub note: String,
     /// Largest number of the solid's sub-steps in a step; 1 for programs that do not tell.
     pub sub_steps: Option<u32>,
-    /// Kinetic energy of fluid and solid that nothing explains, over the energy in play: fluid, solid. The solid's is
+    /// Energy of fluid and solid that nothing explains, over the energy in play: fluid, solid. The solid's is
     /// not known of programs.
     pub energy_growth: [Option<f64>; 2],
     /// Folder of its run.
@@ -170,6 +111,17 @@ fn distance(a: &[(f64, f64)], b: &[(f64, f64)]) -> Option<f64> {
     (squares.len() > 1).then(|| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
 }
 
+/// Sub-steps, and energy from nowhere, of the solid in a place among the scene's. A run that failed tells of all solids
+/// together.
+fn told_of(scene: &Scene, of: usize, report: &RunReport) -> (Option<u32>, Option<f64>) {
+    let name = &scene.solids[of].name;
+    match report.participants.iter().find(|participant| participant.name == *name) {
+        Some(own) => (own.sub_steps, own.energy_growth),
+        None if scene.solids.len() == 1 => (report.sub_steps, report.audit.energy_growth.solid),
+        None => (None, None),
+    }
+}
+
 impl Compared {
     /// How far the curve goes, where its run did not finish: a short one lies near any other.
     fn until(&self) -> String {
@@ -179,11 +131,11 @@ impl Compared {
 }
 
 impl Comparison {
-    /// From the runs of the solids: report, and probes where there are any.
+    /// From the runs of the solids in the place `of` among the scene's: report, and probes where there are any.
     ///
     /// # Errors
     /// A run has probes, and the one that is compared is not among them.
-    pub fn new(scene: &Scene, probe: &str, runs: Vec<Ran>) -> Result<Self, StudyError> {
+    pub fn new(scene: &Scene, probe: &str, of: usize, runs: Vec<Ran>) -> Result<Self, StudyError> {
         let mut header = probe.to_owned();
         let mut solids = Vec::new();
         for Ran { solid, folder, report, table, note, stable_step } in runs {
@@ -198,10 +150,10 @@ impl Comparison {
             }
             let finite = curve.iter().copied().filter(|p: &(f64, f64)| p.1.is_finite());
             let peak = finite.reduce(|a, b| if b.1.abs() > a.1.abs() { b } else { a });
-            let growth = report.audit.energy_growth;
+            let (sub_steps, growth) = told_of(scene, of, &report);
             solids.push(Compared {
                 name: solid.name().into(),
-                energy_growth: [growth.fluid, growth.solid],
+                energy_growth: [report.audit.energy_growth.fluid, growth],
                 status: report.status,
                 error: report.error,
                 peak: peak.map(|p| p.1),
@@ -212,7 +164,7 @@ impl Comparison {
                 time_step: report.dt.mean,
                 stable_step,
                 note,
-                sub_steps: report.sub_steps,
+                sub_steps,
                 solid,
                 folder,
                 curve,
@@ -354,31 +306,6 @@ mod tests {
     fn later_curves_are_narrower() {
         assert_eq!([0, 1].map(|k| width(k, 2)), [4, 2]);
         assert_eq!([0, 1, 2, 3, 4].map(|k| width(k, 5)), [6, 5, 4, 3, 2]);
-    }
-
-    #[test]
-    fn solids_are_models_or_programs() {
-        assert_eq!(Candidate::parse("hypoelastic"), Candidate::Model("hypoelastic".into()));
-        let named = |text: &str| Candidate::parse(text).name().to_owned();
-        assert_eq!(named("fem=python3 gate.py 4"), "fem");
-        assert_eq!(named("OMP_NUM_THREADS=1 python3 gate.py"), "gate");
-        assert_eq!(named("/usr/bin/python3 'my/gate.py' 4"), "gate");
-        assert_eq!(named("./solid"), "solid");
-        let command = Candidate::Program { name: "a".into(), command: "b --key=c".into() };
-        assert_eq!(Candidate::parse("a=b --key=c"), command);
-    }
-
-    #[test]
-    fn a_word_that_is_neither_model_nor_program_is_unknown() {
-        let unknown = |text: &str| Candidate::parse(text).unknown();
-        assert!(
-            unknown("hypoelastc")
-                .is_some_and(|why| why.contains("hypoelastic, ") || why.contains(", hypoelastic"))
-        );
-        assert!(unknown("mine=total-lagrange").is_some());
-        for known in ["hypoelastic", "sh", "./hypoelastc", "hypoelastc --now", "A=1 hypoelastc"] {
-            assert_eq!(unknown(known), None, "{known}");
-        }
     }
 
     #[test]

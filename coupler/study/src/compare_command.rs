@@ -1,10 +1,12 @@
 //! The command line of `halfstep compare`.
 
 use super::adapted::{Adapted, adapted};
+use super::candidate::Candidate;
 use super::command::{ended, tell};
-use super::compare::{Candidate, Comparison, Ran, default_probe};
+use super::compare::{Comparison, Ran, default_probe};
 use super::error::StudyError;
-use super::runs::{self, Job, Program};
+use super::program::Program;
+use super::runs::{self, Job};
 use super::{claim, report_of};
 use halfstep_coupling::say;
 use halfstep_coupling::supervise::StopFlags;
@@ -122,7 +124,7 @@ fn run(arguments: CompareArguments) -> Result<ExitCode, StudyError> {
             cost: 1.0,
         });
     }
-    let stop = StopFlags::of_signals().map_err(StudyError::system("cannot watch for signals"))?.stop;
+    let stop = StopFlags::of_signals().map_err(StudyError::system("cannot watch for signals"))?;
     if !runs::execute(&jobs, 1, arguments.quiet, &Program::own()?, &stop)? {
         say::warn(format_args!("interrupted"));
         return Ok(ExitCode::from(130));
@@ -133,7 +135,7 @@ fn run(arguments: CompareArguments) -> Result<ExitCode, StudyError> {
         let report = report_of(job);
         ended.push(Ran { solid: candidate, folder: job.dir.clone(), report, table, note, stable_step });
     }
-    let comparison = Comparison::new(&scene, &probe, ended)?;
+    let comparison = Comparison::new(&scene, &probe, index, ended)?;
     comparison.write(&scene, &folder)?;
     let json = arguments.json.then(|| comparison.json()).transpose()?;
     let unfinished = comparison.solids.iter().find(|solid| solid.status != Some(RunStatus::Finished));

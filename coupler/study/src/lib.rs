@@ -2,6 +2,7 @@
 //! settings for a wanted error or budget.
 
 mod adapted;
+pub mod candidate;
 mod chart;
 pub mod choose;
 pub mod command;
@@ -12,8 +13,10 @@ pub mod error;
 pub mod fit;
 pub mod ladder;
 pub mod measure;
+mod named;
 pub mod pareto;
 pub mod pictures;
+pub mod program;
 pub mod reference;
 pub mod report;
 pub mod result;
@@ -24,16 +27,17 @@ pub mod target;
 use choose::Surprise;
 use error::StudyError;
 use halfstep_coupling::say;
+use halfstep_coupling::supervise::StopFlags;
 use halfstep_output::RunReport;
 use halfstep_output::run_json::RunStatus;
 use halfstep_scene::{Metric, Scene};
 use ladder::{Setting, Vary};
+use program::Program;
 use report::Study;
 use result::{Against, MetricResult, Row};
-use runs::{Job, Program};
+use runs::Job;
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
 
 /// What to study.
 #[derive(Clone, Debug)]
@@ -64,7 +68,7 @@ pub struct Options {
 pub struct Session<'s> {
     options: &'s Options,
     program: Program,
-    stop: &'s AtomicBool,
+    stop: &'s StopFlags,
     folder: PathBuf,
     scene: Scene,
     metrics: Vec<Metric>,
@@ -80,7 +84,7 @@ impl<'s> Session<'s> {
     ///
     /// # Errors
     /// The scene is not valid, or has no metric that its run is long enough for.
-    pub fn new(options: &'s Options, stop: &'s AtomicBool) -> Result<Self, StudyError> {
+    pub fn new(options: &'s Options, stop: &'s StopFlags) -> Result<Self, StudyError> {
         let scene = Setting::load(&options.scene, &options.base, &[])?.scene;
         let (metrics, left_out): (Vec<Metric>, Vec<Metric>) =
             scene.metrics.iter().cloned().partition(|m| m.needs() <= scene.end_time);
@@ -93,7 +97,10 @@ impl<'s> Session<'s> {
         std::fs::create_dir_all(&folder).map_err(StudyError::system(folder.display()))?;
         let claim = claim(&folder)?;
         let left_out = left_out.into_iter().map(|m| m.name).collect();
-        let program = Program::own()?.with_solids(&options.solids);
+        let (program, unknown) = Program::own()?.with_solids(&options.solids);
+        if let (Some(why), true) = (unknown.first(), folder.join("runs").is_dir()) {
+            say::warn(format_args!("warning: runs that are there are not used again: {why}"));
+        }
         Ok(Self {
             options,
             program,

@@ -2,8 +2,8 @@
 
 use super::convergence::Convergence;
 use super::error::StudyError;
+use super::program::Program;
 use super::result::{Against, Errors, MetricResult, Row};
-use super::runs::Program;
 use halfstep_output::{OutputError, atomic};
 use serde::Serialize;
 use std::fmt::Write;

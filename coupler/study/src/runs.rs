@@ -6,11 +6,12 @@
 
 use super::error::StudyError;
 use super::ladder::{Setting, content, strip};
+use super::program::{Program, own_path};
+use halfstep_coupling::supervise::StopFlags;
 use halfstep_output::run_dir::RunDirectory;
 use halfstep_output::run_json::RunStatus;
 use halfstep_output::{OutputError, RunReport, atomic};
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
-use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::os::unix::process::CommandExt;
@@ -18,64 +19,14 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
-use xxhash_rust::xxh3::xxh3_64;
 
 const DONE: &str = "done.json";
-/// What a run of a study prints; no other run's folder has it.
+/// What a run of a study prints; its folder has it, whoever runs something there later.
 pub(super) const MESSAGES: &str = "messages.txt";
 /// Pause between two looks at the runs.
 const TICK: Duration = Duration::from_millis(50);
-
-/// Which program made a run.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Program {
-    /// Version of the program.
-    pub version: String,
-    /// Hash of its file: versions under development have the same number.
-    pub build: String,
-    /// The instruction set that it computes with.
-    #[serde(default)]
-    pub isa: String,
-    /// The programs that compute solids, each with a hash of the files that its command names.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub solids: Vec<(String, String)>,
-}
-
-impl Program {
-    /// The one that is running.
-    ///
-    /// # Errors
-    /// The program's file cannot be read.
-    pub fn own() -> Result<Self, StudyError> {
-        let bytes = own_path().and_then(std::fs::read).map_err(StudyError::system("the own program"))?;
-        let build = format!("{:016x}", xxh3_64(&bytes));
-        let isa = halfstep::isa::of_environment().map_err(|e| StudyError::System(e.to_string()))?;
-        Ok(Self {
-            version: env!("CARGO_PKG_VERSION").into(),
-            build,
-            isa: format!("{isa:?}"),
-            solids: Vec::new(),
-        })
-    }
-
-    /// With solids that these commands compute, `[NAME=]COMMAND`.
-    pub fn with_solids(mut self, commands: &[String]) -> Self {
-        let with_files =
-            |command: &String| (command.clone(), format!("{:016x}", xxh3_64(&files_of(command))));
-        self.solids = commands.iter().map(with_files).collect();
-        self
-    }
-}
-
-/// The content of all files that a command names, one after the other.
-fn files_of(command: &str) -> Vec<u8> {
-    let words = command.split(|c: char| c.is_whitespace() || "='\"".contains(c));
-    words.filter(|word| !word.is_empty()).filter_map(|word| std::fs::read(word).ok()).flatten().collect()
-}
-
-fn own_path() -> std::io::Result<PathBuf> {
-    std::env::current_exe()
-}
+/// How long a run that was asked to stop is waited for, until it is asked again and until it is killed.
+const PATIENCE: Duration = Duration::from_secs(10);
 
 /// One run to make.
 #[derive(Clone, Debug)]
@@ -125,6 +76,7 @@ impl Job {
             .arg(&self.dir);
         // What is in the folder was made here.
         command.args(if self.alone { &["--replace"][..] } else { &["--quiet", "--force"] });
+        command.arg("--by-study");
         command.args(self.overrides.iter().flat_map(|o| ["--set", o]));
         command.args(&self.more);
         let said = File::create(self.dir.join(MESSAGES))?;
@@ -148,22 +100,33 @@ impl Job {
         Ok(command)
     }
 
-    /// Refuses a folder in which a run goes on, and one with a run that no study made.
-    /// Nobody else has one that is there while the result lives.
+    /// Refuses a folder in which a run goes on, and one with a run that no study made, or that somebody made or resumed
+    /// in the place of a study's. Nobody else has one that is there while the result lives.
     fn check_folder(&self) -> Result<Option<RunDirectory>, StudyError> {
         if !self.dir.is_dir() {
             return Ok(None);
         }
         if self.dir.join(MESSAGES).is_file() {
-            return Ok(Some(RunDirectory::reopen(&self.dir)?));
+            let own = RunDirectory::reopen(&self.dir)?;
+            let report = self.dir.join("run.json");
+            return match RunReport::read(&report) {
+                // A study that was killed leaves none; a run of somebody else writes one at its start.
+                Err(_) if !report.exists() => Ok(Some(own)),
+                Ok(RunReport { by_study: true, .. }) => Ok(Some(own)),
+                _ => Err(self.refused("run.json")),
+            };
         }
         match RunDirectory::create(&self.dir, false) {
-            Err(OutputError::Occupied { dir, found }) => Err(StudyError::Usage(format!(
-                "{} holds a run that was not made here ({found}), which would be replaced: give another --out",
-                dir.display()
-            ))),
+            Err(OutputError::Occupied { found, .. }) => Err(self.refused(&found)),
             other => other.map(Some).map_err(StudyError::from),
         }
+    }
+
+    fn refused(&self, found: &str) -> StudyError {
+        StudyError::Usage(format!(
+            "{} holds a run that was not made here ({found}), which would be replaced: give another --out",
+            self.dir.display()
+        ))
     }
 
     fn start(&self) -> Result<Child, StudyError> {
@@ -209,7 +172,7 @@ fn matches(done: &Program, report: &RunReport, setting: &Setting, program: &Prog
     let mut scene = report.scene.clone();
     strip(&mut scene);
     let over = matches!(report.status, Some(RunStatus::Finished | RunStatus::Diverged));
-    over && done == program && content(&setting.scene).is_some_and(|own| own == scene)
+    over && report.by_study && done == program && content(&setting.scene).is_some_and(|own| own == scene)
 }
 
 /// Makes runs, so many at a time; returns whether all were made, or somebody stopped it.
@@ -221,7 +184,7 @@ pub fn execute(
     at_a_time: usize,
     quiet: bool,
     program: &Program,
-    stop: &AtomicBool,
+    stop: &StopFlags,
 ) -> Result<bool, StudyError> {
     jobs.iter().try_for_each(|job| job.check_folder().map(drop))?;
     let bar = ProgressBar::new(1000);
@@ -235,12 +198,12 @@ pub fn execute(
     let (mut next, mut done) = (0, 0.0);
     let total: f64 = jobs.iter().map(|job| job.cost).sum();
     while next < jobs.len() || !running.is_empty() {
-        while next < jobs.len() && running.len() < at_a_time && !stop.load(Ordering::Relaxed) {
+        while next < jobs.len() && running.len() < at_a_time && !stop.stop.load(Ordering::Relaxed) {
             running.push((next, jobs[next].start()?));
             next += 1;
         }
-        if stop.load(Ordering::Relaxed) {
-            end(&mut running);
+        if stop.stop.load(Ordering::Relaxed) {
+            end(&mut running, &stop.at_once);
             bar.finish_and_clear();
             return Ok(false);
         }
@@ -276,15 +239,38 @@ fn remaining(elapsed: Duration, part: f64) -> String {
     HumanDuration(elapsed.mul_f64((1.0 / part - 1.0).max(0.0))).to_string()
 }
 
-/// Asks the runs to stop after their step under way, and waits for that.
-fn end(running: &mut [(usize, Child)]) {
-    for (_, child) in running.iter() {
-        // SAFETY: no memory is passed; the child has not been waited for, so its number is its own.
-        unsafe { libc::kill(child.id() as libc::pid_t, libc::SIGTERM) };
+/// Asks the runs to stop after their step under way, and waits for that; then, or at the second Ctrl-C, asks them to
+/// stop at once, and kills those that do neither.
+fn end(running: &mut Vec<(usize, Child)>, at_once: &AtomicBool) {
+    signal(running, libc::SIGTERM);
+    if wait(running, || at_once.load(Ordering::Relaxed)) {
+        return;
     }
-    for (_, child) in running.iter_mut() {
+    signal(running, libc::SIGTERM);
+    if !wait(running, || false) {
+        signal(running, libc::SIGKILL);
+        wait(running, || false);
+    }
+}
+
+fn signal(running: &[(usize, Child)], signal: i32) {
+    for (_, child) in running {
+        // SAFETY: no memory is passed; the child has not been waited for, so its number is its own.
+        unsafe { libc::kill(child.id() as libc::pid_t, signal) };
+    }
+}
+
+/// Waits until all have ended; returns whether they have before it was `enough` or has taken too long.
+fn wait(running: &mut Vec<(usize, Child)>, enough: impl Fn() -> bool) -> bool {
+    let since = Instant::now();
+    loop {
+        // Two signals at once may arrive as one.
+        std::thread::sleep(TICK);
         // A child that cannot be waited for is gone.
-        let _ = child.wait();
+        running.retain_mut(|(_, child)| matches!(child.try_wait(), Ok(None)));
+        if running.is_empty() || enough() || since.elapsed() > PATIENCE {
+            return running.is_empty();
+        }
     }
 }
 
@@ -308,24 +294,33 @@ mod tests {
         let program = Program { version: "1".into(), build: "a".into(), isa, solids: Vec::new() };
         let mut report = RunReport {
             status: Some(RunStatus::Finished),
+            by_study: true,
             scene: serde_json::to_value(&own.scene).unwrap(),
             ..RunReport::default()
         };
         assert!(matches(&program, &report, &own, &program));
+        let by_hand = RunReport { by_study: false, ..report.clone() };
+        assert!(!matches(&program, &by_hand, &own, &program));
         assert!(!matches(&Program { build: "b".into(), ..program.clone() }, &report, &own, &program));
         assert!(!matches(&Program { version: "2".into(), ..program.clone() }, &report, &own, &program));
         assert!(!matches(&Program { isa: "baseline".into(), ..program.clone() }, &report, &own, &program));
         assert!(!matches(&program, &report, &load(&["fluid.density=900"]), &program));
         // A program that computes a solid is another one when its file changes.
-        let script = dir.path().join("plate.py");
+        let script = dir.path().join("the plate.py");
         let with_script = |text: &str| {
             std::fs::write(&script, text).unwrap();
-            program.clone().with_solids(&[format!("plate=python3 '{}'", script.display())])
+            program.clone().with_solids(&[format!("plate=python3 '{}'", script.display())]).0
         };
         let before = with_script("E = 1");
         assert!(matches(&before, &report, &own, &before));
         assert!(!matches(&program, &report, &own, &before));
         assert!(!matches(&before, &report, &own, &with_script("E = 2")));
+        // What is not there to be looked at may have changed.
+        std::fs::remove_file(&script).unwrap();
+        let commands = [format!("plate=python3 '{}'", script.display())];
+        let [(one, why), (other, _)] = [0, 1].map(|_| program.clone().with_solids(&commands));
+        assert!(matches(&one, &report, &own, &one) && !matches(&one, &report, &own, &other));
+        assert!(why[0].contains("the plate.py`"), "{why:?}");
         // A metric changes what is made of a run, not the run.
         let metric = "[[metric]]\nname = \"reach\"\nprobe = \"front.x\"\nkind = \"peak\"\n";
         std::fs::write(&path, format!("{text}{metric}")).unwrap();
@@ -359,10 +354,32 @@ mod tests {
         let refused = job.check_folder().unwrap_err().to_string();
         assert!(refused.contains("a run that was not made here (run.json)"), "{refused}");
         std::fs::write(own.join(MESSAGES), "").unwrap();
+        let refused = job.check_folder().unwrap_err().to_string();
+        assert!(refused.contains("a run that was not made here (run.json)"), "in its place: {refused}");
+        std::fs::write(own.join("run.json"), "{\"by_study\": true}").unwrap();
+        job.check_folder().unwrap();
+        std::fs::remove_file(own.join("run.json")).unwrap();
         job.check_folder().unwrap();
         let _under_way = RunDirectory::reopen(&own).unwrap();
         let refused = job.check_folder().unwrap_err().to_string();
         assert!(refused.starts_with("a run goes on in "), "{refused}");
+    }
+
+    #[test]
+    fn a_run_that_does_not_stop_is_asked_again() {
+        let deaf = "trap 'echo asked >> said; test $(wc -l < said) = 2 && exit' TERM; echo > ready; \
+                    while :; do sleep 0.01; done";
+        let dir = tempfile::tempdir().unwrap();
+        let mut command = Command::new("sh");
+        let child = command.args(["-c", deaf]).current_dir(dir.path()).spawn().unwrap();
+        while !dir.path().join("ready").exists() {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        let started = Instant::now();
+        end(&mut vec![(0, child)], &AtomicBool::new(true));
+        let asked = std::fs::read_to_string(dir.path().join("said")).unwrap();
+        assert_eq!(asked.lines().count(), 2);
+        assert!(started.elapsed() < PATIENCE);
     }
 
     #[test]

@@ -29,6 +29,8 @@ pub struct RunReport {
     pub shapes: Vec<serde_json::Value>,
     /// Version of the program.
     pub version: String,
+    /// `halfstep study` or `compare` made the run, and may replace it.
+    pub by_study: bool,
     /// Where the run went on after interruptions, in their order.
     pub resumed: Vec<Resumption>,
     /// Steps done.
@@ -107,6 +109,10 @@ pub struct ParticipantReport {
     pub outside: u64,
     /// Largest number of its particles in a message; `null` where nothing was exchanged.
     pub capacity: Option<u32>,
+    /// Largest number of its sub-steps in a step, of a solid.
+    pub sub_steps: Option<u32>,
+    /// Its energy that nothing explains, over the energy in play; `null` where it is not judged by itself.
+    pub energy_growth: Option<f64>,
     /// Where its time went, s.
     pub times: Option<RoleSeconds>,
 }
