@@ -205,7 +205,8 @@ pub trait SolidModel<const D: usize>: Send {
         self.particles().kinetic_energy_of(particles)
     }
     /// Calls `give` with particles and the force of contacts on them with walls and other bodies that the model
-    /// evaluates, N (2D: N/m), as evaluated last; of a particle as often as kinds of contact act on it. A model of rigid bodies has it in [`Self::rigid_bodies`].
+    /// evaluates, N (2D: N/m), as evaluated last; of a particle as often as kinds of contact act on it. A model of
+    /// rigid bodies has it in [`Self::rigid_bodies`].
     fn contact_forces(&self, _give: &mut dyn FnMut(u32, [f64; D])) {}
     /// What fracture has done; of a model that does not break nothing.
     fn fracture(&self) -> FractureSummary {

@@ -178,8 +178,12 @@ impl Clock {
         let row = self.rows.due(self.time).is_some();
         let mut dt = self.whole_step(limits);
         if !reaches_end(dt, self.end) {
+            // Whose limit it is; NaN is nobody's wish, and comes first.
+            let wanted = |limit: &Limit| if limit.dt.is_nan() { 0.0 } else { limit.dt };
+            let shortest = limits.iter().min_by(|a, b| wanted(a).total_cmp(&wanted(b)));
+            let own = self.fixed.is_some() || shortest.is_none_or(|limit| reaches_end(limit.dt, self.end));
             return Err(Diverged {
-                participant: Name::COUPLER,
+                participant: shortest.filter(|_| !own).map_or(Name::COUPLER, |limit| limit.participant),
                 particle: 0,
                 quantity: Quantity::TimeStep,
                 value: dt,
@@ -383,6 +387,7 @@ mod tests {
     fn a_limit_that_is_no_number_is_an_error() {
         let failure = clock(1.0, None).tick(&[of_fluid(f64::NAN)], false).unwrap_err();
         assert_eq!(failure.quantity, Quantity::TimeStep);
+        assert_ne!(failure.participant, Name::COUPLER, "whose limit it is");
         assert!(clock(1.0, None).tick(&[of_fluid(0.0)], false).is_err());
         let both = [of_fluid(0.1), Limit { participant: Name::SOLID, dt: f64::NAN }];
         assert!(clock(1.0, None).tick(&both, false).is_err());

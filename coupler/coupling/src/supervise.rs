@@ -191,14 +191,16 @@ impl Children {
         ended().find(|(_, status)| !status.success()).or_else(|| ended().next())
     }
 
-    /// The child whose end ended the others: one that a signal ended, else the one that was missed, else any that
-    /// failed. Which of them was noticed first says nothing.
+    /// The child whose end ended the others: one that a signal ended, else the one that was missed, which is one that
+    /// failed or, of programs of the user's, any, else any that failed. Which of them was noticed first says nothing.
     pub fn culprit(&mut self, missed: Option<Name>) -> Option<(Name, ExitStatus)> {
         let exits = self.exits();
         let failed = || exits.iter().copied().filter(|(_, status)| !status.success());
+        let foreign = |name: Name| self.children.iter().any(|child| child.group && child.role == name);
+        let mut gone = exits.iter().copied().filter(|(role, _)| Some(*role) == missed);
         failed()
             .find(|(_, status)| status.signal().is_some())
-            .or_else(|| failed().find(|(role, _)| Some(*role) == missed))
+            .or_else(|| gone.find(|(role, status)| !status.success() || foreign(*role)))
             .or_else(|| failed().next())
     }
 

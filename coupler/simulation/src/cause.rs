@@ -27,11 +27,20 @@ pub(crate) struct Cause<'a> {
 }
 
 impl Cause<'_> {
+    /// The last words of a process, where the log tells whose they are: of several programs of the user's it does not.
+    fn words(&self, role: Name) -> Option<String> {
+        let external = self.external.contains(&role);
+        if external && self.external.len() > 1 { None } else { last_words(self.log, role, external) }
+    }
+
     /// The error with its cause: `ended` is the process whose end ended the others, if one did.
     pub(crate) fn of(&self, error: RunError, ended: Option<(Name, ExitStatus)>) -> RunError {
         match (error, ended) {
-            (RunError::RoleFailed { role, step, .. }, _) => {
-                let said = last_words(self.log, role, self.external.contains(&role));
+            (RunError::RoleFailed { role, step, .. }, ended) => {
+                let is_own = !self.external.contains(&role);
+                let left = ended.is_some_and(|(ended, status)| ended == role && status.success());
+                let said = self.words(role);
+                let said = if left && !is_own { Some(left_early(said)) } else { said };
                 RunError::RoleFailed { role, step, said }
             }
             // Whoever is silent is the cause: a program of the user's that has ended by then ended because of that.
@@ -43,8 +52,7 @@ impl Cause<'_> {
             (RunError::Link(link), Some((role, status))) if !names_the_fault(&link) => {
                 let is_own = !self.external.contains(&role);
                 // Whom a signal ends has no last words.
-                let words = || last_words(self.log, role, !is_own);
-                let said = if status.signal().is_some() { None } else { words() };
+                let said = if status.signal().is_some() { None } else { self.words(role) };
                 RunError::RoleEnded(Box::new(RoleEnd { role, status, at: self.at, said, is_own, link }))
             }
             (error, _) => error,
@@ -52,11 +60,18 @@ impl Cause<'_> {
     }
 }
 
+/// What is known of a program that ended without an error while the run went on.
+fn left_early(said: Option<String>) -> String {
+    let last = said.map_or_else(String::new, |said| format!("; last it wrote: {said}"));
+    format!("its program left the run and ended without an error (exit status: 0){last}")
+}
+
 /// Ends all children after a run that failed with this error; returns the one whose end ended the others, if one did.
 pub(crate) fn culprit(children: &mut Children, error: &RunError) -> Option<(Name, ExitStatus)> {
     children.wait(Duration::from_millis(300));
     let missed = match error {
         RunError::Link(LinkError::PeerDied { peer }) => Some(*peer),
+        RunError::RoleFailed { role, .. } => Some(*role),
         _ => None,
     };
     let cause = children.culprit(missed);
@@ -145,6 +160,20 @@ mod tests {
         assert_eq!(
             told(&[Name::SOLID], None, (Name::SOLID, failed), LinkError::Aborted),
             "the solid process ended (exit status: 2) before the run had begun: ValueError: no such key"
+        );
+        let two = ["left", "right"].map(|name| name.parse::<Name>().unwrap());
+        let of_two = told(&two, None, (two[1], failed), LinkError::Aborted);
+        assert_eq!(of_two, "the right process ended (exit status: 2) before the run had begun");
+        let left = |status| {
+            let cause = Cause { log: &log, external: &[Name::SOLID], at };
+            let failed = RunError::RoleFailed { role: Name::SOLID, step: 5, said: None };
+            cause.of(failed, Some((Name::SOLID, ExitStatus::from_raw(status)))).to_string()
+        };
+        assert_eq!(left(1 << 8), "the solid failed at step 5: ValueError: no such key");
+        assert_eq!(
+            left(0),
+            "the solid failed at step 5: its program left the run and ended without an error (exit status: 0); last it \
+             wrote: ValueError: no such key"
         );
         let killed = told(&[], at, (Name::FLUID, ExitStatus::from_raw(9)), died);
         assert!(killed.starts_with("the fluid process ended (signal: 9 (SIGKILL)) at step 12, "), "{killed}");

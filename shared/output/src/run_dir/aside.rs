@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug)]
 #[must_use]
 pub struct SetAside {
-    /// What a run that goes on writes anew: file and content.
+    /// What is written anew, under the temporary names that the others have: file and content.
     told: Vec<(PathBuf, Vec<u8>)>,
     /// The names of the files, each with the temporary one that it has meanwhile.
     files: Vec<[PathBuf; 2]>,
@@ -34,10 +34,6 @@ impl SetAside {
         by(&path, &aside).map_err(OutputError::io("set aside", &path))?;
         self.files.push([path, aside]);
         Ok(())
-    }
-
-    fn copy(&mut self, path: PathBuf) -> Result<(), OutputError> {
-        self.keep(path, |from, to| fs::copy(from, to).map(|_| ()))
     }
 }
 
@@ -68,20 +64,17 @@ impl RunDirectory {
         let stems = stems(&folder)?;
         remove(self.temporaries(&stems)?)?;
         let mut aside = SetAside { told: Vec::new(), files: Vec::new() };
-        for path in ["run.json", "scene.json"].map(|name| self.file(name)) {
+        let indexes: Vec<PathBuf> = stems.iter().map(|stem| folder.join(series::index_name(stem))).collect();
+        let told = ["run.json", "scene.json"].map(|name| self.file(name));
+        for path in told.into_iter().chain(indexes.into_iter().filter(|index| index.is_file())) {
             let content = fs::read(&path).map_err(OutputError::io("read", &path))?;
             aside.told.push((path, content));
         }
         let rows = self.file("probes.csv");
         if rows.is_file() {
-            aside.copy(rows)?;
+            aside.keep(rows, |from, to| fs::copy(from, to).map(|_| ()))?;
         }
         for stem in &stems {
-            let index = folder.join(series::index_name(stem));
-            if !index.is_file() {
-                continue;
-            }
-            aside.copy(index)?;
             let own = std::slice::from_ref(stem);
             let first = series::frame_name(stem, frames as u32);
             let is_later = |name: &str| {
@@ -139,15 +132,16 @@ mod tests {
         assert_eq!((listed.len(), dir.join("frames/fluid_000002.hdf").exists()), (2, false));
         shorten();
         drop(aside);
-        assert_eq!(content(dir), whole);
+        assert!(content(dir) == whole);
         let aside = set();
         shorten();
         aside.forget().unwrap();
         let names: Vec<_> = content(dir).into_iter().map(|(path, _)| path).collect();
-        let told = ["notes.txt", "probes.csv", "run.json", "scene.json"].map(|name| dir.join(name));
+        let told =
+            ["notes.txt", "probes.csv", "run.json", "run.lock", "scene.json"].map(|name| dir.join(name));
         let frames = ["fluid.hdf.series", "fluid_000000.hdf", "fluid_000001.hdf"];
         let frames = frames.map(|name| dir.join("frames").join(name));
-        assert_eq!(names, [told, frames].concat());
+        assert_eq!(names, [&told[..], &frames].concat());
         assert_eq!(fs::read(dir.join("probes.csv")).unwrap(), b"a\n1\n");
     }
 }

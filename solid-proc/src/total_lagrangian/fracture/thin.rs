@@ -1,5 +1,5 @@
-//! Fragments thinner than 4h - dx of the fluid where the solid was thicker. The fluid's kernel reaches through them, and
-//! only what was so thin from the start is screened: they show each face a mean of both pressures.
+//! Fragments thinner than 4h - dx of the fluid where the solid was thicker. The fluid's kernel reaches through them,
+//! and only what was so thin from the start is screened: they show each face a mean of both pressures.
 
 use super::Fracture;
 use crate::surface;
