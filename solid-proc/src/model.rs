@@ -208,6 +208,10 @@ pub trait SolidModel<const D: usize>: Send {
     /// evaluates, N (2D: N/m), as evaluated last; of a particle as often as kinds of contact act on it. A model of
     /// rigid bodies has it in [`Self::rigid_bodies`].
     fn contact_forces(&self, _give: &mut dyn FnMut(u32, [f64; D])) {}
+    /// Joints whose ends are apart by more than a tenth of the spacing in the present state, each with how far, m.
+    fn open_joints(&self) -> Vec<(String, f64)> {
+        Vec::new()
+    }
     /// What fracture has done; of a model that does not break nothing.
     fn fracture(&self) -> FractureSummary {
         FractureSummary::default()

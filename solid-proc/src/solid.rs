@@ -340,6 +340,10 @@ impl<const D: usize> Role for Solid<D> {
         self.model.state().is_some().then_some(self as &mut dyn State)
     }
 
+    fn open_joints(&self) -> Vec<(String, f64)> {
+        self.model.open_joints()
+    }
+
     fn pair_evaluations(&self) -> u64 {
         self.model.pair_evaluations() + self.cross_pairs
     }

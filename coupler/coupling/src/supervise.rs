@@ -23,6 +23,8 @@ const END: i32 = SIGUSR1;
 
 /// Pause between two looks at the children.
 const TICK: Duration = Duration::from_millis(5);
+/// How long the rest of a group that was killed may take to die.
+const DYING: Duration = Duration::from_secs(1);
 
 /// Why a role could not be started.
 #[derive(Debug, thiserror::Error)]
@@ -232,6 +234,13 @@ impl Children {
             self.signal(libc::SIGKILL);
             for child in self.children.iter_mut().filter(|c| c.status.is_none()) {
                 child.status = child.child.wait().ok();
+                // What the child had started dies beside it, and has files of the run open until then.
+                let deadline = Instant::now() + DYING;
+                child.poll();
+                while child.group && Instant::now() < deadline {
+                    std::thread::sleep(TICK);
+                    child.poll();
+                }
             }
         }
         self.exits()

@@ -167,6 +167,7 @@ pub(crate) fn report_participants(
             // The recorder has counted and judged.
             sub_steps: None,
             energy_growth: None,
+            open_joints: reports[place].as_ref().map_or_else(Vec::new, |own| own.open_joints.clone()),
             times,
         });
     }

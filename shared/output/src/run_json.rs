@@ -113,6 +113,8 @@ pub struct ParticipantReport {
     pub sub_steps: Option<u32>,
     /// Its energy that nothing explains, over the energy in play; `null` where it is not judged by itself.
     pub energy_growth: Option<f64>,
+    /// Joints of a rigid solid whose ends are apart by more than a tenth of the spacing at the end: name, m.
+    pub open_joints: Vec<(String, f64)>,
     /// Where its time went, s.
     pub times: Option<RoleSeconds>,
 }

@@ -32,6 +32,8 @@ pub struct Report {
     pub effects: Vec<(EffectName, f64)>,
     /// Energy ledger, J; empty where the scene asks for none.
     pub energy: Vec<EnergyEntry>,
+    /// Joints that have come apart at the end, each with how far, m.
+    pub open_joints: Vec<(String, f64)>,
     /// Impulse that the solids gave it, as it was added to its particles; of the fluid.
     pub impulse: Option<Balance>,
 }

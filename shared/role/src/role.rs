@@ -134,6 +134,10 @@ pub trait Role: Send {
     fn state(&mut self) -> Option<&mut dyn State> {
         None
     }
+    /// Joints that have come apart in the present state, each with how far, m.
+    fn open_joints(&self) -> Vec<(String, f64)> {
+        Vec::new()
+    }
     /// What each effect costs, measured on the present state, which does not change. For the end of a run.
     fn costs(&mut self) -> Costs {
         Costs::default()

@@ -262,6 +262,7 @@ impl Track {
             interface: self.cross.as_secs_f64(),
             effects: effects.filter(|(_, seconds)| *seconds > 0.0).collect(),
             energy: self.member.role.ledger().map_or_else(Vec::new, Ledger::entries),
+            open_joints: self.member.role.open_joints(),
             impulse: self.member.role.impulse(),
         }
     }

@@ -166,6 +166,7 @@ fn link(joint: &Joint, ends: [usize; 2], bodies: &[Body]) -> Link {
         JointKind::Spring { at, to } => LinkKind::Spring { points: [to.into(), at.into()] },
     };
     Link {
+        name: joint.name.clone(),
         ends,
         kind,
         stiffness: joint.stiffness,

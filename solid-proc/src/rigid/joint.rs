@@ -8,6 +8,7 @@ use nalgebra::UnitQuaternion;
 /// A joint between two bodies; a and b as indices.
 #[derive(Clone, Debug)]
 pub(super) struct Link {
+    pub(super) name: String,
     /// What it is tied to, and the body.
     pub(super) ends: [usize; 2],
     pub(super) kind: LinkKind,
@@ -81,6 +82,14 @@ impl Link {
             }
             LinkKind::Spring { .. } => {}
         }
+    }
+
+    /// How far its ends are apart, m.
+    pub(super) fn apart(&self, plane: bool, bodies: &[Body], poses: &[Pose]) -> f64 {
+        let mut rows = Vec::new();
+        self.rows(plane, bodies, poses, &mut rows);
+        let ways = rows.iter().filter(|row| row.linear != Vec3::zeros());
+        ways.map(|row| row.gap * row.gap).sum::<f64>().sqrt()
     }
 
     fn no_turn(&self, plane: bool, poses: &[Pose], rows: &mut Vec<Row>) {

@@ -20,6 +20,9 @@ use halfstep_wire::protocol::StateRecord;
 use halfstep_wire::wide;
 use nalgebra::Matrix3;
 
+/// Distance of a joint's ends over the spacing from which on it is open.
+const OPEN: f64 = 0.1;
+
 /// Rigid bodies.
 pub struct Rigid<const D: usize> {
     pub(super) system: System,
@@ -242,6 +245,10 @@ impl<const D: usize> SolidModel<D> for Rigid<D> {
 
     fn strain_energy(&self) -> f64 {
         self.system.spring_energy()
+    }
+
+    fn open_joints(&self) -> Vec<(String, f64)> {
+        self.system.open_joints(OPEN * self.spacing)
     }
 
     fn state(&mut self) -> Option<&mut dyn halfstep_wire::state::State> {

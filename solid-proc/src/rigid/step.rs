@@ -84,6 +84,12 @@ impl System {
         rows
     }
 
+    /// Joints whose ends are apart by more than this, m, each with how far.
+    pub(super) fn open_joints(&self, most: f64) -> Vec<(String, f64)> {
+        let apart = |link: &Link| (link.name.clone(), link.apart(self.plane, &self.bodies, &self.poses));
+        self.links.iter().map(apart).filter(|(_, apart)| *apart > most).collect()
+    }
+
     /// Brings everything that is driven to where it is at a time, s.
     pub(super) fn drive(&mut self, time: f64) {
         for (body, pose) in self.bodies.iter().zip(&mut self.poses) {

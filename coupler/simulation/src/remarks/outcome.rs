@@ -51,6 +51,15 @@ pub fn outcome(scene: &Scene, report: &RunReport) -> Vec<String> {
             100.0 * tension
         ));
     }
+    for (own, (joint, apart)) in
+        report.participants.iter().flat_map(|own| own.open_joints.iter().map(move |j| (own, j)))
+    {
+        all.push(format!(
+            "the joint `{joint}` of the {} is {apart:.3} m open at the end: what holds its body otherwise, or moves \
+             the other end, contradicts it, and neither is right",
+            own.name
+        ));
+    }
     for own in report.participants.iter().filter(|own| own.outside > 0) {
         all.push(format!(
             "{} of {} particles of the {} left the domain",
@@ -205,6 +214,15 @@ mod tests {
             ["9.5 % of the fluid is under tension at the end: it would rather part"]
         );
         assert_eq!(of(0.0, 1.0, 0.0, 3), ["3 of 40 particles of the flap left the domain"]);
+        let torn = ParticipantReport {
+            name: "flap".into(),
+            open_joints: vec![("pin".into(), 0.15)],
+            ..Default::default()
+        };
+        let told = outcome(&scene, &RunReport { participants: vec![torn], ..RunReport::default() });
+        assert!(
+            told.len() == 1 && told[0].starts_with("the joint `pin` of the flap is 0.150 m open at the end")
+        );
     }
 
     #[test]

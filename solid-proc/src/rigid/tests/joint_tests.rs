@@ -139,6 +139,30 @@ fn a_hinged_body_begins_to_turn_about_its_hinge() {
     }
 }
 
+/// A second hinge on a wall that moves away, which the first one cannot follow: it is open by what the wall has gone.
+#[test]
+fn joints_that_come_apart_are_told() {
+    let hinge = |name: &str, more: &str| {
+        format!("{{ name = \"{name}\", kind = \"hinge\", body = \"box\", at = [0.1, 0.05]{more} }}")
+    };
+    let shapes = BOX.to_owned() + &mover("velocity = [0.3, 0.0]");
+    for (joints, apart) in [
+        (hinge("pin", ""), None),
+        (hinge("pin", "") + ", " + &hinge("away", ", with = \"mover\""), Some(0.15)),
+    ] {
+        let mut model = build::<2>(&scene(&format!("joints = [{joints}]"), &shapes));
+        let load = free(&model);
+        run(&mut model, 0.5, 1e-2, &load, |_, _| ());
+        let open = model.open_joints();
+        assert_eq!(open.len(), usize::from(apart.is_some()), "{open:?}");
+        assert!(
+            open.iter().all(|(name, is)| name == "away"
+                && Some(*is).zip(apart).is_some_and(|(a, b)| (a - b).abs() < 1e-9)),
+            "{open:?}"
+        );
+    }
+}
+
 /// It is placed, and turns with the wall.
 #[test]
 fn what_is_fixed_to_a_wall_that_moves_goes_along() {
