@@ -51,7 +51,8 @@ pub struct Solid {
     stored_energy: f64,
     abilities: u32,
     kept: Kept,
-    /// What a checkpoint of the state has that was published last, where that is one at n.
+    /// What a checkpoint of the state has that was published last, where that is one at n, beside what is kept: that
+    /// stays as it is until the forces on the state are told.
     published: Saved,
     /// Number of the last checkpoint that is on disk.
     safe: u32,
@@ -182,6 +183,7 @@ impl Solid {
         }
         let answer = self.link.receive_forces(0, &expect, &mut self.forces)?;
         if answer.order & order::WRITE_CHECKPOINT != 0 && self.abilities & ability::CHECKPOINTS != 0 {
+            self.published.kept.clone_from(&self.kept);
             if let Err(error) = self.published.write(self.name.as_str(), answer.checkpoint) {
                 // The run shall not wait for somebody who cannot go on.
                 let _ = self.last(status::FAILED, Failure::default());
@@ -259,7 +261,7 @@ impl Solid {
             stress: self.records.iter().map(|r| r.deviatoric_stress).collect(),
             pressure: of(|r| r.pressure),
             density: of(|r| r.density),
-            kept: self.kept.clone(),
+            kept: Kept::new(),
         }
     }
 
