@@ -13,7 +13,12 @@ def read(environment):
     folder = environment.get("CHECKPOINT")
     if folder is None:
         return None, None
-    with np.load(os.path.join(folder, f"{environment['NAME']}.hdf")) as archive:
+    path = os.path.join(folder, f"{environment['NAME']}.hdf")
+    with open(path, "rb") as file:
+        # Clients in other languages write other files; those of NumPy are archives.
+        if file.read(2) != b"PK":
+            raise ValueError(f"{path}: no checkpoint of this package, but of a program in another language")
+    with np.load(path) as archive:
         own = {name: archive[name] for name in archive.files if not name.startswith(SAVED)}
         return {name.removeprefix(SAVED): archive[name] for name in archive.files if name not in own}, own
 

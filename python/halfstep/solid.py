@@ -81,6 +81,7 @@ class Solid:
             self._go_on(own)
         self._set(position, velocity)
         self.link = Link(self.environment)
+        self._process = os.getpid()
         atexit.register(self._leave)
 
     def _own(self):
@@ -169,8 +170,8 @@ class Solid:
         sys.exit(2)
 
     def _leave(self):
-        """At the end of the program: who ends in the middle of a run says so."""
-        if not self._done:
+        """At the end of the program: who ends in the middle of a run says so. A fork of it is another process."""
+        if not self._done and os.getpid() == self._process:
             self._last(wire.FAILED)
 
 

@@ -42,6 +42,13 @@ class Checkpoints(unittest.TestCase):
                 checkpoint.write(self.environment(), 1, {"x": value}, {})
         self.assertEqual(os.listdir(os.path.join(self.folder, folder_of(1))), [])
 
+    def test_of_another_language(self):
+        with tempfile.TemporaryDirectory() as folder:
+            with open(os.path.join(folder, "solid.hdf"), "w") as file:
+                file.write('{"step":7}')
+            with self.assertRaisesRegex(ValueError, "no checkpoint of this package"):
+                checkpoint.read({"CHECKPOINT": folder, "NAME": "solid"})
+
     def test_the_first_message_is_the_last_one(self):
         """What a solid told once and not again counts after the checkpoint as before it."""
         position = np.zeros((COUNT, 2))
