@@ -193,7 +193,10 @@ fn resume(arguments: &ResumeArguments, isa: Isa) -> ExitCode {
         Err(error) => {
             let status = usage(&error);
             match error {
-                RunError::NotGoneOn(why) if matches!(*why, RunError::StoppedEarly) => ExitCode::from(130),
+                RunError::NotGoneOn(why) => match *why {
+                    RunError::StoppedEarly | RunError::StoppedAtOnce { .. } => ExitCode::from(130),
+                    _ => status,
+                },
                 _ => status,
             }
         }

@@ -63,7 +63,9 @@ pub struct Children {
 struct Supervised {
     role: Name,
     child: Child,
-    /// The child leads a process group that may outlive it.
+    /// It is a program of the user's, which leads a process group.
+    external: bool,
+    /// That group may outlive it.
     group: bool,
     /// Ends that group if this process is killed.
     watchdog: Option<Watchdog>,
@@ -162,7 +164,7 @@ impl Children {
                 .join(" "),
             source,
         })?;
-        self.children.push(Supervised { role, child, group, watchdog: None, status: None });
+        self.children.push(Supervised { role, child, external: group, group, watchdog: None, status: None });
         Ok(())
     }
 
@@ -198,7 +200,7 @@ impl Children {
     pub fn culprit(&mut self, missed: Option<Name>) -> Option<(Name, ExitStatus)> {
         let exits = self.exits();
         let failed = || exits.iter().copied().filter(|(_, status)| !status.success());
-        let foreign = |name: Name| self.children.iter().any(|child| child.group && child.role == name);
+        let foreign = |name: Name| self.children.iter().any(|child| child.external && child.role == name);
         let mut gone = exits.iter().copied().filter(|(role, _)| Some(*role) == missed);
         failed()
             .find(|(_, status)| status.signal().is_some())
@@ -232,8 +234,10 @@ impl Children {
         }
         if !self.wait(grace) {
             self.signal(libc::SIGKILL);
-            for child in self.children.iter_mut().filter(|c| c.status.is_none()) {
-                child.status = child.child.wait().ok();
+            for child in self.children.iter_mut().filter(|c| c.is_alive()) {
+                if child.status.is_none() {
+                    child.status = child.child.wait().ok();
+                }
                 // What the child had started dies beside it, and has files of the run open until then.
                 let deadline = Instant::now() + DYING;
                 child.poll();
@@ -375,6 +379,23 @@ pub fn abort_flag() -> io::Result<Arc<AtomicBool>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A program of the user's that ends without an error while it is missed is why the others end.
+    #[test]
+    fn who_leaves_with_status_0_is_the_culprit() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut children = Children::new(&folder.path().join("log.txt"));
+        let [left, right] = ["left", "right"].map(|name| name.parse::<Name>().unwrap());
+        for (name, line) in [(left, "exit 0"), (right, "exit 3")] {
+            let mut command = Command::new("sh");
+            command.args(["-c", line]);
+            children.start(name, command, true).unwrap();
+        }
+        assert!(children.wait(Duration::from_secs(10)));
+        let is = |missed: Option<Name>, children: &mut Children| children.culprit(missed).unwrap();
+        assert_eq!(is(Some(left), &mut children).0, left);
+        assert_eq!(is(None, &mut children).0, right);
+    }
 
     #[test]
     fn a_program_takes_the_place_of_its_shell_and_a_script_does_not() {

@@ -182,7 +182,7 @@ pub fn run(scene: &Scene, trial: &Trial) -> Result<Tried, RunError> {
     let mut report = RunReport {
         scene: serde_json::to_value(scene).map_err(|e| RunError::System(e.to_string()))?,
         version: env!("CARGO_PKG_VERSION").into(),
-        by_study: trial.by_study,
+        by_study: Some(trial.by_study),
         steps,
         time,
         wall_seconds: started.elapsed().as_secs_f64(),

@@ -72,8 +72,16 @@ fn retry(
         );
         tracing::warn!("{told}");
         say::warn(format_args!("warning: {told}"));
+        let before = report.clone();
         report.error = Some(diverged.to_string());
-        ended = execute(scene, options, directory, Some((checkpoint, report)))?;
+        ended = match execute(scene, options, directory, Some((checkpoint, report))) {
+            // The folder has the run that diverged.
+            Err(RunError::NotGoneOn(why)) => {
+                say::warn(format_args!("warning: the diverged run does not go on: {why}"));
+                return Ok((before, Some(RunError::Diverged { diverged, hint })));
+            }
+            other => other?,
+        };
     }
     Ok(ended)
 }
@@ -246,7 +254,7 @@ fn execute_in<const D: usize>(
     let (mut report, placed) = begin_report(scene, &layout, options.isa)?;
     let cores = std::thread::available_parallelism().map_or(usize::MAX, usize::from);
     report.warnings.extend(crowded(scene, options, cores));
-    report.by_study = options.by_study;
+    report.by_study = Some(options.by_study);
     let checkpoint = resumed.map(|(checkpoint, earlier)| {
         report.external = earlier.external;
         report.resumed = earlier.resumed;
@@ -280,16 +288,25 @@ fn execute_in<const D: usize>(
     } else {
         drop(layout);
         let local = local::<D>(scene, options, directory, from, course, &mut report);
-        let (ended, stopped) = local?;
-        course = ended;
-        stopped
+        match local {
+            Ok((ended, stopped)) => {
+                course = ended;
+                stopped
+            }
+            Err(why) if checkpoint.is_some() => return Err(not_gone_on(why)),
+            Err(why) => return Err(why),
+        }
     };
     if course.set_aside.take().is_some() {
-        let why = result.err().unwrap_or(RunError::StoppedEarly);
-        tracing::error!("{why}: the run has not gone on");
-        return Err(RunError::NotGoneOn(Box::new(why)));
+        return Err(not_gone_on(result.err().unwrap_or(RunError::StoppedEarly)));
     }
     Ok(course::end(&mut course, result, scene, &options.external, Some(directory), report))
+}
+
+/// Why a resumed run is what it was.
+fn not_gone_on(why: RunError) -> RunError {
+    tracing::error!("{why}: the run has not gone on");
+    RunError::NotGoneOn(Box::new(why))
 }
 
 /// What this process has to say goes to the run's log, beside what its children say.

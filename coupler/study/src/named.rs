@@ -32,7 +32,10 @@ impl Named {
             let words = &words[usize::from(is_written).min(words.len())..];
             match words {
                 [first, rest @ ..] if first == "cd" || first.ends_with("=cd") => named.enter(rest),
-                _ => words.iter().for_each(|word| named.add(word)),
+                _ => {
+                    let before = std::iter::once("").chain(words.iter().map(String::as_str));
+                    before.zip(words).for_each(|(before, word)| named.add(before, word));
+                }
             }
         }
         named
@@ -60,8 +63,16 @@ impl Named {
         self.folders.extend(found);
     }
 
-    /// A word: a file, an option or a variable with one, or with several.
-    fn add(&mut self, word: &str) {
+    /// A word after another: a file, an option or a variable with one, or with several. What a module has, or a folder
+    /// that is an argument, is not known.
+    fn add(&mut self, before: &str, word: &str) {
+        let places: Vec<PathBuf> = self.places(word).collect();
+        let is_folder =
+            places.iter().any(|place| place.is_dir()) && !places.iter().any(|place| place.is_file());
+        if before == "-m" || is_folder {
+            self.unknown.push(word.to_owned());
+            return;
+        }
         if self.find(word) {
             return;
         }
@@ -175,6 +186,8 @@ mod tests {
             ("cd elsewhere && sh gate.py", "elsewhere"),
             ("sh $SOLVER", "$SOLVER"),
             ("sh -m my.gate", "my.gate"),
+            ("sh -m gate", "gate"),
+            ("sh gate.py 'a solver'", "a solver"),
             ("./solve", "./solve"),
             ("sh --mesh=*.msh", "--mesh=*.msh"),
             ("sh 'gate.py", "sh 'gate.py"),

@@ -112,7 +112,7 @@ impl Job {
             return match RunReport::read(&report) {
                 // A study that was killed leaves none; a run of somebody else writes one at its start.
                 Err(_) if !report.exists() => Ok(Some(own)),
-                Ok(RunReport { by_study: true, .. }) => Ok(Some(own)),
+                Ok(RunReport { by_study: Some(true) | None, .. }) => Ok(Some(own)),
                 _ => Err(self.refused("run.json")),
             };
         }
@@ -172,7 +172,9 @@ fn matches(done: &Program, report: &RunReport, setting: &Setting, program: &Prog
     let mut scene = report.scene.clone();
     strip(&mut scene);
     let over = matches!(report.status, Some(RunStatus::Finished | RunStatus::Diverged));
-    over && report.by_study && done == program && content(&setting.scene).is_some_and(|own| own == scene)
+    over && report.by_study == Some(true)
+        && done == program
+        && content(&setting.scene).is_some_and(|own| own == scene)
 }
 
 /// Makes runs, so many at a time; returns whether all were made, or somebody stopped it.
@@ -294,12 +296,12 @@ mod tests {
         let program = Program { version: "1".into(), build: "a".into(), isa, solids: Vec::new() };
         let mut report = RunReport {
             status: Some(RunStatus::Finished),
-            by_study: true,
+            by_study: Some(true),
             scene: serde_json::to_value(&own.scene).unwrap(),
             ..RunReport::default()
         };
         assert!(matches(&program, &report, &own, &program));
-        let by_hand = RunReport { by_study: false, ..report.clone() };
+        let by_hand = RunReport { by_study: Some(false), ..report.clone() };
         assert!(!matches(&program, &by_hand, &own, &program));
         assert!(!matches(&Program { build: "b".into(), ..program.clone() }, &report, &own, &program));
         assert!(!matches(&Program { version: "2".into(), ..program.clone() }, &report, &own, &program));

@@ -29,8 +29,8 @@ pub struct RunReport {
     pub shapes: Vec<serde_json::Value>,
     /// Version of the program.
     pub version: String,
-    /// `halfstep study` or `compare` made the run, and may replace it.
-    pub by_study: bool,
+    /// `halfstep study` or `compare` made the run, and may replace it; `null` of a program that did not say it yet.
+    pub by_study: Option<bool>,
     /// Where the run went on after interruptions, in their order.
     pub resumed: Vec<Resumption>,
     /// Steps done.

@@ -26,20 +26,23 @@ impl System {
                     _ => continue,
                 };
                 let rate = |k: usize| self.bodies[k].angular_velocity(&self.poses[k]);
-                let arm = |k: usize| at - self.poses[k].center;
+                let place = self.bodies[from].place(&self.poses[from], at);
+                let arm = |k: usize| place - self.poses[k].center;
                 let own = match &link.kind {
                     Fixed { .. } => rate(from),
-                    // About another axis the hinge does not let it turn.
-                    Hinge { axis, .. } if *axis != Vec3::zeros() => axis * axis.dot(&rate(to)),
+                    // About other axes it turns as what it is hinged to.
+                    Hinge { axis, .. } if *axis != Vec3::zeros() => {
+                        rate(from) + axis * axis.dot(&(rate(to) - rate(from)))
+                    }
                     _ => rate(to),
                 };
                 let hinge = self.poses[from].velocity + rate(from).cross(&arm(from));
-                let velocity = hinge - own.cross(&arm(to));
+                let (velocity, turns) = (hinge - own.cross(&arm(to)), own != rate(to));
                 // Of what is at rest not even the sign of a zero changes.
                 if velocity != Vec3::zeros() {
                     self.poses[to].velocity = velocity;
                 }
-                if matches!(link.kind, Fixed { .. }) && own != Vec3::zeros() {
+                if turns {
                     self.poses[to].spin = self.bodies[to].spin(&self.poses[to].rotation(), &own);
                 }
                 known[to] = true;

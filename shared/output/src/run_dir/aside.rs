@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 #[derive(Debug)]
 #[must_use]
 pub struct SetAside {
-    /// What is written anew, under the temporary names that the others have: file and content.
-    told: Vec<(PathBuf, Vec<u8>)>,
+    /// What is written anew, under the temporary names that the others have: file and content, if it was there.
+    told: Vec<(PathBuf, Option<Vec<u8>>)>,
     /// The names of the files, each with the temporary one that it has meanwhile.
     files: Vec<[PathBuf; 2]>,
 }
@@ -45,7 +45,11 @@ impl Drop for SetAside {
             }
         }
         for (path, content) in &self.told {
-            if let Err(error) = atomic::replace_bytes(path, content) {
+            let put_back = match content {
+                Some(content) => atomic::replace_bytes(path, content),
+                None => remove(vec![path.clone()]),
+            };
+            if let Err(error) = put_back {
                 tracing::error!("{error}");
             }
         }
@@ -67,7 +71,8 @@ impl RunDirectory {
         let indexes: Vec<PathBuf> = stems.iter().map(|stem| folder.join(series::index_name(stem))).collect();
         let told = ["run.json", "scene.json"].map(|name| self.file(name));
         for path in told.into_iter().chain(indexes.into_iter().filter(|index| index.is_file())) {
-            let content = fs::read(&path).map_err(OutputError::io("read", &path))?;
+            let read = |path: &PathBuf| fs::read(path).map_err(OutputError::io("read", path));
+            let content = if path.is_file() { Some(read(&path)?) } else { None };
             aside.told.push((path, content));
         }
         let rows = self.file("probes.csv");
@@ -133,6 +138,12 @@ mod tests {
         shorten();
         drop(aside);
         assert!(content(dir) == whole);
+        // A folder without a report stays one.
+        fs::remove_file(dir.join("run.json")).unwrap();
+        let aside = set();
+        shorten();
+        drop(aside);
+        assert!(!dir.join("run.json").exists());
         let aside = set();
         shorten();
         aside.forget().unwrap();

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::rigid::Vec3;
+use halfstep_scene::{JointKind, ModelKeys};
 use std::f64::consts::PI;
 
 /// Another box of 0.2 m x 0.1 m, as far to the right, m.
@@ -137,6 +138,32 @@ fn a_hinged_body_begins_to_turn_about_its_hinge() {
             }
         });
     }
+}
+
+/// In space: an arm that is hinged about x to a turntable about z is turned by it, and the first step takes nothing.
+#[test]
+fn what_is_hinged_across_turns_along() {
+    let keys = "bodies = [{ name = \"box\", angular_velocity = 2.0 }]\n\
+                joints = [{ name = \"table\", kind = \"hinge\", body = \"box\", at = [0.0, 0.05] },\n\
+                { name = \"elbow\", kind = \"hinge\", body = \"second\", with = \"box\", at = [0.2, 0.05] }]";
+    let mut scene = deepen(weightless(keys, &(BOX.to_owned() + &second(0.2))), 0.3);
+    let ModelKeys::Rigid(keys) = &mut scene.solids[0].model else { panic!("rigid") };
+    for (joint, axis) in keys.joints.iter_mut().zip([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]) {
+        let JointKind::Hinge { at, .. } = joint.kind else { panic!("{joint:?}") };
+        joint.kind = JointKind::Hinge { at: [at[0], at[1], 0.15], axis };
+    }
+    let mut model = build::<3>(&scene);
+    // Both turn about z as one, on arms of 0.1 and 0.3 m.
+    let energy = |model: &Rigid<3>| model.states.iter().map(|state| state.kinetic_energy).sum::<f64>();
+    let before = energy(&model);
+    let load = free(&model);
+    run(&mut model, 1e-3, 1e-3, &load, |_, model| {
+        assert!((energy(model) / before - 1.0).abs() < 1e-5, "{} {before}", energy(model));
+        for (state, arm) in model.states.iter().zip([0.1, 0.3]) {
+            assert!((state.velocity[1] - 2.0 * arm).abs() < 1e-4, "{state:?}");
+            assert!((state.angular_velocity[2] - 2.0).abs() < 1e-4, "{state:?}");
+        }
+    });
 }
 
 /// A second hinge on a wall that moves away, which the first one cannot follow: it is open by what the wall has gone.

@@ -8,14 +8,17 @@ use halfstep_scene::Scene;
 use halfstep_sph::neighbours::PADDING;
 use std::collections::BTreeSet;
 
-/// Rows of a solid of its own spacing `dx`, m, that are as thick as 4h - dx of the scene; without fluid of a scene with
-/// h = 1.5 dx.
+/// Rows of a solid of its own spacing `dx`, m, that are as thick as 4h - dx of the scene, of an even number one more;
+/// without fluid of a scene with h = 1.5 dx.
 pub(super) fn rows_of_a_thick_body(scene: &Scene, dx: f64) -> usize {
     const ROUNDING: f64 = 1e-9;
     if scene.fluid.is_none() {
         return 5;
     }
-    ((4.0 * scene.smoothing_ratio - 1.0) * scene.resolution / dx * (1.0 - ROUNDING)).ceil() as usize
+    let rows =
+        ((4.0 * scene.smoothing_ratio - 1.0) * scene.resolution / dx * (1.0 - ROUNDING)).ceil() as usize;
+    // Layer by layer from both faces an odd number is left.
+    rows | 1
 }
 
 impl<const D: usize> TotalLagrangian<D> {
