@@ -356,6 +356,8 @@ mod tests {
         let refused = job.check_folder().unwrap_err().to_string();
         assert!(refused.contains("a run that was not made here (run.json)"), "{refused}");
         std::fs::write(own.join(MESSAGES), "").unwrap();
+        job.check_folder().expect("of a program that did not say yet whose a run is");
+        std::fs::write(own.join("run.json"), "{\"by_study\": false}").unwrap();
         let refused = job.check_folder().unwrap_err().to_string();
         assert!(refused.contains("a run that was not made here (run.json)"), "in its place: {refused}");
         std::fs::write(own.join("run.json"), "{\"by_study\": true}").unwrap();

@@ -176,7 +176,7 @@ fn debris_is_not_known_to_contact() {
     assert_eq!(of("", apart), [""; 0]);
     // Friction of what breaks is that within one solid.
     let found = of("fracture = { strength = 1e5, energy = 10.0, friction = 0.3 }", "");
-    let [debris, smooth] = found.as_slice() else { panic!("{found:?}") };
+    let [smooth, debris] = found.as_slice() else { panic!("{found:?}") };
     assert!(debris.contains("a piece that breaks off `glass` or `stone` takes"), "{debris}");
     assert!(smooth.starts_with("`glass` and `stone` touch without friction: their own friction"), "{smooth}");
 }
