@@ -237,7 +237,10 @@ impl Trial<'_> {
                     return Ok(());
                 }
                 // Of one that was killed it may be the report of the round before.
-                Some((RunStatus::Stopped, _)) if code.is_some_and(|code| code != 130) => {
+                // A resumed run that did not go on, with status 1, has the report of the round before, too.
+                Some((RunStatus::Stopped, _))
+                    if code.is_some_and(|code| code != 130 && (code != 1 || !resumes)) =>
+                {
                     return Err(format!("stopped with exit status {code:?}"));
                 }
                 Some((RunStatus::Diverged, _)) => return Err("diverged".into()),
