@@ -33,12 +33,15 @@ pub fn program() -> &'static Path {
 }
 
 /// Probes and frames of a run, by their names.
-pub fn files(dir: &Path) -> BTreeMap<String, Vec<u8>> {
-    let frames =
-        std::fs::read_dir(dir.join("frames")).expect("frames").map(|entry| entry.expect("a file").path());
+///
+/// # Errors
+/// One of them cannot be read.
+pub fn files(dir: &Path) -> std::io::Result<BTreeMap<String, Vec<u8>>> {
     let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let all = frames.chain([dir.join("probes.csv")]);
-    all.map(|path| (name(&path), std::fs::read(&path).expect("a file that can be read"))).collect()
+    let frames = std::fs::read_dir(dir.join("frames"))?.map(|entry| Ok(entry?.path()));
+    let all = frames.chain([Ok(dir.join("probes.csv"))]);
+    all.map(|path: std::io::Result<PathBuf>| path.and_then(|path| Ok((name(&path), std::fs::read(&path)?))))
+        .collect()
 }
 
 /// The repository's top folder.

@@ -2,7 +2,7 @@
 //! they go on to the bits of a run that nobody disturbed.
 
 use crate::process::{is_alive, leftovers, with_variable};
-use crate::run::{RunBuilder, Running, repository, scene};
+use crate::run::{RunBuilder, Running, files, repository, scene};
 use fastrand::Rng;
 use halfstep_output::checkpoint::{FOLDERS, MANIFEST};
 use halfstep_output::run_json::RunStatus;
@@ -179,21 +179,11 @@ pub fn torture(
 fn undisturbed(kind: &Kind, python: &str) -> Whole {
     let folder = tempfile::tempdir().expect("a folder");
     let run = kind.builder(python, &folder.path().join("run"), false, "whole").start().wait().finished();
-    Whole { hash: run.report.audit.state_hash.clone(), seconds: run.outcome.seconds, files: files(run.dir()) }
-}
-
-/// Probes and frames of a run.
-fn files(dir: &Path) -> BTreeMap<String, Vec<u8>> {
-    let frames =
-        std::fs::read_dir(dir.join("frames")).into_iter().flatten().flatten().map(|entry| entry.path());
-    let all = frames.chain([dir.join("probes.csv")]);
-    let read = |path: std::path::PathBuf| {
-        (
-            path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
-            std::fs::read(path).unwrap_or_default(),
-        )
-    };
-    all.map(read).collect()
+    Whole {
+        hash: run.report.audit.state_hash.clone(),
+        seconds: run.outcome.seconds,
+        files: files(run.dir()).expect("files of a whole run"),
+    }
 }
 
 /// A run on its way through disturbances.
@@ -228,7 +218,8 @@ impl Trial<'_> {
                     if hash != whole.hash {
                         return Err(format!("the state hash is {hash:?} and not {:?}", whole.hash));
                     }
-                    let changed: Vec<String> = differences(&files(&dir), &whole.files);
+                    let changed: Vec<String> =
+                        differences(&files(&dir).map_err(|e| e.to_string())?, &whole.files);
                     if !changed.is_empty() {
                         return Err(format!("other files than those of a whole run: {}", changed.join(", ")));
                     }

@@ -91,8 +91,9 @@ fn a_run_with_the_block_goes_on_after_an_interruption() {
     let said = "`solid` of this run was computed by another program: --solid or --await-solid";
     assert!(built_in.stderr.contains(said), "{}", built_in.stderr);
     // The block forgets how far it was, how fast, or how heavy: the run is as it was.
-    let told =
-        || (files(&dir), ["run.json", "scene.json"].map(|name| std::fs::read(dir.join(name)).unwrap()));
+    let told = || {
+        (files(&dir).unwrap(), ["run.json", "scene.json"].map(|name| std::fs::read(dir.join(name)).unwrap()))
+    };
     let before = told();
     for (honest, lie) in [
         ("x, v = float(saved", "x, v = 1e-3 + float(saved"),

@@ -95,7 +95,7 @@ pub(crate) fn try_solid(arguments: FakeFluidArguments) -> ExitCode {
         Err(RunError::Output(error @ (OutputError::HoldsRun { .. } | OutputError::InUse { .. }))) => {
             usage(&error.to_string())
         }
-        Err(error @ (RunError::StoppedEarly | RunError::StoppedAtOnce { .. })) => {
+        Err(error) if error.is_stop() => {
             say::warn(format_args!("{error}"));
             ExitCode::from(130)
         }

@@ -11,7 +11,6 @@ use clap::{CommandFactory, Parser};
 use halfstep::Launcher;
 use halfstep::options::{RunOptions, SolidSource, Trace, known_solid};
 use halfstep::{isa, run};
-use halfstep_coupling::error::RunError;
 use halfstep_coupling::say;
 use halfstep_coupling::supervise::StopFlags;
 use halfstep_output::RunReport;
@@ -192,13 +191,7 @@ fn resume(arguments: &ResumeArguments, isa: Isa) -> ExitCode {
     match run::resume(&options, arguments.until) {
         Err(error) => {
             let status = usage(&error);
-            match error {
-                RunError::NotGoneOn(why) => match *why {
-                    RunError::StoppedEarly | RunError::StoppedAtOnce { .. } => ExitCode::from(130),
-                    _ => status,
-                },
-                _ => status,
-            }
+            if error.is_stop() { ExitCode::from(130) } else { status }
         }
         Ok((scene, ended)) => tell(&scene, &options.out, ended),
     }

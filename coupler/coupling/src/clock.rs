@@ -2,7 +2,7 @@
 
 use halfstep_scene::{Scene, TimeStep};
 use halfstep_wire::Name;
-use halfstep_wire::failure::{Diverged, Quantity};
+use halfstep_wire::failure::Diverged;
 use halfstep_wire::half_step::{HalfStep, Stage};
 use halfstep_wire::protocol::order;
 use halfstep_wire::state::{Column, Fields, Group, State, StateError};
@@ -181,16 +181,9 @@ impl Clock {
             // Whose limit it is; NaN is nobody's wish, and comes first.
             let wanted = |limit: &Limit| if limit.dt.is_nan() { 0.0 } else { limit.dt };
             let shortest = limits.iter().min_by(|a, b| wanted(a).total_cmp(&wanted(b)));
-            let own = self.fixed.is_some() || shortest.is_none_or(|limit| reaches_end(limit.dt, self.end));
-            return Err(Diverged {
-                participant: shortest.filter(|_| !own).map_or(Name::COUPLER, |limit| limit.participant),
-                particle: 0,
-                quantity: Quantity::TimeStep,
-                value: dt,
-                step: self.step,
-                stage: Stage::First,
-                position: [0.0; 3],
-            });
+            let whose = shortest.filter(|limit| self.fixed.is_none() && !reaches_end(limit.dt, self.end));
+            let participant = whose.map_or(Name::COUPLER, |limit| limit.participant);
+            return Err(Diverged::of_time_step(participant, dt, self.step));
         }
         self.last_dt = Some(dt);
         self.clipped |= self.clips(dt);
@@ -277,6 +270,7 @@ impl State for Clock {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use halfstep_wire::failure::Quantity;
 
     fn clock(end: f64, fixed: Option<f64>) -> Clock {
         Clock {

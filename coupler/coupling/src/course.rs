@@ -28,6 +28,7 @@ pub struct Course {
 impl Course {
     /// The participants have shown the state that the run goes on from.
     pub(crate) fn go_on(&mut self) -> Result<(), OutputError> {
+        self.recorder.forget_later_rows()?;
         self.set_aside.take().map_or(Ok(()), SetAside::forget)
     }
 }

@@ -141,6 +141,17 @@ pub enum RunError {
     System(String),
 }
 
+impl RunError {
+    /// Somebody stopped the run: nothing is wrong with it.
+    pub fn is_stop(&self) -> bool {
+        match self {
+            Self::StoppedEarly | Self::StoppedAtOnce { .. } => true,
+            Self::NotGoneOn(why) => why.is_stop(),
+            _ => false,
+        }
+    }
+}
+
 impl From<Diverged> for RunError {
     fn from(diverged: Diverged) -> Self {
         Self::Diverged { diverged, hint: String::new() }

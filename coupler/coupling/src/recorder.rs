@@ -189,6 +189,11 @@ impl Recorder {
         Ok(self)
     }
 
+    /// Forgets the rows that an interrupted run wrote after what this one goes on from.
+    pub(crate) fn forget_later_rows(&self) -> Result<(), OutputError> {
+        self.log.as_ref().map_or(Ok(()), ProbeLog::forget_rest)
+    }
+
     /// Seconds of computation, those before an interruption included.
     fn wall_seconds(&self) -> f64 {
         self.earlier + self.started.elapsed().as_secs_f64()

@@ -215,7 +215,8 @@ pub fn run(scene: &Scene, trial: &Trial) -> Result<Tried, RunError> {
     });
     report.status = Some(match &ended {
         Ok(()) if !stopped => RunStatus::Finished,
-        Ok(()) | Err(RunError::StoppedEarly | RunError::StoppedAtOnce { .. }) => RunStatus::Stopped,
+        Ok(()) => RunStatus::Stopped,
+        Err(error) if error.is_stop() => RunStatus::Stopped,
         Err(RunError::Diverged { .. }) => RunStatus::Diverged,
         Err(_) => RunStatus::Failed,
     });

@@ -70,7 +70,7 @@ impl ProbeLog {
         csv::WriterBuilder::new().has_headers(false).buffer_capacity(ROW_CAPACITY).from_writer(file)
     }
 
-    /// Opens the log of an interrupted run and forgets what was written after what was `logged`.
+    /// Opens the log of an interrupted run after what was `logged`; [`Self::forget_rest`] before the next row.
     ///
     /// # Errors
     /// The file is shorter, or has other columns or rows.
@@ -97,9 +97,18 @@ impl ProbeLog {
             let reason = "its rows up to the checkpoint are not those that the run has written";
             return Err(OutputError::malformed(path, reason));
         }
-        file.set_len(length).map_err(OutputError::io("shorten", path))?;
-        file.seek(SeekFrom::End(0)).map_err(OutputError::io("read", path))?;
+        file.seek(SeekFrom::Start(length)).map_err(OutputError::io("read", path))?;
         Ok(Self { path: path.into(), writer: Self::writer(Hashed { file, hash }), columns: columns.len() })
+    }
+
+    /// Forgets the rows after the place where the log goes on.
+    ///
+    /// # Errors
+    /// The file cannot be changed.
+    pub fn forget_rest(&self) -> Result<(), OutputError> {
+        let mut file = &self.writer.get_ref().file;
+        let shortened = file.stream_position().and_then(|end| file.set_len(end));
+        shortened.map_err(OutputError::io("shorten", &self.path))
     }
 
     /// What was written so far, with the guarantee that it outlives a crash of the machine.
@@ -262,6 +271,9 @@ mod tests {
         log.row(0.1, &[2.0]).unwrap();
         drop(log);
         let mut log = ProbeLog::resume(&path, &columns, length).unwrap();
+        assert_eq!(read_probes(&path).unwrap().rows, [[0.0, 1.0], [0.1, 2.0]], "it may yet be refused");
+        log.forget_rest().unwrap();
+        assert_eq!(read_probes(&path).unwrap().rows, [[0.0, 1.0]]);
         log.row(0.05, &[3.0]).unwrap();
         assert_eq!(read_probes(&path).unwrap().rows, [[0.0, 1.0], [0.05, 3.0]]);
         let text = std::fs::read_to_string(&path).unwrap();

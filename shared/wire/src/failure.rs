@@ -46,6 +46,19 @@ impl std::fmt::Display for Diverged {
 impl std::error::Error for Diverged {}
 
 impl Diverged {
+    /// A time step, s, with which the run would never end, from step n on.
+    pub fn of_time_step(participant: Name, dt: f64, step: u64) -> Self {
+        Self {
+            participant,
+            particle: 0,
+            quantity: Quantity::TimeStep,
+            value: dt,
+            step,
+            stage: Stage::First,
+            position: [0.0; 3],
+        }
+    }
+
     /// Makes `header` the message that tells of this in the place of its sender's next state. `participants` are those
     /// of the run, in its order.
     pub fn write_to(&self, participants: &[Name], header: &mut StateHeader) {

@@ -4,6 +4,7 @@ mod contact_tests;
 mod hard_tests;
 mod impact_tests;
 mod joint_tests;
+mod start_tests;
 
 use super::Rigid;
 use crate::model::{Load, SolidModel};

@@ -12,8 +12,8 @@ use halfstep_output::run_json::Percentiles;
 use halfstep_scene::Scene;
 use halfstep_scene::geometry::holds;
 use halfstep_wire::Name;
-use halfstep_wire::failure::{Diverged, Quantity};
-use halfstep_wire::half_step::{HalfStep, Stage};
+use halfstep_wire::failure::Diverged;
+use halfstep_wire::half_step::HalfStep;
 use halfstep_wire::protocol::{ForceHeader, ForceRecord, StateRecord, order, status};
 use std::sync::atomic::Ordering;
 use std::time::Instant;
@@ -101,16 +101,7 @@ impl<'a> Pusher<'a> {
             return Ok(dt);
         }
         let participant = if dt_limit < own { self.trial.solid } else { Name::COUPLER };
-        Err(Diverged {
-            participant,
-            particle: 0,
-            quantity: Quantity::TimeStep,
-            value: dt,
-            step,
-            stage: Stage::First,
-            position: [0.0; 3],
-        }
-        .into())
+        Err(Diverged::of_time_step(participant, dt, step).into())
     }
 
     /// Pushes the solid to the scene's end, or until the trial is stopped.

@@ -3,9 +3,9 @@
 use super::{RunDirectory, files, is_frame_file, remove, stems};
 use crate::{OutputError, atomic, series};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-/// Frames, indexes, rows and report of a run from a checkpoint on. Dropped, they are put back.
+/// Frames, indexes and report of a run from a checkpoint on. Dropped, they are put back.
 #[derive(Debug)]
 #[must_use]
 pub struct SetAside {
@@ -23,17 +23,6 @@ impl SetAside {
     pub fn forget(mut self) -> Result<(), OutputError> {
         self.told.clear();
         remove(std::mem::take(&mut self.files).into_iter().map(|[_, aside]| aside).collect())
-    }
-
-    fn keep(
-        &mut self,
-        path: PathBuf,
-        by: impl Fn(&Path, &Path) -> std::io::Result<()>,
-    ) -> Result<(), OutputError> {
-        let aside = atomic::temporary(&path);
-        by(&path, &aside).map_err(OutputError::io("set aside", &path))?;
-        self.files.push([path, aside]);
-        Ok(())
     }
 }
 
@@ -75,10 +64,6 @@ impl RunDirectory {
             let content = if path.is_file() { Some(read(&path)?) } else { None };
             aside.told.push((path, content));
         }
-        let rows = self.file("probes.csv");
-        if rows.is_file() {
-            aside.keep(rows, |from, to| fs::copy(from, to).map(|_| ()))?;
-        }
         for stem in &stems {
             let own = std::slice::from_ref(stem);
             let first = series::frame_name(stem, frames as u32);
@@ -86,7 +71,9 @@ impl RunDirectory {
                 name != series::index_name(stem) && is_frame_file(name, own) && name >= first.as_str()
             };
             for path in files(&folder, is_later)? {
-                aside.keep(path, |from, to| fs::rename(from, to))?;
+                let kept = atomic::temporary(&path);
+                fs::rename(&path, &kept).map_err(OutputError::io("set aside", &path))?;
+                aside.files.push([path, kept]);
             }
             series::forget_from(&folder, stem, frames as u32, |name| is_frame_file(name, own))?;
         }
@@ -99,6 +86,7 @@ mod tests {
     use super::*;
     use crate::writer::FrameWriter;
     use halfstep_wire::frame::{Frame, FrameSink};
+    use std::path::Path;
 
     /// Name and content of each file of a folder and of its frames.
     fn content(dir: &Path) -> Vec<(PathBuf, Vec<u8>)> {
@@ -117,42 +105,34 @@ mod tests {
             writer.submit(number, &mut |frame: &mut Frame| frame.time = f64::from(number)).unwrap();
         }
         writer.finish().unwrap();
-        for (name, text) in [
-            ("run.json", "failed"),
-            ("scene.json", "until 4"),
-            ("probes.csv", "a\n1\n2\n"),
-            ("notes.txt", "mine"),
-        ] {
+        for (name, text) in [("run.json", "failed"), ("scene.json", "until 4"), ("notes.txt", "mine")] {
             fs::write(dir.join(name), text).unwrap();
         }
         let whole = content(dir);
         let set = || run.set_aside(2).unwrap();
-        let shorten = || {
-            fs::write(dir.join("probes.csv"), "a\n1\n").unwrap();
+        let begin = || {
             fs::write(dir.join("run.json"), "begun").unwrap();
             fs::write(dir.join("scene.json"), "until 9").unwrap();
         };
         let aside = set();
         let listed = series::Series::of_run(dir, "fluid").unwrap();
         assert_eq!((listed.len(), dir.join("frames/fluid_000002.hdf").exists()), (2, false));
-        shorten();
+        begin();
         drop(aside);
         assert!(content(dir) == whole);
         // A folder without a report stays one.
         fs::remove_file(dir.join("run.json")).unwrap();
         let aside = set();
-        shorten();
+        begin();
         drop(aside);
         assert!(!dir.join("run.json").exists());
         let aside = set();
-        shorten();
+        begin();
         aside.forget().unwrap();
         let names: Vec<_> = content(dir).into_iter().map(|(path, _)| path).collect();
-        let told =
-            ["notes.txt", "probes.csv", "run.json", "run.lock", "scene.json"].map(|name| dir.join(name));
+        let told = ["notes.txt", "run.json", "run.lock", "scene.json"].map(|name| dir.join(name));
         let frames = ["fluid.hdf.series", "fluid_000000.hdf", "fluid_000001.hdf"];
         let frames = frames.map(|name| dir.join("frames").join(name));
         assert_eq!(names, [&told[..], &frames].concat());
-        assert_eq!(fs::read(dir.join("probes.csv")).unwrap(), b"a\n1\n");
     }
 }

@@ -2,11 +2,10 @@
 
 use super::*;
 use crate::rigid::Vec3;
-use halfstep_scene::{JointKind, ModelKeys};
 use std::f64::consts::PI;
 
 /// Another box of 0.2 m x 0.1 m, as far to the right, m.
-fn second(x: f64) -> String {
+pub(super) fn second(x: f64) -> String {
     BOX.replace("\"box\"", "\"second\"")
         .replace("[0.0, 0.0]", &format!("[{x}, 0.0]"))
         .replace("0.2, 0.1]", &format!("{}, 0.1]", x + 0.2))
@@ -20,15 +19,15 @@ fn mover(motion: &str) -> String {
     )
 }
 
-fn weightless(keys: &str, shapes: &str) -> Scene {
+pub(super) fn weightless(keys: &str, shapes: &str) -> Scene {
     let mut scene = scene(keys, shapes);
     scene.gravity = [0.0; 3];
     scene
 }
 
 /// Moment of a box about its centre, kg m, and its mass, kg/m.
-const MOMENT: f64 = 10.0 * 0.05 / 12.0;
-const MASS: f64 = 10.0;
+pub(super) const MOMENT: f64 = 10.0 * 0.05 / 12.0;
+pub(super) const MASS: f64 = 10.0;
 
 /// Two boxes that are fixed to each other swing as one of twice the length, from the height of the pin.
 #[test]
@@ -93,77 +92,6 @@ fn a_pair_that_is_fixed_in_space_tumbles_as_one() {
     println!("angular momentum to {lost:.1e}, energy to {:.1e}", energies[1] / energies[0] - 1.0);
     assert!(lost < 1e-12, "{lost}");
     assert!(energies[1] / energies[0] - 1.0 < 1e-5, "{energies:?}");
-}
-
-/// A rate is about the hinge: the bar keeps it, with m r² more than about its middle, and what hangs on its end goes
-/// along with that, as does what is welded to it.
-#[test]
-fn a_hinged_body_begins_to_turn_about_its_hinge() {
-    let pin = "{ name = \"pin\", kind = \"hinge\", body = \"box\", at = [0.0, 0.05] }";
-    let keys = format!("bodies = [{{ name = \"box\", angular_velocity = 0.3 }}]\njoints = [{pin}]");
-    let mut model = build::<2>(&weightless(&keys, BOX));
-    let right = 0.5 * (MOMENT + MASS * 0.01) * 0.09;
-    assert!((model.states[0].kinetic_energy / right - 1.0).abs() < 1e-12, "{:?}", model.states[0]);
-    let load = free(&model);
-    run(&mut model, 1.0, 1e-2, &load, |_, model| {
-        assert!((model.states[0].kinetic_energy / right - 1.0).abs() < 1e-12, "{:?}", model.states[0]);
-    });
-    for (kind, more, rates) in [
-        (
-            "kind = \"hinge\", at = [0.2, 0.05]",
-            ", { name = \"second\", angular_velocity = -0.5 }",
-            [0.3, -0.5],
-        ),
-        ("kind = \"hinge\", at = [0.2, 0.05]", "", [0.3, 0.0]),
-        ("kind = \"fixed\"", "", [0.3, 0.3]),
-    ] {
-        let joint = format!("{{ name = \"elbow\", {kind}, body = \"second\", with = \"box\" }}");
-        let bodies = format!("bodies = [{{ name = \"box\", angular_velocity = 0.3 }}{more}]");
-        // The order of the joints does not matter.
-        let keys = format!("{bodies}\njoints = [{joint}, {pin}]");
-        let mut model = build::<2>(&weightless(&keys, &(BOX.to_owned() + &second(0.2))));
-        // The first centre is 0.1 m from the pin, the second 0.1 m beyond the elbow.
-        let speeds = [0.03, 0.06 + 0.1 * rates[1]];
-        for k in 0..2 {
-            let state = &model.states[k];
-            assert!(
-                (state.velocity[1] - speeds[k]).abs() < 1e-14 && state.velocity[0].abs() < 1e-14,
-                "{state:?}"
-            );
-        }
-        let load = free(&model);
-        run(&mut model, 1e-4, 1e-4, &load, |_, model| {
-            for (state, rate) in model.states.iter().zip(rates) {
-                assert!((state.angular_velocity[2] - rate).abs() < 1e-4, "{kind}{more}: {state:?}");
-            }
-        });
-    }
-}
-
-/// In space: an arm that is hinged about x to a turntable about z is turned by it, and the first step takes nothing.
-#[test]
-fn what_is_hinged_across_turns_along() {
-    let keys = "bodies = [{ name = \"box\", angular_velocity = 2.0 }]\n\
-                joints = [{ name = \"table\", kind = \"hinge\", body = \"box\", at = [0.0, 0.05] },\n\
-                { name = \"elbow\", kind = \"hinge\", body = \"second\", with = \"box\", at = [0.2, 0.05] }]";
-    let mut scene = deepen(weightless(keys, &(BOX.to_owned() + &second(0.2))), 0.3);
-    let ModelKeys::Rigid(keys) = &mut scene.solids[0].model else { panic!("rigid") };
-    for (joint, axis) in keys.joints.iter_mut().zip([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]) {
-        let JointKind::Hinge { at, .. } = joint.kind else { panic!("{joint:?}") };
-        joint.kind = JointKind::Hinge { at: [at[0], at[1], 0.15], axis };
-    }
-    let mut model = build::<3>(&scene);
-    // Both turn about z as one, on arms of 0.1 and 0.3 m.
-    let energy = |model: &Rigid<3>| model.states.iter().map(|state| state.kinetic_energy).sum::<f64>();
-    let before = energy(&model);
-    let load = free(&model);
-    run(&mut model, 1e-3, 1e-3, &load, |_, model| {
-        assert!((energy(model) / before - 1.0).abs() < 1e-5, "{} {before}", energy(model));
-        for (state, arm) in model.states.iter().zip([0.1, 0.3]) {
-            assert!((state.velocity[1] - 2.0 * arm).abs() < 1e-4, "{state:?}");
-            assert!((state.angular_velocity[2] - 2.0).abs() < 1e-4, "{state:?}");
-        }
-    });
 }
 
 /// A second hinge on a wall that moves away, which the first one cannot follow: it is open by what the wall has gone.
