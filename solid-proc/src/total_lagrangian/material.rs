@@ -126,11 +126,11 @@ impl Law {
 
     /// First Piola-Kirchhoff stress, Pa; `j` is [`Self::volume_ratio`].
     pub(crate) fn first_piola_kirchhoff<const D: usize>(&self, f: &Matrix<D>, j: f64) -> Matrix<D> {
-        self.nominal(f, j, self.log(j))
+        self.nominal(f, j, self.log_of_volume(j))
     }
 
     /// ln J where the law needs it.
-    fn log(&self, j: f64) -> f64 {
+    fn log_of_volume(&self, j: f64) -> f64 {
         match self.material {
             Material::StVenantKirchhoff => 0.0,
             Material::NeoHookean => libm::log(j),
@@ -193,7 +193,7 @@ impl Law {
 
     /// Cauchy stress P F^T / J as pressure and deviator; in 2D sigma_zz is that of plane strain, or none.
     pub(crate) fn cauchy<const D: usize>(&self, f: &Matrix<D>, j: f64) -> Cauchy<D> {
-        let log = self.log(j);
+        let log = self.log_of_volume(j);
         let sigma = self.nominal(f, j, log) * f.transpose() / j;
         let out_of_plane = match (D, self.plane, self.material) {
             (2, Plane::Strain, Material::StVenantKirchhoff) => self.lambda * green(f).trace() / j,
