@@ -113,6 +113,7 @@ impl<const D: usize> TotalLagrangian<D> {
             Some(viscous) => self.momentum(viscous, &mut sums),
             None => self.momentum((), &mut sums),
         }
+        self.keep_out_of_clamps(&mut sums);
         for slot in 0..self.id.len() {
             let free = self.id[slot] != PADDING && self.fixed.clamped[slot] == 0.0;
             for d in 0..D {
@@ -216,7 +217,7 @@ impl<const D: usize> TotalLagrangian<D> {
         costs
     }
 
-    /// sum V0 psi, the hourglass energy and that of contacts between bodies, J.
+    /// sum V0 psi, the hourglass energy, and those of ways into clamps and of contacts between bodies, J.
     pub(super) fn energy(&self) -> f64 {
         let inner: f64 = self.slot_of.iter().map(|&slot| self.stored_at(slot as usize)).sum();
         inner + self.contact.as_ref().map_or(0.0, Contact::energy)
@@ -230,7 +231,8 @@ impl<const D: usize> TotalLagrangian<D> {
             _ => self.volume * self.law.energy(f, self.volume_ratio[slot]),
         };
         let relaxing = self.memory.energy(slot, &self.arms, self.material.shear_modulus());
-        strained + self.volume * relaxing + 0.5 * self.hourglass[slot] * self.volume * self.error_square(slot)
+        let unseen = 0.5 * self.hourglass[slot] * self.volume * self.error_square(slot);
+        strained + self.volume * relaxing + unseen + self.energy_beside_clamp(slot)
     }
 
     /// sum_j w |e_ij|² = sum_j w |beta u_ij|² - H : H M, by the definition of H.

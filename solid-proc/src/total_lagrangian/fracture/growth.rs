@@ -32,7 +32,7 @@ struct Pulled {
 struct Point {
     /// e0.
     onset: f64,
-    /// Its largest principal stretch when damage began, at e0.
+    /// Its largest principal stretch when damage began, at e0; beside a clamp with the opening on the free side added.
     begun: f64,
     /// e: the largest strain that it has had.
     strain: f64,
@@ -69,14 +69,15 @@ impl<const D: usize> TotalLagrangian<D> {
         }
     }
 
-    /// Energy in a slot's strain and error vectors, J.
+    /// Energy of a slot's strain, error vectors, and way into a clamp, J.
     pub(in crate::total_lagrangian) fn energy_at(&self, slot: usize) -> f64 {
         let (f, j) = (&self.gradient[slot], self.volume_ratio[slot]);
         let strained = match self.damage_at(slot) {
             d if d > 0.0 => self.volume * self.law.damaged(f, j, d).energy,
             _ => self.volume * self.law.energy(f, j),
         };
-        strained + 0.5 * self.hourglass[slot] * self.volume * self.error_square(slot)
+        let unseen = 0.5 * self.hourglass[slot] * self.volume * self.error_square(slot);
+        strained + unseen + self.energy_beside_clamp(slot)
     }
 
     /// Damage grows in these particles, ascending, whose stresses are those of the state, and in last rows.
@@ -109,14 +110,19 @@ impl<const D: usize> TotalLagrangian<D> {
                 }
                 Some(fracture.keys.strength / (ratio * fracture.modulus))
             };
+            // Of the particle's middle, also where an edge decides.
+            let inside =
+                self.opening_inside(slot, (1.0 - fracture.damage[slot]) * tension / fracture.modulus);
             let mut point = match begins {
-                Some(onset) => Point { onset, begun: stretch, strain: onset, damage: 0.0 },
+                Some(onset) => Point { onset, begun: stretch + inside, strain: onset, damage: 0.0 },
                 None => fracture.point(slot),
             };
             // A force over the area that it had.
             let nominal = tension * volume_ratio / stretch;
             // What a squeeze stretches across it is no opening: the law of the whole has no tension there.
-            let strain = (tension / fracture.modulus).min(point.onset + stretch - point.begun);
+            let share = if inside > 0.0 { (inside / (stretch - 1.0)).min(1.0) } else { 0.0 };
+            let strain = (tension / fracture.modulus * (1.0 + share))
+                .min(point.onset + stretch + inside - point.begun);
             point.strain = point.strain.max(strain);
             let damage = 1.0 - fracture.law(slot, point.onset).tension(point.strain) / nominal;
             if nominal > 0.0 && damage > point.damage {

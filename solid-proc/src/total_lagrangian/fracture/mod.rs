@@ -4,7 +4,7 @@
 //! under one, starts damage where it reaches f_t. From then on the nominal tension follows the largest stretch s,
 //!   (1 - d) sigma J / s <= f_t exp(-(e - e0) / e_f),   e = e0 + s - s0,   e0 = f_t / E',
 //!   e_f = G_f / (f_t b) - e0 / 2   (Bazant and Oh 1983),
-//! so a band of width b takes G_f from a crack across it, whatever Poisson's ratio is.
+//! so a band of width b takes G_f from a crack across it, whatever Poisson's ratio is (next to clamps: `beside_clamp`).
 //! Damage scales the tensile part of the stored energy (see `split`) and, to the sixteenth power of 1 - d, the
 //! hourglass resistance, which would stiffen the band.
 //!
@@ -21,6 +21,7 @@
 //! Both change only at the ends of sub-steps of a step's second stage, which is not taken back, one particle after the
 //! other: the first stage computes with what is damaged and cut at n.
 
+mod beside_clamp;
 mod cuts;
 mod friction;
 mod growth;
@@ -58,6 +59,8 @@ pub(super) struct Fracture<const D: usize> {
     keys: Keys,
     /// E', Pa.
     modulus: f64,
+    /// dx, m.
+    spacing: f64,
     /// What happens now is not taken back.
     accepted: bool,
     /// det M inside of the lattice.
@@ -70,13 +73,13 @@ pub(super) struct Fracture<const D: usize> {
     face: f64,
     /// From a particle under the intact surface to the surface, m; zero inside.
     outward: Vec<[f64; D]>,
-    /// Width of the band of a crack through a particle, m.
-    band: Vec<f64>,
+    /// Whether a particle has neighbours in a rigid clamp, cuts aside.
+    beside_clamp: Vec<bool>,
     /// Largest strain since damage began; 0: intact.
     strain: Vec<f64>,
     /// Strain at which damage began.
     onset: Vec<f64>,
-    /// Largest principal stretch at which it did.
+    /// Largest principal stretch at which it did; beside a clamp with the opening on the free side added.
     begun: Vec<f64>,
     /// d.
     damage: Vec<f64>,
@@ -150,6 +153,7 @@ impl<const D: usize> Fracture<D> {
         Some(Self {
             keys,
             modulus: material.strip_modulus(D),
+            spacing: dx,
             accepted: false,
             inside: 1.0,
             corner: with_kernel!(scene.numerics.kernel, h, D, |k| determinant(k, dx, 0)),
@@ -158,7 +162,7 @@ impl<const D: usize> Fracture<D> {
                 .map(|_| with_kernel!(scene.numerics.kernel, h, D, |k| determinant(k, dx, -1))),
             face: dx.powi(D as i32 - 1),
             outward: Vec::new(),
-            band: Vec::new(),
+            beside_clamp: Vec::new(),
             strain: Vec::new(),
             onset: Vec::new(),
             begun: Vec::new(),
@@ -216,7 +220,9 @@ impl<const D: usize> Fracture<D> {
 
     /// Softening of a slot from this strain on.
     fn law(&self, slot: usize, onset: f64) -> Softening {
-        let law = Softening::new(onset, self.modulus, self.keys.energy / self.band[slot]);
+        // The rigid side of a clamp stores nothing: the row beside it takes all of the energy.
+        let band = if self.beside_clamp[slot] { self.spacing } else { Keys::BAND * self.spacing };
+        let law = Softening::new(onset, self.modulus, self.keys.energy / band);
         #[cfg(test)]
         let law = law.straight(self.linear);
         law
@@ -239,11 +245,8 @@ impl<const D: usize> TotalLagrangian<D> {
         (fracture.begun, fracture.damage) = (none.clone(), none);
         fracture.last = vec![Matrix::identity(); slots];
         fracture.outward = (0..slots).map(|slot| self.outward(slot, fracture.inside)).collect();
-        // The rigid side of a clamp stores nothing: the row beside it takes all of the energy, however much of the
-        // opening it sees.
         let beside = |slot| self.pairs.neighbours(slot).any(|(j, _)| self.is_rigid(j));
-        let band = |slot: usize| if beside(slot) { self.spacing } else { Keys::BAND * self.spacing };
-        fracture.band = (0..slots).map(band).collect();
+        fracture.beside_clamp = (0..slots).map(beside).collect();
         self.note_thickness(&mut fracture);
         self.fracture = Some(fracture);
     }

@@ -5,6 +5,7 @@ use halfstep_sph::lane::Isa;
 use halfstep_wire::half_step::{HalfStep, Stage};
 
 mod bar_tests;
+mod beside_clamp_tests;
 mod cantilever_tests;
 mod cut_tests;
 mod debris_tests;

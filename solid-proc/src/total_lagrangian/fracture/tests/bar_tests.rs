@@ -138,7 +138,7 @@ fn a_bar_that_is_torn_takes_its_fracture_energy_at_three_spacings() {
 #[test]
 fn an_even_bar_softens_in_all_rows_before_two_win() {
     for (dx, speed, measured) in
-        [(0.01, 0.05, 1.0565), (0.005, 0.05, 1.0380), (0.01, 0.0125, 1.0041), (0.005, 0.0125, 1.0215)]
+        [(0.01, 0.05, 1.0457), (0.005, 0.05, 1.0454), (0.01, 0.0125, 1.0034), (0.005, 0.0125, 1.0214)]
     {
         let bar = Torn::of(&even_bar(dx, speed), speed);
         println!("even {dx} m, {speed} m/s: {} of G_f A, rest {:e} J/m", bar.taken, bar.rest);
@@ -168,7 +168,7 @@ fn a_bar_that_softens_linearly_takes_the_same_energy() {
 /// than its stretch, which is what opens: by (1 - nu)² / (1 - 2 nu), 3.0 at 0.45.
 #[test]
 fn the_fracture_energy_does_not_hang_on_poissons_ratio() {
-    for (nu, measured) in [(0.0, 1.005), (0.2, 1.000), (0.3, 1.025), (0.4, 1.027), (0.45, 1.052)] {
+    for (nu, measured) in [(0.0, 1.005), (0.2, 1.000), (0.3, 1.044), (0.4, 1.020), (0.45, 1.030)] {
         let text = bar(0.005, 0.05).replace("poissons_ratio = 0", &format!("poissons_ratio = {nu}"));
         let mut run = Run::<2>::of(&text);
         while run.model.summary().bodies == 1 {
@@ -180,11 +180,14 @@ fn the_fracture_energy_does_not_hang_on_poissons_ratio() {
     }
 }
 
-/// What is not right yet: of a bar 30 mm thick, pulled between two clamps alone, the second row breaks with nu = 0.3
-/// and the first moves into its clamp, so that nothing is cut; with nu = 0 it parts.
+/// Clamps hold a strip of nu > 0 across, and concentrate stress at their ends: it breaks along one of them. Without
+/// what keeps the first row out of the clamp it does not part from nu = 0.25 on: with 0.3 it has taken 3.4 of G_f A at
+/// an opening of 1.5 mm.
 #[test]
-fn a_bar_between_clamps_need_not_part() {
-    for (nu, parts, measured) in [(0.0, true, 1.1386), (0.3, false, 3.4404)] {
+fn a_bar_between_clamps_parts_at_any_poissons_ratio() {
+    for (nu, measured) in
+        [(0.0, 1.257), (0.2, 1.104), (0.25, 1.024), (0.3, 1.119), (0.4, 1.045), (0.45, 1.084)]
+    {
         let thick = even_bar(0.005, 0.05).replace("0.02]", "0.03]").replace("energy = 1e2", "energy = 6e1");
         let mut run = Run::<2>::of(&thick.replace("poissons_ratio = 0", &format!("poissons_ratio = {nu}")));
         while run.model.summary().bodies == 1 && run.time < 0.03 {
@@ -192,8 +195,13 @@ fn a_bar_between_clamps_need_not_part() {
         }
         let summary = run.model.summary();
         let taken = summary.energy / (60.0 * 0.03);
-        println!("nu {nu}: {taken} of G_f A at {} mm, area {}", 50.0 * run.time, summary.area);
-        assert_eq!((summary.bodies > 1, summary.area > 0.0), (parts, parts), "{nu}");
+        println!("nu {nu}: {taken} of G_f A at {} mm, rest {} J/m", 50.0 * run.time, run.rest());
+        let mut cuts = run.model.fracture.iter().flat_map(|fracture| &fracture.cuts);
+        let along_clamp = cuts.all(|cut| cut.iter().any(|&slot| !run.model.is_free(slot)));
+        assert!(along_clamp, "{nu}");
+        assert_eq!((summary.bodies, summary.loose), (2, 0), "{nu}");
+        assert!((summary.area / 0.03 - 1.0).abs() < 1e-9, "{nu}: {}", summary.area);
         assert!((taken - measured).abs() < 0.01, "{nu}: {taken}");
+        assert!(run.rest().abs() < 1e-3 * 60.0 * 0.03, "{nu}: {}", run.rest());
     }
 }

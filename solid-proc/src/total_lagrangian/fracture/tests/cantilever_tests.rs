@@ -147,13 +147,13 @@ fn a_brittle_cantilever_breaks_where_beam_theory_says() {
     let short = Cantilever { length: 0.16, ramp: 0.06, ..BEAM };
     let fine = Cantilever { across: 10.0, brittleness: 8.0, ..short };
     for (beam, measured) in [
-        (BEAM, [0.969, 0.989]),
-        (Cantilever { ramp: 0.12, ..short }, [0.958, 0.977]),
-        (short, [0.946, 0.984]),
-        (fine, [0.941, 0.956]),
-        // A softening along a straight line bears more before it is cut, by 1 and 8 %.
-        (Cantilever { linear: true, ..short }, [0.946, 0.9935]),
-        (Cantilever { linear: true, ..fine }, [0.941, 1.030]),
+        (BEAM, [0.969, 0.983]),
+        (Cantilever { ramp: 0.12, ..short }, [0.958, 0.976]),
+        (short, [0.946, 0.9815]),
+        (fine, [0.941, 0.951]),
+        // A softening along a straight line bears more before it is cut, by 0.4 and 2.7 %.
+        (Cantilever { linear: true, ..short }, [0.946, 0.9855]),
+        (Cantilever { linear: true, ..fine }, [0.941, 0.9765]),
     ] {
         beam.breaks_at(measured);
     }
@@ -262,5 +262,5 @@ fn walls_of_few_rows_take_their_fracture_energy() {
 /// A turned lattice has ragged faces and clamps: the first damage misses the 5 % of a straight one.
 #[test]
 fn a_cantilever_of_a_turned_lattice_breaks_earlier() {
-    Cantilever { angle: 30.0, ..BEAM }.breaks_at([0.923, 0.946]);
+    Cantilever { angle: 30.0, ..BEAM }.breaks_at([0.923, 0.942]);
 }

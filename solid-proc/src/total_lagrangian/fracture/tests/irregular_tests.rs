@@ -62,14 +62,14 @@ fn bars(dx: f64, measured: [[f64; 3]; 4]) {
 /// Of a lattice the bar has 0.96 of its strength, which is what the clamps' corners leave, and takes 0.99 of G_f A.
 #[test]
 fn an_irregular_bar_has_its_strength_and_takes_its_energy() {
-    let seeds = [[0.948, 0.945, 1.055], [0.914, 1.036, 1.212], [0.891, 0.964, 1.059]];
-    bars(0.005, [[0.961, 0.989, 1.038], seeds[0], seeds[1], seeds[2]]);
+    let seeds = [[0.948, 0.945, 1.056], [0.909, 0.978, 1.122], [0.891, 0.964, 1.058]];
+    bars(0.005, [[0.962, 0.994, 1.045], seeds[0], seeds[1], seeds[2]]);
 }
 
 #[test]
 #[ignore = "a minute"]
 fn a_finer_irregular_bar() {
-    let seeds = [[0.945, 0.954, 1.042], [0.939, 0.981, 1.065], [0.944, 0.977, 1.130]];
+    let seeds = [[0.945, 0.954, 1.042], [0.939, 0.975, 1.061], [0.944, 1.044, 1.156]];
     bars(0.0025, [[0.952, 0.977, 1.034], seeds[0], seeds[1], seeds[2]]);
 }
 
