@@ -7,7 +7,7 @@ use halfstep_tests::{Finished, RunBuilder};
 use std::path::Path;
 
 /// A dam break on a weak wall, three particles across, and a second solid behind it that does not break. The water is
-/// there at 0.085 s; at 0.14 s there are 13 bodies, and at 0.15 s the largest one hits the second wall.
+/// there at 0.085 s; at 0.14 s there are 30 bodies, and at 0.15 s they hit the second wall.
 const SCENE: &str = r#"
 resolution = 0.005
 end_time = 0.18
@@ -110,8 +110,8 @@ fn cracks_and_debris_hang_on_no_process_and_no_thread() {
     let end = &frames[frames.len() - 1].damage;
     let cracked = end.iter().filter(|damage| **damage > 0.95).count();
     println!("{cracked} of {}", end.len());
-    // 30 of the wall's 60: some are crumbs, and some are whole.
-    assert!((24..37).contains(&cracked) && cracked < end.len(), "{cracked} of {}", end.len());
+    // 45 of the wall's 60, 12 of which the clamp holds: most are crumbs, and some are whole.
+    assert!((39..49).contains(&cracked) && cracked < end.len(), "{cracked} of {}", end.len());
     assert!(end.iter().all(|damage| (0.0..=1.0).contains(damage)) && end.contains(&0.0));
     assert!(three.outcome.frames("second").iter().all(|frame| frame.damage.is_empty()));
     // One body at the start, several once it is cracked through.

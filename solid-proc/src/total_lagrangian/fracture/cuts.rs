@@ -9,6 +9,9 @@ use halfstep_sph::tensor;
 /// Part of the smaller of both particles' strains by which a pair has to be stretched to be cut. Across a crack along a
 /// row it is stretched by 2 (straight) or 1 (diagonal) of them, along it by nothing.
 const STRETCHED: f64 = 0.5;
+/// Opening between a broken particle and one that is not, over that with which its band is broken, from which on they
+/// are cut: the other would go on pulling with its hourglass resistance. A crack that breaks both is cut before.
+const LET_GO: f64 = 1.5;
 /// Smallest determinant of the moment matrix with which a particle that was cut off from neighbours keeps a
 /// deformation gradient, over that of a corner of the lattice.
 const SMALLEST: f64 = 0.5;
@@ -28,14 +31,23 @@ impl<const D: usize> TotalLagrangian<D> {
     }
 
     /// Pairs that are to be cut in the present state, by their slots, ascending.
-    fn torn(&self, fracture: &Fracture<D>) -> Vec<[usize; 2]> {
+    pub(super) fn torn(&self, fracture: &Fracture<D>) -> Vec<[usize; 2]> {
         let mut torn = Vec::new();
         let broken = |slot: usize| fracture.is_broken(slot);
         // A rigid clamp has no damage: the particle beside it decides.
         let rigid = |slot: usize| self.is_rigid(slot);
         for &i in fracture.damaged.iter().filter(|&&slot| broken(slot)) {
+            let open = fracture.band(i) * fracture.softening(i).strain_of(super::BROKEN);
             for (j, _) in self.pairs.neighbours(i) {
-                if !(broken(j) && i < j || rigid(j)) {
+                if !(broken(j) || rigid(j)) {
+                    // Of an opening a pair of length R shows dx / R.
+                    let strain = LET_GO * open * self.spacing / self.apart(i, j).norm_squared();
+                    if self.is_stretched([i, j], strain) {
+                        torn.push([i.min(j), i.max(j)]);
+                    }
+                    continue;
+                }
+                if !(i < j || rigid(j)) {
                     continue;
                 }
                 let strain =

@@ -9,7 +9,8 @@
 //! hourglass resistance, which would stiffen the band.
 //!
 //! **Cuts.** A stretched pair of two particles that have 0.5 % of their strength left is cut: its weight is zero in
-//! the moment matrix, the deformation gradient, the force and the hourglass term, and both get a new moment matrix.
+//! the moment matrix, the deformation gradient, the force and the hourglass term, and both get a new moment matrix. So
+//! is a pair with one such particle once it has opened half as far again.
 //! So force stays the derivative of an energy. What damage and cuts take of the energy of the present state is booked
 //! when they happen.
 //!
@@ -218,11 +219,15 @@ impl<const D: usize> Fracture<D> {
         self.law(slot, self.onset[slot])
     }
 
+    /// Width of the band of a crack through a particle, m. The rigid side of a clamp stores nothing: the row beside it
+    /// takes all of the energy.
+    fn band(&self, slot: usize) -> f64 {
+        if self.beside_clamp[slot] { self.spacing } else { Keys::BAND * self.spacing }
+    }
+
     /// Softening of a slot from this strain on.
     fn law(&self, slot: usize, onset: f64) -> Softening {
-        // The rigid side of a clamp stores nothing: the row beside it takes all of the energy.
-        let band = if self.beside_clamp[slot] { self.spacing } else { Keys::BAND * self.spacing };
-        let law = Softening::new(onset, self.modulus, self.keys.energy / band);
+        let law = Softening::new(onset, self.modulus, self.keys.energy / self.band(slot));
         #[cfg(test)]
         let law = law.straight(self.linear);
         law

@@ -160,17 +160,17 @@ fn a_brittle_cantilever_breaks_where_beam_theory_says() {
 }
 
 /// Without a swing. Plane elasticity has the outermost particle at the clamp reach f_t at 0.98 (10 across) and 0.97
-/// (20) of beam theory's load: the clamp holds the section from warping. Measured: 0.965 and 0.962; the break at 0.971
-/// and 1.040. Asked for are 5 and 10 %; bands of 1 % about what is measured lie within. In the turned lattice the first
+/// (20) of beam theory's load: the clamp holds the section from warping. Measured: 0.965 and 0.962; the break at 0.968
+/// and 1.025. Asked for are 5 and 10 %; bands of 1 % about what is measured lie within. In the turned lattice the first
 /// damage misses them, and the break meets them where the band is wide beside the spacing: 20 across, 4.5.
 #[test]
 #[ignore = "a quarter of an hour"]
 fn finer_cantilevers_break_where_beam_theory_says() {
     let cases = [
-        (5.0, 4.5, 0.0, [0.959, 0.979]),
-        (10.0, 8.0, 0.0, [0.965, 0.971]),
-        (20.0, 8.0, 0.0, [0.962, 1.040]),
-        (10.0, 4.5, 0.0, [0.965, 1.091]),
+        (5.0, 4.5, 0.0, [0.959, 0.973]),
+        (10.0, 8.0, 0.0, [0.965, 0.968]),
+        (20.0, 8.0, 0.0, [0.962, 1.025]),
+        (10.0, 4.5, 0.0, [0.965, 1.061]),
         (10.0, 8.0, 30.0, [0.829, 0.830]),
         (10.0, 4.5, 30.0, [0.829, 0.835]),
         (20.0, 8.0, 30.0, [0.795, 0.852]),
@@ -185,7 +185,7 @@ fn finer_cantilevers_break_where_beam_theory_says() {
 #[test]
 #[ignore = "a minute"]
 fn an_irregular_cantilever_breaks_where_beam_theory_says() {
-    for (brittleness, measured) in [(8.0, [0.959, 0.965]), (4.5, [0.959, 1.042])] {
+    for (brittleness, measured) in [(8.0, [0.959, 0.962]), (4.5, [0.959, 1.043])] {
         let beam = Cantilever { across: 10.0, brittleness, irregular: true, glides: true, ..BEAM };
         beam.breaks_at(measured);
     }

@@ -133,3 +133,33 @@ fn a_crack_along_a_clamp_that_cuts_a_row_takes_its_fracture_energy() {
     println!("{taken} of G_f A, at {} s", run.time);
     assert!(is_along_clamp(&run) && (taken - 1.018).abs() < 0.003, "{taken}");
 }
+
+/// A broken particle lets go of three intact ones above it, a straight and two diagonal pairs, when they are 1.5 times
+/// as far from it as a broken band is open.
+#[test]
+fn a_broken_particle_lets_go_of_intact_ones() {
+    let dx = 0.005;
+    let text = solid(dx, 0.0, &strength_and_energy(1e6, 100.0))
+        + "[[shape]]\nname = \"block\"\nphase = \"solid\"\nbox = { min = [0.0, 0.0], max = [0.055, 0.055] }\n";
+    let mut model = Run::<2>::of(&text).model;
+    let middle = |&&slot: &&u32| {
+        let [x, y] = model.position_at(slot as usize);
+        (x - 0.0275).abs() < 1e-9 && (y - 0.0275).abs() < 1e-9
+    };
+    let slot = *model.slot_of.iter().find(middle).expect("a particle") as usize;
+    let fracture = model.fracture.as_mut().expect("fracture");
+    fracture.onset[slot] = 1e-3;
+    // e_f = G_f / (f_t b) - e0 / 2, and 0.5 % of the strength are left.
+    let broken = 1e-3 - (0.01 - 0.5e-3) * 0.005_f64.ln();
+    fracture.strain[slot] = 1.001 * broken;
+    fracture.damaged = vec![slot];
+    for (part, pairs) in [(0.95, 0), (1.02, 3)] {
+        for other in model.slot_of.clone().into_iter().map(|slot| slot as usize) {
+            let above = model.pairs.position()[1][other] > 0.028;
+            model.now.displacement[1][other] = if above { part * 1.5 * 2.0 * dx * broken } else { 0.0 };
+        }
+        let torn = model.torn(model.fracture.as_ref().expect("fracture"));
+        assert_eq!(torn.len(), pairs, "{torn:?}");
+        assert!(torn.iter().all(|pair| pair.contains(&slot)), "{torn:?}");
+    }
+}
