@@ -61,7 +61,7 @@ impl<const D: usize> TotalLagrangian<D> {
 
     /// What keeps a damaged particle out of its clamp, pair by pair: the clamped slot, stiffness per volume, Pa/m², and
     /// way into the clamp, m.
-    fn into_clamp(&self, slot: usize) -> impl Iterator<Item = (usize, f64, SVector<f64, D>)> + '_ {
+    fn ways_into_clamp(&self, slot: usize) -> impl Iterator<Item = (usize, f64, SVector<f64, D>)> + '_ {
         let taken = self.hourglass_modulus - self.hourglass[slot];
         let gain = 1.0 + self.fixed.excess_gain[slot];
         let clamped = self.pairs.neighbours(slot).filter(|&(j, _)| self.is_rigid(j));
@@ -77,7 +77,7 @@ impl<const D: usize> TotalLagrangian<D> {
         if !self.fracture.as_ref().is_some_and(|fracture| self.may_go_into_clamp(fracture, slot)) {
             return 0.0;
         }
-        self.into_clamp(slot)
+        self.ways_into_clamp(slot)
             .map(|(_, stiffness, way)| 0.5 * self.volume * stiffness * way.norm_squared())
             .sum()
     }
@@ -91,7 +91,7 @@ impl<const D: usize> TotalLagrangian<D> {
         };
         let Some(fracture) = &self.fracture else { return };
         for &slot in fracture.damaged.iter().filter(|&&slot| self.may_go_into_clamp(fracture, slot)) {
-            for (j, stiffness, way) in self.into_clamp(slot) {
+            for (j, stiffness, way) in self.ways_into_clamp(slot) {
                 let gain = 1.0 + self.fixed.excess_gain[slot];
                 let a = way * (gain * stiffness / self.material.density);
                 add(slot, &-a);
