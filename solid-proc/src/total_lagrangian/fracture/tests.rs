@@ -124,7 +124,8 @@ fn bar_of_a_turned_lattice(dx: f64, angle: f64) -> String {
 #[test]
 #[ignore = "half a minute"]
 fn a_bar_of_a_turned_lattice() {
-    for (dx, along, turned) in [(0.005, 1.16, 1.32), (0.0025, 1.18, 1.00), (0.00125, 1.06, 1.15)] {
+    let mut wrong = Vec::new();
+    for (dx, along, turned) in [(0.005, 1.26, 1.32), (0.0025, 1.17, 1.02), (0.00125, 1.06, 1.15)] {
         for (angle, measured) in [(0.0, along), (30.0, turned)] {
             let mut run = Run::<2>::of(&bar_of_a_turned_lattice(dx, angle));
             while run.model.summary().bodies == 1 && run.time < 0.02 {
@@ -134,9 +135,12 @@ fn a_bar_of_a_turned_lattice() {
             // notch softens what the crack does not reach. 0.02: a row or a crumb more is 0.06 and more.
             let taken = run.model.summary().energy / (100.0 * 0.016);
             println!("{dx} m, {angle} degrees: {taken}");
-            assert!((taken - measured).abs() < 0.02, "{dx} {angle}: {taken}");
+            if (taken - measured).abs() > 0.02 {
+                wrong.push((dx, angle, taken));
+            }
         }
     }
+    assert!(wrong.is_empty(), "{wrong:?}");
 }
 
 /// A free strip whose halves fly apart, turned by an angle about the origin.
