@@ -38,24 +38,20 @@ impl<const D: usize> TotalLagrangian<D> {
         let rigid = |slot: usize| self.is_rigid(slot);
         for &i in fracture.damaged.iter().filter(|&&slot| broken(slot)) {
             let open = fracture.band(i) * fracture.softening(i).strain_of(super::BROKEN);
-            for (j, _) in self.pairs.neighbours(i) {
-                if !(broken(j) || rigid(j)) {
+            for (j, _) in self.pairs.neighbours(i).filter(|&(j, _)| !(broken(j) && j < i)) {
+                let both = broken(j) || rigid(j);
+                let strain = if rigid(j) {
+                    STRETCHED * fracture.strain[i]
+                } else if both {
+                    STRETCHED * fracture.strain[i].min(fracture.strain[j])
+                } else {
                     // Of an opening a pair of length R shows dx / R.
-                    let strain = LET_GO * open * self.spacing / self.apart(i, j).norm_squared();
-                    if self.is_stretched([i, j], strain) {
-                        torn.push([i.min(j), i.max(j)]);
-                    }
-                    continue;
-                }
-                if !(i < j || rigid(j)) {
-                    continue;
-                }
-                let strain =
-                    if rigid(j) { fracture.strain[i] } else { fracture.strain[i].min(fracture.strain[j]) };
+                    LET_GO * open * self.spacing / self.apart(i, j).norm_squared()
+                };
                 // A row that bends is torn at an edge.
-                let mut edges = fracture.ligaments_of(i).iter().filter(|ligament| ligament.next == j);
-                if self.is_stretched([i, j], STRETCHED * strain)
-                    || edges.any(|ligament| self.is_edge_stretched(ligament, STRETCHED * strain))
+                let mut edges = fracture.ligaments_of(i).iter().filter(|ligament| both && ligament.next == j);
+                if self.is_stretched([i, j], strain)
+                    || edges.any(|ligament| self.is_edge_stretched(ligament, strain))
                 {
                     torn.push([i.min(j), i.max(j)]);
                 }
@@ -134,13 +130,13 @@ impl<const D: usize> TotalLagrangian<D> {
     fn overstrained(&mut self, touched: &[usize]) -> Vec<[usize; 2]> {
         let Some(fracture) = &self.fracture else { return Vec::new() };
         let most = self.volume * fracture.keys.strength.powi(2) / (2.0 * fracture.modulus);
-        let held: Vec<f64> = touched.iter().map(|&slot| self.energy_at(slot)).collect();
+        let held: Vec<f64> = touched.iter().map(|&slot| self.stored_at(slot)).collect();
         self.first_pass();
         let mut pairs = Vec::new();
         for (&slot, held) in touched.iter().zip(held) {
             self.gradient[slot] = self.gradient_at(slot);
             self.volume_ratio[slot] = self.law.volume_ratio(&self.gradient[slot]);
-            let now = self.energy_at(slot);
+            let now = self.stored_at(slot);
             if now.is_nan() || now > held + most {
                 pairs.extend(self.pairs.neighbours(slot).map(|(j, _)| [slot.min(j), slot.max(j)]));
             }

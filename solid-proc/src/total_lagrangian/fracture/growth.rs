@@ -69,17 +69,6 @@ impl<const D: usize> TotalLagrangian<D> {
         }
     }
 
-    /// Energy of a slot's strain, error vectors, and way into a clamp, J.
-    pub(in crate::total_lagrangian) fn energy_at(&self, slot: usize) -> f64 {
-        let (f, j) = (&self.gradient[slot], self.volume_ratio[slot]);
-        let strained = match self.damage_at(slot) {
-            d if d > 0.0 => self.volume * self.law.damaged(f, j, d).energy,
-            _ => self.volume * self.law.energy(f, j),
-        };
-        let unseen = 0.5 * self.hourglass[slot] * self.volume * self.error_square(slot);
-        strained + unseen + self.energy_beside_clamp(slot)
-    }
-
     /// Damage grows in these particles, ascending, whose stresses are those of the state, and in last rows.
     pub(in crate::total_lagrangian) fn grow(&mut self, mut candidates: Vec<usize>) {
         let Some(fracture) = &self.fracture else { return };
@@ -130,7 +119,7 @@ impl<const D: usize> TotalLagrangian<D> {
             }
         }
         for (slot, point) in grown {
-            let before = self.energy_at(slot);
+            let before = self.stored_at(slot);
             let Some(fracture) = &mut self.fracture else { return };
             if fracture.strain[slot] == 0.0 {
                 let place = fracture.damaged.partition_point(|&other| other < slot);
@@ -139,7 +128,7 @@ impl<const D: usize> TotalLagrangian<D> {
             let (old, damage, last) = (fracture.damage[slot], point.damage, fracture.last[slot]);
             fracture.set(slot, &point);
             self.soften(slot);
-            let after = before - self.energy_at(slot);
+            let after = before - self.stored_at(slot);
             // Over the sub-step, in which the strain went from the last one to the present one: for e² the velocity
             // Verlet scheme takes the geometric mean, exactly.
             let [last, present] =

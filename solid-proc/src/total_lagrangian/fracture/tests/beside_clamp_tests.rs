@@ -1,6 +1,6 @@
 //! Damage in the row beside a rigid clamp.
 
-use super::{Run, solid, strength_and_energy};
+use super::{Run, slope_of_energy, slot_at, solid, strength_and_energy};
 use crate::total_lagrangian::TotalLagrangian;
 
 const DX: f64 = 0.005;
@@ -16,11 +16,7 @@ fn clamped_with(keys: &str) -> (TotalLagrangian<2>, usize) {
            clamp = { min = [0.0, -0.02], max = [0.055, 0.0] }\n"
         + keys;
     let model = Run::<2>::of(&text).model;
-    let middle = |&&slot: &&u32| {
-        let [x, y] = model.position_at(slot as usize);
-        (x - 0.0275).abs() < 1e-9 && (y - 0.5 * DX).abs() < 1e-9
-    };
-    let slot = *model.slot_of.iter().find(middle).expect("a particle") as usize;
+    let slot = slot_at(&model, [0.0275, 0.5 * DX]);
     (model, slot)
 }
 
@@ -134,20 +130,13 @@ fn what_keeps_it_out_is_the_slope_of_the_energy() {
     for rows in [[-w, 3.0 * w], [-w, -2.0 * w]] {
         displace(&mut model, 1e-3, |row| rows[row.min(1)]);
         assert!(model.energy_beside_clamp(slot) > 0.0);
-        let largest = model.now.acceleration[1].iter().fold(0.0_f64, |most, a| most.max(a.abs()));
+        let acceleration = model.now.acceleration.clone();
+        let largest = acceleration[1].iter().fold(0.0_f64, |most, a| most.max(a.abs()));
         let around = model.pairs.neighbours(slot).map(|(j, _)| j).chain([slot]);
         for slot in around.filter(|&j| !model.is_rigid(j)).collect::<Vec<_>>() {
             for d in 0..2 {
-                let (at, a) = (model.now.displacement[d][slot], model.now.acceleration[d][slot]);
-                let [ahead, behind] = [1e-8, -1e-8].map(|by| {
-                    model.now.displacement[d][slot] = at + by;
-                    model.evaluate(0.0);
-                    model.energy()
-                });
-                model.now.displacement[d][slot] = at;
-                model.evaluate(0.0);
-                let found = (behind - ahead) / (2e-8 * model.mass);
-                assert!((found - a).abs() < 1e-6 * largest, "{rows:?} {slot} {d}: {found} {a}");
+                let (found, expected) = (slope_of_energy(&mut model, slot, d), acceleration[d][slot]);
+                assert!((found - expected).abs() < 1e-6 * largest, "{rows:?} {slot} {d}: {found} {expected}");
             }
         }
     }

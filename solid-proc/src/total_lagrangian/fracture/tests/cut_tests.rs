@@ -1,7 +1,7 @@
 //! Cuts beside clamps and over an interruption.
 
 use super::super::determinant;
-use super::{Run, halves, run_on, solid, strength_and_energy};
+use super::{Run, halves, run_on, slot_at, solid, strength_and_energy};
 use crate::total_lagrangian::material::Matrix;
 use halfstep_sph::tensor;
 use halfstep_wire::state::State;
@@ -94,9 +94,7 @@ fn corners_by_hand() {
 
 /// Along the clamp, nowhere else, and as high as the bar.
 fn is_along_clamp(run: &Run<2>) -> bool {
-    let mut cuts = run.model.fracture.iter().flat_map(|fracture| &fracture.cuts);
-    let area = run.model.summary().area;
-    (area - 0.04).abs() < 1e-9 && cuts.all(|cut| cut.iter().any(|&slot| !run.model.is_free(slot)))
+    (run.model.summary().area - 0.04).abs() < 1e-9 && run.is_cut_along_clamps()
 }
 
 /// Pulled in all its length, most at the clamp.
@@ -142,11 +140,7 @@ fn a_broken_particle_lets_go_of_intact_ones() {
     let text = solid(dx, 0.0, &strength_and_energy(1e6, 100.0))
         + "[[shape]]\nname = \"block\"\nphase = \"solid\"\nbox = { min = [0.0, 0.0], max = [0.055, 0.055] }\n";
     let mut model = Run::<2>::of(&text).model;
-    let middle = |&&slot: &&u32| {
-        let [x, y] = model.position_at(slot as usize);
-        (x - 0.0275).abs() < 1e-9 && (y - 0.0275).abs() < 1e-9
-    };
-    let slot = *model.slot_of.iter().find(middle).expect("a particle") as usize;
+    let slot = slot_at(&model, [0.0275, 0.0275]);
     let fracture = model.fracture.as_mut().expect("fracture");
     fracture.onset[slot] = 1e-3;
     // e_f = G_f / (f_t b) - e0 / 2, and 0.5 % of the strength are left.

@@ -138,7 +138,7 @@ impl Piece {
 
     /// What it stores, J/m.
     fn stored(&self) -> f64 {
-        self.slots.iter().map(|&slot| self.model.energy_at(slot)).sum()
+        self.slots.iter().map(|&slot| self.model.stored_at(slot)).sum()
     }
 
     /// Particles without a deformation gradient.

@@ -58,7 +58,7 @@ fn pulled(nu: f64, opening: f64, across: Across) -> Pulled {
     }
     let per_volume = 2.0 * DX / (energy * DX * DX);
     let taken = model.summary().energy / slots.len() as f64 * per_volume;
-    Pulled { taken, stored: model.energy_at(middle) * per_volume, least }
+    Pulled { taken, stored: model.stored_at(middle) * per_volume, least }
 }
 
 /// The stretch across at which the nominal stress across is that, near `t`.
