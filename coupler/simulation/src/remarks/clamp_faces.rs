@@ -14,8 +14,18 @@ pub(super) fn clamp_faces(scene: &Scene, all: &mut Vec<String>) {
     if scene.switch(EffectName::ClampFace) == Switch::Off {
         return;
     }
-    // Turned rows are cut by every face.
-    for shape in scene.shapes.iter().filter(|shape| shape.lattice_angle == 0.0) {
+    for shape in &scene.shapes {
+        // Turned rows are cut by every face.
+        if is_turned(shape) {
+            if !shape.clamp.is_empty() && breaks(scene, shape) {
+                all.push(format!(
+                    "the clamp of `{}` crosses the rows of its lattice: it breaks there at 0.7 to 0.85 of the load \
+                     that it bears where rows lie along the clamp",
+                    shape.name
+                ));
+            }
+            continue;
+        }
         let model = shape.solid.and_then(|k| scene.solids.get(k)).map(|solid| solid.model.name());
         let Geometry::Box(body) = &shape.geometry else { continue };
         let elements = model == Some(SolidModelName::FiniteElement);
@@ -33,6 +43,20 @@ pub(super) fn clamp_faces(scene: &Scene, all: &mut Vec<String>) {
     }
 }
 
+/// Rows of the shape's lattice are not along the axes, as faces of clamps are.
+fn is_turned(shape: &Shape) -> bool {
+    let by = match &shape.geometry {
+        Geometry::Moved(moved) => moved.angle,
+        _ => 0.0,
+    };
+    shape.lattice_angle % 90.0 != 0.0 || by % 90.0 != 0.0
+}
+
+/// The shape is of a solid that can break.
+fn breaks(scene: &Scene, shape: &Shape) -> bool {
+    shape.solid.is_some_and(|solid| scene.fracture(solid).is_some())
+}
+
 fn cut(scene: &Scene, shape: &Shape, axis: usize, first: f64, face: f64, elements: bool) -> Option<String> {
     let dx = scene.spacing(shape);
     // Boundaries between rows lie at whole numbers of spacings, `nodal` half a spacing beside.
@@ -46,8 +70,13 @@ fn cut(scene: &Scene, shape: &Shape, axis: usize, first: f64, face: f64, element
         true => "its elements are held as a whole where their middle is in the clamp",
         false => "it is held more softly than there",
     };
+    let early = if !elements && breaks(scene, shape) {
+        ", and breaks there at as little as 0.6 of the load"
+    } else {
+        ""
+    };
     Some(format!(
-        "a face of the clamp of `{}`, at {} = {} m, cuts a row of its particles: {held}. Between rows are {} and {} m",
+        "a face of the clamp of `{}`, at {} = {} m, cuts a row of its particles: {held}{early}. Between rows are {} and {} m",
         shape.name,
         ["x", "y", "z"][axis],
         length(face),
@@ -132,4 +161,61 @@ fn held_in_part<const D: usize>(
     let extent = |a: &usize| body.max[*a] - body.min[*a];
     let along = (0..D).max_by(|a, b| extent(a).total_cmp(&extent(b)))?;
     rows(along).into_values().max_by_key(|[held, _]| *held)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::remarks::remarks;
+    use crate::remarks::tests::{PLATE, TANK, WATER, plain};
+    use halfstep_scene::parse;
+    use std::path::Path;
+
+    /// Rows of 5 mm from 0: the face of a clamp at 12.5 mm runs through the middle of one, at 10 mm between two.
+    #[test]
+    fn the_face_of_a_clamp_that_cuts_a_row() {
+        let cut = PLATE.replace("max = [0.22, 0.01]", "max = [0.22, 0.0125]");
+        let found = plain(&[TANK, WATER, &cut]);
+        assert_eq!(
+            found,
+            [
+                "a face of the clamp of `plate`, at y = 0.0125 m, cuts a row of its particles: it is held more softly than \
+              there. Between rows are 0.01 and 0.015 m"
+            ]
+        );
+        // Nodal rows lie at whole spacings, so the boundaries between them do not.
+        let nodal = "[numerics]\nlattice = \"nodal\"\n";
+        let cuts = |parts: &[&str]| plain(parts).iter().filter(|text| text.contains("cuts a row")).count();
+        assert_eq!(cuts(&[TANK, WATER, &cut, nodal]), 0);
+        assert_eq!(cuts(&[TANK, WATER, PLATE, nodal]), 1);
+        assert_eq!(plain(&[TANK, WATER, &cut, "[effects]\nclamp-face = \"off\"\n"]), [""; 0]);
+    }
+
+    /// Tests of bars in `solid-proc` measure the loads.
+    #[test]
+    fn where_a_breakable_solid_breaks_early_beside_its_clamp() {
+        let of = |plate: &str, more: &str| {
+            let head = "resolution = 0.005\nend_time = 1.0\n[solid]\ndensity = 1100.0\nyoungs_modulus = 12e6\n\
+                        poissons_ratio = 0.4\nfracture = { strength = 1e5, energy = 10.0 }\n";
+            let scene = parse(&format!("{head}{plate}{more}"), Path::new("x.toml"), &[]);
+            let all = remarks(&scene.unwrap_or_else(|e| panic!("{e:?}")));
+            all.into_iter().filter(|text| text.contains("of the load")).collect::<Vec<_>>()
+        };
+        let off = "[effects]\nfracture = \"off\"\n";
+        let cut = PLATE.replace("max = [0.22, 0.01]", "max = [0.22, 0.0125]");
+        assert_eq!(of(PLATE, ""), [""; 0]);
+        assert_eq!(of(&cut, off), [""; 0]);
+        let told = of(&cut, "");
+        assert!(
+            told.len() == 1 && told[0].contains("than there, and breaks there at as little as 0.6"),
+            "{told:?}"
+        );
+        let turned = format!("{PLATE}lattice_angle = 30\n");
+        assert_eq!(of(&turned, off), [""; 0]);
+        let told = of(&turned, "");
+        assert!(told.len() == 1 && told[0].starts_with("the clamp of `plate` crosses the rows"), "{told:?}");
+        // A turned shape takes its lattice along, and not its clamp.
+        let told = of(&format!("{PLATE}rotate = {{ angle = 30.0, about = [0.21, 0.005] }}\n"), "");
+        assert!(told.len() == 1 && told[0].starts_with("the clamp of `plate` crosses the rows"), "{told:?}");
+        assert_eq!(of(&format!("{PLATE}lattice_angle = 90\n"), ""), [""; 0]);
+    }
 }

@@ -190,26 +190,6 @@ fn units_that_are_hardly_meant() {
     );
 }
 
-/// Rows of 5 mm from 0: the face of a clamp at 12.5 mm runs through the middle of one, at 10 mm between two.
-#[test]
-fn the_face_of_a_clamp_that_cuts_a_row() {
-    let cut = PLATE.replace("max = [0.22, 0.01]", "max = [0.22, 0.0125]");
-    let found = plain(&[TANK, WATER, &cut]);
-    assert_eq!(
-        found,
-        [
-            "a face of the clamp of `plate`, at y = 0.0125 m, cuts a row of its particles: it is held more softly than \
-          there. Between rows are 0.01 and 0.015 m"
-        ]
-    );
-    // Nodal rows lie at whole spacings, so the boundaries between them do not.
-    let nodal = "[numerics]\nlattice = \"nodal\"\n";
-    let cuts = |parts: &[&str]| plain(parts).iter().filter(|text| text.contains("cuts a row")).count();
-    assert_eq!(cuts(&[TANK, WATER, &cut, nodal]), 0);
-    assert_eq!(cuts(&[TANK, WATER, PLATE, nodal]), 1);
-    assert_eq!(plain(&[TANK, WATER, &cut, "[effects]\nclamp-face = \"off\"\n"]), [""; 0]);
-}
-
 #[test]
 fn a_wall_thinner_than_the_support() {
     // 2h = 3 dx = 15 mm; a weir of 10 mm in the water is two rows.

@@ -12,8 +12,12 @@
 //!   E_i = 1/2 V0 (alpha G - a_i) sum_j w min(beta u_ij . n, 0)²,   j clamped,
 //! with what damage has taken of the hourglass modulus; the force is its derivative. It comes on top of what F sees
 //! where a damaged particle is pressed on its clamp.
+//!
+//! **Off the clamp.** Where a clamp's face crosses the rows, a crack along the face may break what lies next to it and
+//! leave particles of the next row intact, which go on pulling at the clamp with their hourglass resistance.
 
 use super::Fracture;
+use super::cuts::LET_GO;
 use super::principal::principal;
 use crate::total_lagrangian::model::TotalLagrangian;
 use crate::total_lagrangian::pass::Acceleration;
@@ -52,6 +56,29 @@ impl<const D: usize> TotalLagrangian<D> {
             -self.volume * slope * (now - then) * apart.dot(&row)
         });
         strain.sum()
+    }
+
+    /// Adds to `torn` what holds particles that are not broken on their clamps across a crack: the pairs that are
+    /// longer than F tells, by as much as lets go of a broken particle. Of an opening a pair of length R shows dx / R.
+    pub(super) fn leave_clamps(&self, fracture: &Fracture<D>, torn: &mut Vec<[usize; 2]>) {
+        let beside_crack = |&&slot: &&usize| fracture.is_broken(slot);
+        let near = fracture.damaged.iter().filter(beside_crack).flat_map(|&slot| self.pairs.list().of(slot));
+        let holds = |&slot: &usize| {
+            let free = fracture.beside_clamp[slot] && self.is_free(slot) && self.has_strain(slot);
+            free && !fracture.is_broken(slot)
+        };
+        for i in near.filter(holds) {
+            let most = LET_GO * fracture.broken_opening(i) * self.spacing;
+            for (j, _) in self.pairs.neighbours(i).filter(|&(j, _)| self.is_rigid(j)) {
+                let then = self.apart(i, j);
+                let now = (then + self.displaced(i, j)).norm();
+                // A squeeze shows the pair less than F, whose gain is the clamp's: that opens nothing.
+                let closed = (self.gradient[i] * then).norm().max(then.norm());
+                if now - closed > most / then.norm() {
+                    torn.push([i.min(j), i.max(j)]);
+                }
+            }
+        }
     }
 
     /// The slot has a damaged particle beside a clamp, with a deformation gradient.

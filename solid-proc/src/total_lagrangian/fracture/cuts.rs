@@ -11,7 +11,7 @@ use halfstep_sph::tensor;
 const STRETCHED: f64 = 0.5;
 /// Opening between a broken particle and one that is not, over that with which its band is broken, from which on they
 /// are cut: the other would go on pulling with its hourglass resistance. A crack that breaks both is cut before.
-const LET_GO: f64 = 1.5;
+pub(super) const LET_GO: f64 = 1.5;
 /// Smallest determinant of the moment matrix with which a particle that was cut off from neighbours keeps a
 /// deformation gradient, over that of a corner of the lattice.
 const SMALLEST: f64 = 0.5;
@@ -37,7 +37,6 @@ impl<const D: usize> TotalLagrangian<D> {
         // A rigid clamp has no damage: the particle beside it decides.
         let rigid = |slot: usize| self.is_rigid(slot);
         for &i in fracture.damaged.iter().filter(|&&slot| broken(slot)) {
-            let open = fracture.band(i) * fracture.softening(i).strain_of(super::BROKEN);
             for (j, _) in self.pairs.neighbours(i).filter(|&(j, _)| !(broken(j) && j < i)) {
                 let both = broken(j) || rigid(j);
                 let strain = if rigid(j) {
@@ -46,7 +45,7 @@ impl<const D: usize> TotalLagrangian<D> {
                     STRETCHED * fracture.strain[i].min(fracture.strain[j])
                 } else {
                     // Of an opening a pair of length R shows dx / R.
-                    LET_GO * open * self.spacing / self.apart(i, j).norm_squared()
+                    LET_GO * fracture.broken_opening(i) * self.spacing / self.apart(i, j).norm_squared()
                 };
                 // A row that bends is torn at an edge.
                 let mut edges = fracture.ligaments_of(i).iter().filter(|ligament| both && ligament.next == j);
@@ -57,15 +56,11 @@ impl<const D: usize> TotalLagrangian<D> {
                 }
             }
         }
+        self.leave_clamps(fracture, &mut torn);
         // A particle without a deformation gradient has no stress and no damage that grows: how far a pair of it is
         // stretched tells alone whether it holds.
         for i in (0..self.id.len()).filter(|&slot| fracture.loose > 0 && self.is_loose(slot)) {
-            let onset = if fracture.strain[i] > 0.0 {
-                fracture.onset[i]
-            } else {
-                fracture.keys.strength / fracture.modulus
-            };
-            let strain = STRETCHED * fracture.law(i, onset).strain_of(super::BROKEN);
+            let strain = STRETCHED * fracture.broken_strain(i);
             let stretched = self.pairs.neighbours(i).filter(|&(j, _)| self.is_stretched([i, j], strain));
             torn.extend(stretched.map(|(j, _)| [i.min(j), i.max(j)]));
         }

@@ -212,11 +212,21 @@ impl<const D: usize> Fracture<D> {
 
     /// The particle is broken.
     fn is_broken(&self, slot: usize) -> bool {
-        self.strain[slot] > 0.0 && self.strain[slot] >= self.softening(slot).strain_of(BROKEN)
+        self.strain[slot] > 0.0 && self.strain[slot] >= self.broken_strain(slot)
     }
 
-    fn softening(&self, slot: usize) -> Softening {
-        self.law(slot, self.onset[slot])
+    /// Strain with which a particle is broken; of an intact one what it is inside.
+    fn broken_strain(&self, slot: usize) -> f64 {
+        let onset = match self.strain[slot] > 0.0 {
+            true => self.onset[slot],
+            false => self.keys.strength / self.modulus,
+        };
+        self.law(slot, onset).strain_of(BROKEN)
+    }
+
+    /// Opening of a crack with which a particle is broken, m.
+    fn broken_opening(&self, slot: usize) -> f64 {
+        self.band(slot) * self.broken_strain(slot)
     }
 
     /// Width of the band of a crack through a particle, m. The rigid side of a clamp stores nothing: the row beside it
