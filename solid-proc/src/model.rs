@@ -212,6 +212,11 @@ pub trait SolidModel<const D: usize>: Send {
     fn open_joints(&self) -> Vec<(String, f64)> {
         Vec::new()
     }
+    /// Joints whose ends begin with different velocities, each with how fast they move, m/s, and turn, rad/s, against
+    /// each other.
+    fn jerked_joints(&self) -> Vec<(String, [f64; 2])> {
+        Vec::new()
+    }
     /// What fracture has done; of a model that does not break nothing.
     fn fracture(&self) -> FractureSummary {
         FractureSummary::default()

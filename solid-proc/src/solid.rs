@@ -344,6 +344,10 @@ impl<const D: usize> Role for Solid<D> {
         self.model.open_joints()
     }
 
+    fn jerked_joints(&self) -> Vec<(String, [f64; 2])> {
+        self.model.jerked_joints()
+    }
+
     fn pair_evaluations(&self) -> u64 {
         self.model.pair_evaluations() + self.cross_pairs
     }

@@ -160,7 +160,7 @@ fn conclude(
                 RunError::Diverged { diverged, hint } => {
                     *hint = advice(diverged, scene, clock, external);
                     if !report.warnings.is_empty() {
-                        *hint = format!("what the run warned of comes first; then {hint}");
+                        *hint = format!("what the run warned of may be the cause; if not, {hint}");
                     }
                     RunStatus::Diverged
                 }

@@ -168,6 +168,7 @@ pub(crate) fn report_participants(
             sub_steps: None,
             energy_growth: None,
             open_joints: reports[place].as_ref().map_or_else(Vec::new, |own| own.open_joints.clone()),
+            jerked_joints: reports[place].as_ref().map_or_else(Vec::new, |own| own.jerked_joints.clone()),
             times,
         });
     }

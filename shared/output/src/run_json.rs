@@ -115,6 +115,8 @@ pub struct ParticipantReport {
     pub energy_growth: Option<f64>,
     /// Joints of a rigid solid whose ends are apart by more than a tenth of the spacing at the end: name, m.
     pub open_joints: Vec<(String, f64)>,
+    /// Joints of a rigid solid whose ends began with different velocities: name, and the difference in m/s and rad/s.
+    pub jerked_joints: Vec<(String, [f64; 2])>,
     /// Where its time went, s.
     pub times: Option<RoleSeconds>,
 }

@@ -34,6 +34,9 @@ pub struct Report {
     pub energy: Vec<EnergyEntry>,
     /// Joints that have come apart at the end, each with how far, m.
     pub open_joints: Vec<(String, f64)>,
+    /// Joints whose ends began with different velocities, each with how fast they moved, m/s, and turned, rad/s,
+    /// against each other.
+    pub jerked_joints: Vec<(String, [f64; 2])>,
     /// Impulse that the solids gave it, as it was added to its particles; of the fluid.
     pub impulse: Option<Balance>,
 }

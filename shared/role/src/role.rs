@@ -138,6 +138,11 @@ pub trait Role: Send {
     fn open_joints(&self) -> Vec<(String, f64)> {
         Vec::new()
     }
+    /// Joints whose ends begin with different velocities, each with how fast they move, m/s, and turn, rad/s, against
+    /// each other.
+    fn jerked_joints(&self) -> Vec<(String, [f64; 2])> {
+        Vec::new()
+    }
     /// What each effect costs, measured on the present state, which does not change. For the end of a run.
     fn costs(&mut self) -> Costs {
         Costs::default()

@@ -263,6 +263,7 @@ impl Track {
             effects: effects.filter(|(_, seconds)| *seconds > 0.0).collect(),
             energy: self.member.role.ledger().map_or_else(Vec::new, Ledger::entries),
             open_joints: self.member.role.open_joints(),
+            jerked_joints: self.member.role.jerked_joints(),
             impulse: self.member.role.impulse(),
         }
     }

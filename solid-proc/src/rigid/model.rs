@@ -42,6 +42,8 @@ pub struct Rigid<const D: usize> {
     mass: f64,
     /// Largest speed, m/s: the fluid's sound; infinite where there is none.
     fastest: f64,
+    /// What the joints take from the velocities that the scene gives.
+    jerked: Vec<(String, [f64; 2])>,
 }
 
 impl<const D: usize> Rigid<D> {
@@ -67,6 +69,7 @@ impl<const D: usize> Rigid<D> {
             at_n: system.poses.clone(),
             contacts_at_n: Vec::new(),
             shown_velocity: ShownVelocity::new(points.iter().map(|p| p.velocity)),
+            jerked: system.jerked_joints(),
             system,
             points,
             body_of,
@@ -249,6 +252,10 @@ impl<const D: usize> SolidModel<D> for Rigid<D> {
 
     fn open_joints(&self) -> Vec<(String, f64)> {
         self.system.open_joints(OPEN * self.spacing)
+    }
+
+    fn jerked_joints(&self) -> Vec<(String, [f64; 2])> {
+        self.jerked.clone()
     }
 
     fn state(&mut self) -> Option<&mut dyn halfstep_wire::state::State> {

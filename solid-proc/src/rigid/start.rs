@@ -5,7 +5,30 @@ use super::Vec3;
 use super::joint::LinkKind::{Fixed, Hinge};
 use super::step::System;
 
+/// Speed, m/s and rad/s, below which the ends of a joint move together.
+const TOGETHER: f64 = 1e-9;
+
 impl System {
+    /// Joints whose ends do not begin with the same velocity, each with how fast they move, m/s, and turn, rad/s,
+    /// against each other along what the joint holds. The first step takes that away.
+    pub(super) fn jerked_joints(&self) -> Vec<(String, [f64; 2])> {
+        let mut all = Vec::new();
+        for link in &self.links {
+            let mut rows = Vec::new();
+            link.rows(self.plane, &self.bodies, &self.poses, &mut rows);
+            let mut squares = [0.0, 0.0];
+            for row in &rows {
+                squares[usize::from(row.linear == Vec3::zeros())] +=
+                    row.rate(&self.bodies, &self.poses).powi(2);
+            }
+            let rates = squares.map(f64::sqrt);
+            if rates.iter().any(|rate| *rate > TOGETHER) {
+                all.push((link.name.clone(), rates));
+            }
+        }
+        all
+    }
+
     /// Velocities of the bodies that begin with none, from hinges that keep their place on. The first joint of a body
     /// counts: what contradicts another one the first step takes away.
     pub(super) fn turn_about_hinges(&mut self) {

@@ -51,6 +51,15 @@ pub fn outcome(scene: &Scene, report: &RunReport) -> Vec<String> {
             100.0 * tension
         ));
     }
+    for (own, (joint, [apart, turned])) in
+        report.participants.iter().flat_map(|own| own.jerked_joints.iter().map(move |j| (own, j)))
+    {
+        all.push(format!(
+            "the ends of the joint `{joint}` of the {} began with velocities that differ by {apart:.2e} m/s and \
+             {turned:.2e} rad/s: the first step took that by an impulse, and its energy with it",
+            own.name
+        ));
+    }
     for (own, (joint, apart)) in
         report.participants.iter().flat_map(|own| own.open_joints.iter().map(move |j| (own, j)))
     {
@@ -122,8 +131,8 @@ fn beside_cracks(scene: &Scene, report: &RunReport) -> Vec<String> {
         if area == 0.0 && taken > WITHOUT_CUT * keys.energy * side {
             all.push(format!(
                 "fracture of the {} took {taken:.3} J, {:.1} times what a crack through its smallest side, {side:.3}, \
-                 takes at {} J/m², and has cut nothing: what is damaged still carries (beside a clamp rows pass a \
-                 crack on to each other where Poisson's ratio is large)",
+                 takes at {} J/m², and has cut nothing: what is damaged still carries (several cracks have begun, and \
+                 none has gone through)",
                 solid.name,
                 taken / (keys.energy * side),
                 keys.energy
@@ -136,7 +145,9 @@ fn beside_cracks(scene: &Scene, report: &RunReport) -> Vec<String> {
         if times > BESIDE_CRACKS {
             all.push(format!(
                 "fracture of the {} took {taken:.3} J, {times:.1} times what the cracks of {area:.3} take at \
-                 {} J/m²: a crushed particle stores more than a crack, and so does a last row off the lattice, a hinge",
+                 {} J/m². Cracks that have not gone through, crushed particles, or last rows that hold as hinges \
+                 (off the lattice, or where a crack runs along its diagonals) took the rest: `damage` in the frames \
+                 shows where",
                 solid.name, keys.energy
             ));
         }
@@ -223,6 +234,15 @@ mod tests {
         assert!(
             told.len() == 1 && told[0].starts_with("the joint `pin` of the flap is 0.150 m open at the end")
         );
+        let jerked = ParticipantReport {
+            name: "flap".into(),
+            jerked_joints: vec![("pin".into(), [0.12, 0.0])],
+            ..Default::default()
+        };
+        let told = outcome(&scene, &RunReport { participants: vec![jerked], ..RunReport::default() });
+        let begins =
+            "the ends of the joint `pin` of the flap began with velocities that differ by 1.20e-1 m/s";
+        assert!(told.len() == 1 && told[0].starts_with(begins), "{told:?}");
     }
 
     #[test]
@@ -286,8 +306,9 @@ mod tests {
             without.len() == 1
                 && without[0].contains("1.5 times what a crack through its smallest side, 0.100")
         );
-        let said = "fracture of the solid took 1.400 J, 3.5 times what the cracks of 0.200 take at 2 J/m²: a crushed \
-                    particle stores more than a crack, and so does a last row off the lattice, a hinge";
+        let said = "fracture of the solid took 1.400 J, 3.5 times what the cracks of 0.200 take at 2 J/m². Cracks \
+                    that have not gone through, crushed particles, or last rows that hold as hinges (off the lattice, \
+                    or where a crack runs along its diagonals) took the rest: `damage` in the frames shows where";
         assert_eq!(of(1.4, 0.2), [said]);
     }
 }

@@ -49,6 +49,35 @@ fn a_hinged_body_begins_to_turn_about_its_hinge() {
     }
 }
 
+/// The outer end of two welded bars, 0.4 m from the pin about which they turn with 0.3 rad/s, is pinned as well.
+#[test]
+fn velocities_that_a_joint_takes_are_told() {
+    let pin = |name: &str, body: &str, x: f64| {
+        format!("{{ name = \"{name}\", kind = \"hinge\", body = \"{body}\", at = [{x}, 0.05] }}")
+    };
+    let weld = "{ name = \"weld\", kind = \"fixed\", body = \"second\", with = \"box\" }";
+    for (far, told) in [
+        ("".to_owned(), vec![]),
+        (format!(", {}", pin("far", "second", 0.4)), vec![("far".to_owned(), [0.3 * 0.4, 0.0])]),
+    ] {
+        let joints = format!("joints = [{}, {weld}{far}]", pin("pin", "box", 0.0));
+        let keys = format!("bodies = [{{ name = \"box\", angular_velocity = 0.3 }}]\n{joints}");
+        let mut model = build::<2>(&weightless(&keys, &(BOX.to_owned() + &second(0.2))));
+        let load = free(&model);
+        run(&mut model, 1e-3, 1e-3, &load, |_, _| ());
+        let jerked = model.jerked_joints();
+        assert_eq!(jerked.len(), told.len(), "{jerked:?}");
+        for ((name, rates), (right, speeds)) in jerked.iter().zip(&told) {
+            assert!(name == right && (0..2).all(|k| (rates[k] - speeds[k]).abs() < 1e-14), "{jerked:?}");
+        }
+    }
+    // Welded bars of which one turns by itself: a rate of 0.3 rad/s against the other's -0.5.
+    let bodies = "bodies = [{ name = \"box\", angular_velocity = 0.3 }, { name = \"second\", angular_velocity = -0.5 }]";
+    let keys = format!("{bodies}\njoints = [{weld}]");
+    let jerked = build::<2>(&weightless(&keys, &(BOX.to_owned() + &second(0.2)))).jerked_joints();
+    assert!(jerked.len() == 1 && (jerked[0].1[1] - 0.8).abs() < 1e-14, "{jerked:?}");
+}
+
 /// In space: an arm that is hinged about x to a turntable about z is turned by it, and the first step takes nothing.
 #[test]
 fn what_is_hinged_across_turns_along() {
