@@ -1,8 +1,10 @@
-"""Heave and roll of the floating box by linear potential flow in its tank: `potential_flow.py [SPACING]`.
+"""Heave and roll of the floating box by linear potential flow in its tank: `potential_flow.py [SPACING [SCENE]]`.
 
 Laplace's equation by finite elements, the linear free surface, and a box that the water's pressure moves in sway, heave
 and roll; z = 0 is the level at rest. Of a box and a water that begin at rest, released 10 mm too high or turned by 10
-degrees, it prints when the motion turns round. Needs python/examples/scikit-fem/requirements.txt.
+degrees, it prints when the motion turns round. SCENE `mujoco` is the tank of python/examples/mujoco, in which the box is
+released 20 mm too high for the level at the start, 15 mm for that at which it floats. Needs
+python/examples/scikit-fem/requirements.txt.
 """
 
 import sys
@@ -12,7 +14,9 @@ import scipy.sparse.linalg as sparse
 import skfem
 
 GRAVITY, DENSITY = 9.81, 1000.0
-WIDTH, DEPTH = 1.0, 0.202  # of the tank, and of the water as the box floats in it
+# Of the tank, and of the water as the box floats in it; level and place of the box at the start over those; until, s.
+WIDTH, DEPTH, LEVEL, PLACE, END = (
+    (0.8, 0.255, -0.005, 0.015, 1.9) if sys.argv[2:] == ["mujoco"] else (1.0, 0.202, -0.002, 0.008, 0.8))
 BREADTH, DRAUGHT = 0.2, 0.05
 MASS, MOMENT, CENTRE = 10.0, 10.0 * 0.05 / 12.0, 0.0  # its centre of mass is at the level
 
@@ -93,8 +97,10 @@ def turns(time, way):
 
 
 tank = Tank(float(sys.argv[1]) if len(sys.argv) > 1 else 0.005)
-time, _, heave, _ = tank.swing(-0.002, [0.0, 0.008, 0.0], 0.8)
+time, _, heave, _ = tank.swing(LEVEL, [0.0, PLACE, 0.0], END)
 print("heave:", ", ".join(f"{1e3 * z:.2f} mm at {t:.4f} s" for t, z in turns(time, heave)))
+middle = [t - a / (b - a) * (time[1] - time[0]) for t, a, b in zip(time, heave, heave[1:]) if a * b < 0.0]
+print("heave: in its place at", ", ".join(f"{t:.4f} s" for t in middle))
 time, _, _, roll = tank.swing(0.0, [0.0, 0.0, np.radians(10.0)], 0.85)
 upright = [t - a / (b - a) * (time[1] - time[0]) for t, a, b in zip(time, roll, roll[1:]) if a * b < 0.0]
 print("roll: upright at", ", ".join(f"{t:.4f} s" for t in upright), end="; ")
