@@ -53,13 +53,13 @@ fn a_solitary_wave_breaks_a_wall_at_the_depth_of_beam_theory() {
     let through = |run: &Finished| run.curve("breach.flux").mean() * TO;
     println!("{:e} m² through the breach, {:e} past a wall that holds", through(&broken), through(&whole));
     assert!(through(&broken) > 3.0 * through(&whole).max(1e-4));
-    // Of wall and water, over the most kinetic energy: until the strike 0.010 and 0.018 % measured, among the rubble
-    // 0.025 and 0.20 %, with other digits of its contact 0.012 and 0.10 %.
+    // Of wall and water, over the most kinetic energy. Until the strike 0.004 and 0.015 % measured; among the rubble,
+    // by last digits, 0.009 to 0.049 and 0.15 to 0.19 %.
     let largest = |name: &str, until: f64| {
         let values = broken.curve(name).between(0.0, until).values;
         values.iter().fold(0.0, |most: f64, v| most.max(v.abs()))
     };
-    for (until, bounds) in [(1.9, [2e-4, 4e-4]), (TO, [5e-4, 4e-3])] {
+    for (until, bounds) in [(1.9, [2e-4, 4e-4]), (TO, [1e-3, 4e-3])] {
         let rest = ["ledger", "water-ledger"].map(|name| {
             largest(&format!("{name}.integration"), until) / largest(&format!("{name}.kinetic"), until)
         });
