@@ -49,7 +49,7 @@ fn is_turned(shape: &Shape) -> bool {
         Geometry::Moved(moved) => moved.angle,
         _ => 0.0,
     };
-    shape.lattice_angle % 90.0 != 0.0 || by % 90.0 != 0.0
+    (shape.lattice_angle + by) % 90.0 != 0.0
 }
 
 /// The shape is of a solid that can break.
@@ -76,7 +76,8 @@ fn cut(scene: &Scene, shape: &Shape, axis: usize, first: f64, face: f64, element
         ""
     };
     Some(format!(
-        "a face of the clamp of `{}`, at {} = {} m, cuts a row of its particles: {held}{early}. Between rows are {} and {} m",
+        "a face of the clamp of `{}`, at {} = {} m, cuts a row of its particles: {held}{early}. Between rows are {} and \
+         {} m",
         shape.name,
         ["x", "y", "z"][axis],
         length(face),
@@ -178,8 +179,8 @@ mod tests {
         assert_eq!(
             found,
             [
-                "a face of the clamp of `plate`, at y = 0.0125 m, cuts a row of its particles: it is held more softly than \
-              there. Between rows are 0.01 and 0.015 m"
+                "a face of the clamp of `plate`, at y = 0.0125 m, cuts a row of its particles: it is held more softly \
+                 than there. Between rows are 0.01 and 0.015 m"
             ]
         );
         // Nodal rows lie at whole spacings, so the boundaries between them do not.
@@ -214,8 +215,11 @@ mod tests {
         let told = of(&turned, "");
         assert!(told.len() == 1 && told[0].starts_with("the clamp of `plate` crosses the rows"), "{told:?}");
         // A turned shape takes its lattice along, and not its clamp.
-        let told = of(&format!("{PLATE}rotate = {{ angle = 30.0, about = [0.21, 0.005] }}\n"), "");
+        let rotate = "rotate = { angle = 30.0, about = [0.21, 0.005] }\n";
+        let told = of(&format!("{PLATE}{rotate}"), "");
         assert!(told.len() == 1 && told[0].starts_with("the clamp of `plate` crosses the rows"), "{told:?}");
         assert_eq!(of(&format!("{PLATE}lattice_angle = 90\n"), ""), [""; 0]);
+        // Turned one way with the shape, and back by itself.
+        assert_eq!(of(&format!("{PLATE}{rotate}lattice_angle = -30\n"), ""), [""; 0]);
     }
 }
