@@ -2,8 +2,8 @@
 
 Laplace's equation by finite elements, the linear free surface, and a box that the water's pressure moves in sway, heave
 and roll; z = 0 is the level at rest. Of a box and a water that begin at rest, released 10 mm too high or turned by 10
-degrees, it prints when the motion turns round. SCENE `mujoco` is the tank of python/examples/mujoco, in which the box is
-released 20 mm too high for the level at the start, 15 mm for that at which it floats. Needs
+degrees, it prints when the motion turns round. SCENE `mujoco` is the tank of python/examples/mujoco, in which the box
+is released 20 mm too high for the level at the start, 15 mm for that at which it floats. Needs
 python/examples/scikit-fem/requirements.txt.
 """
 
@@ -96,12 +96,16 @@ def turns(time, way):
             yield time[k] + part * (time[1] - time[0]), way[k]
 
 
+def crossings(time, way):
+    """When the motion passes its place, along straight lines."""
+    return ", ".join(f"{t - a / (b - a) * (time[1] - time[0]):.4f} s"
+                     for t, a, b in zip(time, way, way[1:]) if a * b < 0.0)
+
+
 tank = Tank(float(sys.argv[1]) if len(sys.argv) > 1 else 0.005)
 time, _, heave, _ = tank.swing(LEVEL, [0.0, PLACE, 0.0], END)
 print("heave:", ", ".join(f"{1e3 * z:.2f} mm at {t:.4f} s" for t, z in turns(time, heave)))
-middle = [t - a / (b - a) * (time[1] - time[0]) for t, a, b in zip(time, heave, heave[1:]) if a * b < 0.0]
-print("heave: in its place at", ", ".join(f"{t:.4f} s" for t in middle))
+print("heave: in its place at", crossings(time, heave))
 time, _, _, roll = tank.swing(0.0, [0.0, 0.0, np.radians(10.0)], 0.85)
-upright = [t - a / (b - a) * (time[1] - time[0]) for t, a, b in zip(time, roll, roll[1:]) if a * b < 0.0]
-print("roll: upright at", ", ".join(f"{t:.4f} s" for t in upright), end="; ")
+print("roll: upright at", crossings(time, roll), end="; ")
 print(", ".join(f"{a:.4f} rad at {t:.4f} s" for t, a in turns(time, roll)))

@@ -58,16 +58,14 @@ impl<const D: usize> TotalLagrangian<D> {
         strain.sum()
     }
 
-    /// Adds to `torn` what holds particles that are not broken on their clamps across a crack: the pairs that are
+    /// Adds to `torn` what holds neighbours of broken particles that are not broken on their clamps: the pairs that are
     /// longer than F tells, by as much as lets go of a broken particle. Of an opening a pair of length R shows dx / R.
-    pub(super) fn leave_clamps(&self, fracture: &Fracture<D>, torn: &mut Vec<[usize; 2]>) {
-        let beside_crack = |&&slot: &&usize| fracture.is_broken(slot);
-        let near = fracture.damaged.iter().filter(beside_crack).flat_map(|&slot| self.pairs.list().of(slot));
+    pub(super) fn leave_clamps(&self, fracture: &Fracture<D>, broken: &[usize], torn: &mut Vec<[usize; 2]>) {
         let holds = |&slot: &usize| {
             let free = fracture.beside_clamp[slot] && self.is_free(slot) && self.has_strain(slot);
             free && !fracture.is_broken(slot)
         };
-        for i in near.filter(holds) {
+        for i in broken.iter().flat_map(|&slot| self.pairs.list().of(slot)).filter(holds) {
             let most = LET_GO * fracture.broken_opening(i) * self.spacing;
             for (j, _) in self.pairs.neighbours(i).filter(|&(j, _)| self.is_rigid(j)) {
                 let then = self.apart(i, j);

@@ -36,7 +36,9 @@ impl<const D: usize> TotalLagrangian<D> {
         let broken = |slot: usize| fracture.is_broken(slot);
         // A rigid clamp has no damage: the particle beside it decides.
         let rigid = |slot: usize| self.is_rigid(slot);
-        for &i in fracture.damaged.iter().filter(|&&slot| broken(slot)) {
+        let broken_slots: Vec<usize> =
+            fracture.damaged.iter().copied().filter(|&slot| broken(slot)).collect();
+        for &i in &broken_slots {
             for (j, _) in self.pairs.neighbours(i).filter(|&(j, _)| !(broken(j) && j < i)) {
                 let both = broken(j) || rigid(j);
                 let strain = if rigid(j) {
@@ -56,7 +58,7 @@ impl<const D: usize> TotalLagrangian<D> {
                 }
             }
         }
-        self.leave_clamps(fracture, &mut torn);
+        self.leave_clamps(fracture, &broken_slots, &mut torn);
         // A particle without a deformation gradient has no stress and no damage that grows: how far a pair of it is
         // stretched tells alone whether it holds.
         for i in (0..self.id.len()).filter(|&slot| fracture.loose > 0 && self.is_loose(slot)) {
