@@ -235,7 +235,7 @@ fn the_first_of_two_walls_breaks_and_the_run_is_killed_and_goes_on() {
     assert_eq!(cracks(&resumed), cracks(&whole));
 }
 
-/// To the end, when the first wall has struck the second and both are debris: 1.6e-4 to 4.3e-4 of the most that they
+/// To the end, when the first wall has struck the second and both are debris: 4.5e-4 to 5.6e-4 of the most that they
 /// move with, by last digits.
 #[test]
 #[ignore = "a minute"]

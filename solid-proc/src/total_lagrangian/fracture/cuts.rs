@@ -1,6 +1,7 @@
 //! Cuts of pairs, and the bodies that are left.
 
 use super::Fracture;
+use super::principal::smallest;
 use crate::total_lagrangian::material::Matrix;
 use crate::total_lagrangian::model::TotalLagrangian;
 use halfstep_sph::neighbours::PADDING;
@@ -12,6 +13,11 @@ const STRETCHED: f64 = 0.5;
 /// Opening between a broken particle and one that is not, over that with which its band is broken, from which on they
 /// are cut: the other would go on pulling with its hourglass resistance. A crack that breaks both is cut before.
 pub(super) const LET_GO: f64 = 1.5;
+/// Stretch of a pair along a closed crack under pressure, over [`STRETCHED`]'s, from which on it is cut after all: what
+/// is crushed spreads without end.
+const SPREAD: f64 = 3.0;
+/// Largest cosine between the direction of a pressure and a pair that lies across it.
+const ACROSS: f64 = 0.5;
 /// Smallest determinant of the moment matrix with which a particle that was cut off from neighbours keeps a
 /// deformation gradient, over that of a corner of the lattice.
 const SMALLEST: f64 = 0.5;
@@ -51,9 +57,9 @@ impl<const D: usize> TotalLagrangian<D> {
                 };
                 // A row that bends is torn at an edge.
                 let mut edges = fracture.ligaments_of(i).iter().filter(|ligament| both && ligament.next == j);
-                if self.is_stretched([i, j], strain)
-                    || edges.any(|ligament| self.is_edge_stretched(ligament, strain))
-                {
+                let stretched = self.is_stretched([i, j], strain)
+                    || edges.any(|ligament| self.is_edge_stretched(ligament, strain));
+                if stretched && !(broken(j) && self.is_spread(fracture, [i, j], strain)) {
                     torn.push([i.min(j), i.max(j)]);
                 }
             }
@@ -84,6 +90,19 @@ impl<const D: usize> TotalLagrangian<D> {
         let (x, y) = (self.position_at(i), self.position_at(j));
         let present: f64 = (0..D).map(|d| (x[d] - y[d]).powi(2)).sum();
         present > self.apart(i, j).norm_squared() * (1.0 + strain).powi(2)
+    }
+
+    /// A pair of broken particles lies along a closed crack under a pressure of more than f_t, which spreads its faces:
+    /// they have no strength left, but no crack runs across them before [`SPREAD`] times this strain.
+    fn is_spread(&self, fracture: &Fracture<D>, pair: [usize; 2], strain: f64) -> bool {
+        let along = self.apart(pair[0], pair[1]).normalize();
+        let shortest = 1.0 - fracture.keys.strength / fracture.modulus;
+        let pressed = |&slot: &usize| {
+            let f = self.gradient[slot];
+            let (square, direction) = smallest(&(f.transpose() * f));
+            self.has_strain(slot) && square < shortest.powi(2) && direction.dot(&along).abs() < ACROSS
+        };
+        pair.iter().any(pressed) && !self.is_stretched(pair, SPREAD * strain)
     }
 
     /// Cuts what is torn in the present state, which has been evaluated, and evaluates what is left.

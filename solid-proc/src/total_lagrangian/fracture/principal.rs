@@ -2,6 +2,7 @@
 //! square roots only, so the same bits on every machine.
 
 use crate::total_lagrangian::material::Matrix;
+use nalgebra::SVector;
 
 /// Most sweeps; three dimensions take four or five.
 const SWEEPS: usize = 16;
@@ -47,6 +48,13 @@ pub(super) fn largest<const D: usize>(symmetric: &Matrix<D>) -> f64 {
     principal(symmetric).0.into_iter().fold(f64::NEG_INFINITY, f64::max)
 }
 
+/// The smallest principal value and its direction.
+pub(super) fn smallest<const D: usize>(symmetric: &Matrix<D>) -> (f64, SVector<f64, D>) {
+    let (values, directions) = principal(symmetric);
+    let least = (1..D).fold(0, |least, k| if values[k] < values[least] { k } else { least });
+    (values[least], directions.column(least).into_owned())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -63,7 +71,10 @@ mod tests {
 
     #[test]
     fn pure_shear_by_hand() {
-        assert!((largest(&Matrix2::new(1.0, 2.0, 2.0, 1.0)) - 3.0).abs() < 1e-15);
+        let shear = Matrix2::new(1.0, 2.0, 2.0, 1.0);
+        assert!((largest(&shear) - 3.0).abs() < 1e-15);
+        let (value, direction) = smallest(&shear);
+        assert!((value + 1.0).abs() < 1e-15 && (direction[0] + direction[1]).abs() < 1e-15, "{direction}");
         assert_eq!(principal(&Matrix2::new(5.0, 0.0, 0.0, -7.0)).0, [5.0, -7.0]);
     }
 }
