@@ -49,11 +49,11 @@ $(CARGO_FUZZ):
 # Stores the bits of the coarse runs in validation/CASE/baseline.toml anew, at each instruction set level of this
 # processor, and prints which changed. Say in CHANGELOG.md why they did.
 baselines: setup
-	HALFSTEP_RENEW=1 cargo test --release -p halfstep-tests --test baselines every_run -- --nocapture
+	HALFSTEP_RENEW=1 cargo test --release -p halfstep-tests --test suite baselines::every_run -- --nocapture
 
 # Hard cases with and without their remedies, at all resolutions: renews the table of docs/stability.md. Minutes.
 stability: setup
-	HALFSTEP_PAGE=1 cargo test --release -p halfstep-tests --test stability -- --ignored --nocapture
+	HALFSTEP_PAGE=1 cargo test --release -p halfstep-tests --test suite stability:: -- --ignored --nocapture
 
 # What accuracy costs in the shipped scenes, docs/price-lists.md: minutes to an hour. SCENES="..." renews some of them.
 prices: setup

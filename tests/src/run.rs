@@ -1,7 +1,7 @@
 //! Runs a shipped scene with the real program, as a user would, and reads what it leaves behind.
 //!
-//! A coupled run has the machine for itself, because its three processes answer each other in lock-step and a stranger
-//! on their cores slows all of them down; runs of a single phase share it.
+//! Runs share the machine: processes in lock-step wait for each other, and leave half of two cores idle. A test that
+//! holds a run to seconds has the machine for itself.
 
 use crate::curve::Curve;
 use crate::process::kill;
@@ -16,7 +16,7 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::{OnceLock, PoisonError, RwLock, RwLockWriteGuard};
 use std::time::{Duration, Instant};
 
-/// Who has the machine: coupled runs write, others read.
+/// Who has the machine: tests of seconds write, other runs read.
 static MACHINE: RwLock<()> = RwLock::new(());
 
 /// The program: `coupler/cli/src/main.rs`, which this package builds as well, so that it is up to date when a test
@@ -57,10 +57,8 @@ pub fn scene(name: &str) -> RunBuilder {
 
 /// A run of any scene file.
 pub fn scene_at(path: &Path) -> RunBuilder {
-    let coupled = std::fs::read_to_string(path)
-        .is_ok_and(|text| ["[fluid]", "[solid]"].iter().all(|section| text.contains(section)));
     let (arguments, variables) = (Vec::new(), Vec::new());
-    RunBuilder { scene: path.into(), arguments, variables, out: None, coupled, resumes: false }
+    RunBuilder { scene: path.into(), arguments, variables, out: None, resumes: false }
 }
 
 /// How to run a scene.
@@ -70,7 +68,6 @@ pub struct RunBuilder {
     arguments: Vec<OsString>,
     variables: Vec<(OsString, OsString)>,
     out: Option<PathBuf>,
-    coupled: bool,
     resumes: bool,
 }
 
@@ -87,7 +84,7 @@ impl RunBuilder {
         self.argument("--until").argument(seconds.to_string())
     }
 
-    /// Worker threads of the fluid.
+    /// Worker threads of the fluid; 1 if it is not asked for.
     #[must_use]
     pub fn threads(self, count: usize) -> Self {
         self.argument("--threads").argument(count.to_string())
@@ -141,6 +138,10 @@ impl RunBuilder {
             false => command.arg("run").arg(&self.scene).arg("--quiet").arg("--out").arg(&dir),
         };
         command.args(&self.arguments).envs(self.variables);
+        // As many others run beside it as there are cores, and its bits are the same with any number of threads.
+        if !self.resumes && self.arguments.iter().all(|argument| argument != "--threads") {
+            command.args(["--threads", "1"]);
+        }
         command.stdin(Stdio::null()).stdout(stream("stdout")).stderr(stream("stderr"));
         let child = command.spawn().expect("halfstep starts");
         Running { child, dir, temporary: Some(temporary), started: Instant::now() }
@@ -148,14 +149,8 @@ impl RunBuilder {
 
     /// Runs the program to its end, however that is.
     pub fn outcome(self) -> Outcome {
-        let locks = if self.coupled {
-            (Some(whole_machine()), None)
-        } else {
-            (None, Some(MACHINE.read().unwrap_or_else(PoisonError::into_inner)))
-        };
-        let outcome = self.start().wait();
-        drop(locks);
-        outcome
+        let _shared = MACHINE.read().unwrap_or_else(PoisonError::into_inner);
+        self.start().wait()
     }
 
     /// Runs the program, which must reach the scene's end.
@@ -164,7 +159,7 @@ impl RunBuilder {
     }
 }
 
-/// Keeps other runs off the machine, for tests that use [`RunBuilder::start`].
+/// Keeps other runs off the machine, for tests that hold a run to seconds; they [`RunBuilder::start`] it.
 pub fn whole_machine() -> RwLockWriteGuard<'static, ()> {
     MACHINE.write().unwrap_or_else(PoisonError::into_inner)
 }

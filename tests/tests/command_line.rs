@@ -1,7 +1,7 @@
 //! What the program answers beside runs, and a run that is made once more from its own folder.
 
 use halfstep_output::RunReport;
-use halfstep_tests::run::{program, repository, whole_machine};
+use halfstep_tests::run::{program, repository};
 use std::path::Path;
 use std::process::{Command, Output};
 
@@ -82,7 +82,6 @@ fn a_run_without_a_terminal_tells_its_progress_in_lines() {
     let scene = scene.to_str().expect("a path");
     let words =
         ["run", scene, "--until", "0.12", "--set", "resolution=0.00166666666666666667", "--threads", "1"];
-    let _machine = whole_machine();
     let ended = halfstep(folder.path(), &words);
     assert!(ended.status.success(), "{ended:?}");
     let text = String::from_utf8_lossy(&ended.stderr).into_owned();

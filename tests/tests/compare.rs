@@ -3,7 +3,7 @@
 use halfstep_tests::conformance::link::eventually;
 use halfstep_tests::process::{is_alive, kill, with_variable};
 use halfstep_tests::python::{FAILING_SOLID, HANGING_SOLID, python, python_of};
-use halfstep_tests::run::{program, repository, whole_machine};
+use halfstep_tests::run::{program, repository};
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
@@ -20,7 +20,6 @@ fn compare_in(scene: &str, arguments: &[&str]) -> Output {
 /// as near as two solvers of one equation.
 #[test]
 fn finite_elements_bend_as_particles_do() {
-    let _machine = whole_machine();
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
     let script = repository().join("python/examples/scikit-fem/gate.py");
@@ -94,7 +93,6 @@ fn one_of_several_solids_is_exchanged() {
 /// A rigid plate beside an elastic one: it does not move, and the table says what was left out of the scene for it.
 #[test]
 fn a_rigid_plate_stands_beside_an_elastic_one() {
-    let _machine = whole_machine();
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().to_str().unwrap();
     let coarse = ["--set", "resolution=0.0025", "--until", "0.02", "--out", out];
@@ -122,7 +120,6 @@ fn a_rigid_plate_stands_beside_an_elastic_one() {
 /// Without water a stand-in for the fluid runs the program: two element codes on the plate that swings.
 #[test]
 fn models_and_programs_are_compared_without_water() {
-    let _machine = whole_machine();
     let folder = tempfile::tempdir().unwrap();
     let dry =
         ["--until", "0.01", "--set", "resolution=0.004", "--out", folder.path().to_str().unwrap(), "--json"];
@@ -151,7 +148,6 @@ fn models_and_programs_are_compared_without_water() {
 /// sees that the comparison is not whole. The run of somebody else in its place is kept.
 #[test]
 fn a_solid_that_fails_is_told() {
-    let _machine = whole_machine();
     let folder = tempfile::tempdir().unwrap();
     let script = folder.path().join("failing.py");
     std::fs::write(&script, FAILING_SOLID).unwrap();
@@ -194,7 +190,6 @@ fn refused(arguments: &[&str], own: &Path) {
 /// A comparison ends with a solid that hangs: at Ctrl-C, and when it is killed itself.
 #[test]
 fn no_solid_outlives_its_comparison() {
-    let _machine = whole_machine();
     for signal in [libc::SIGINT, libc::SIGKILL] {
         let folder = tempfile::tempdir().unwrap();
         let (script, out) = (folder.path().join("hanging.py"), folder.path().join("out"));
@@ -250,7 +245,6 @@ fn a_program_does_not_join_others_without_water() {
 #[test]
 #[ignore = "long"]
 fn ngsolve_bends_as_particles_do() {
-    let _machine = whole_machine();
     let script = repository().join("python/examples/ngsolve/gate.py");
     let elements =
         format!("ngsolve=OMP_NUM_THREADS=1 {} {}", python_of("ngsolve").display(), script.display());

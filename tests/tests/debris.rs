@@ -2,7 +2,7 @@
 //! another program, and none of it where nothing breaks.
 
 use halfstep_tests::python::python;
-use halfstep_tests::run::{repository, scene, scene_at, whole_machine};
+use halfstep_tests::run::{repository, scene, scene_at};
 use halfstep_tests::{Finished, RunBuilder};
 use std::path::Path;
 
@@ -110,7 +110,7 @@ fn cracks_and_debris_hang_on_no_process_and_no_thread() {
     let end = &frames[frames.len() - 1].damage;
     let cracked = end.iter().filter(|damage| **damage > 0.95).count();
     println!("{cracked} of {}", end.len());
-    // 45 of the wall's 60, 12 of which the clamp holds: most are crumbs, and some are whole.
+    // 42 of the wall's 60, 12 of which the clamp holds: most are crumbs, and some are whole.
     assert!((39..49).contains(&cracked) && cracked < end.len(), "{cracked} of {}", end.len());
     assert!(end.iter().all(|damage| (0.0..=1.0).contains(damage)) && end.contains(&0.0));
     assert!(three.outcome.frames("second").iter().all(|frame| frame.damage.is_empty()));
@@ -166,6 +166,7 @@ fn a_run_that_is_killed_among_debris_goes_on_with_finite_elements() {
     let plate = format!("OMP_NUM_THREADS=1 {} {}", python().display(), script.display());
     let tip = killed_among_debris(&plate).curve("back.x").peak().1;
     let own = debris(tempfile::tempdir().unwrap().path()).run().curve("back.x").peak().1;
+    // Of particles 56 µm, by the last digits of E 45 to 80.
     println!("the second wall bends by {tip} m, of particles by {own} m");
     assert!((tip / own - 1.0).abs() < 0.3, "{tip} {own}");
 }
@@ -177,10 +178,7 @@ fn killed_among_debris(second: &str) -> Finished {
     let dir = folder.path().join("run");
     let run = || debris(folder.path()).argument("--solid").argument(&block);
     let whole = run().run();
-    let killed = {
-        let _machine = whole_machine();
-        run().set("output.checkpoint_interval", 0.01).out(&dir).start().killed_at(0.145)
-    };
+    let killed = run().set("output.checkpoint_interval", 0.01).out(&dir).start().killed_at(0.145);
     let bodies = whole.curve("pieces.bodies").between(0.0, killed);
     assert!(*bodies.values.last().unwrap() > 2.0, "there is debris at {killed} s: {:?}", bodies.values);
     let resumed = scene_at(&folder.path().join("debris.toml")).resume(&dir);

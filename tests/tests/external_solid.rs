@@ -5,7 +5,7 @@ use halfstep_tests::conformance::link::eventually;
 use halfstep_tests::curve::Curve;
 use halfstep_tests::process::{kill, leftovers};
 use halfstep_tests::python::python;
-use halfstep_tests::run::{files, repository, scene, whole_machine};
+use halfstep_tests::run::{files, repository, scene};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -254,7 +254,6 @@ fn a_block_that_is_not_the_scenes_is_told_of() {
 #[test]
 fn a_block_started_by_hand_moves_as_one_that_the_run_starts() {
     let started = scene("spring-block").until(0.05).argument("--solid").argument(command()).run();
-    let _machine = whole_machine();
     let running = scene("spring-block").until(0.05).argument("--await-solid").start();
     let launcher = running.pid();
     let variables = running.dir().join("solid.env");
@@ -279,7 +278,6 @@ fn a_block_started_by_hand_moves_as_one_that_the_run_starts() {
 /// The launcher of such a solid is not its parent: it notices by the wake-up call that is missing.
 #[test]
 fn a_block_started_by_hand_ends_with_a_killed_run() {
-    let _machine = whole_machine();
     let running = scene("spring-block").argument("--await-solid").start();
     let launcher = running.pid();
     let variables = running.dir().join("solid.env");
@@ -311,7 +309,6 @@ fn a_solid_that_nobody_starts_is_missed_by_name() {
 
 #[test]
 fn waiting_for_a_solid_can_be_stopped() {
-    let _machine = whole_machine();
     let running = scene("spring-block").argument("--await-solid").start();
     eventually(30.0, "the variables of the solid", || running.dir().join("solid.env").exists());
     kill(running.pid(), libc::SIGINT);

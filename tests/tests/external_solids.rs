@@ -3,7 +3,7 @@
 use halfstep_tests::conformance::link::eventually;
 use halfstep_tests::process::{is_alive, kill, leftovers};
 use halfstep_tests::python::python;
-use halfstep_tests::run::{RunBuilder, program, repository, scene_at, whole_machine};
+use halfstep_tests::run::{RunBuilder, program, repository, scene_at};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -149,7 +149,6 @@ fn one_of_two_is_started_by_hand() {
     let scene = Scene::new();
     let [left, right] = both([STIFFNESS; 2]);
     let started = scene.run(&[left.clone(), right.clone()]).until(0.02).run();
-    let _machine = whole_machine();
     let running = scene.run(&[left]).until(0.02).argument("--await-solid=right").start();
     let variables = running.dir().join("solid-right.env");
     eventually(30.0, "the variables of the solid", || variables.exists());
@@ -165,7 +164,6 @@ fn one_of_two_is_started_by_hand() {
 /// The one that is killed is named, and the other one ends, too.
 #[test]
 fn a_killed_program_is_named_and_takes_the_other_along() {
-    let _machine = whole_machine();
     let scene = Scene::new();
     for victim in ["left", "right"] {
         let lines = ["left", "right"].map(|name| scene.telling_its_pid(name));
@@ -197,7 +195,6 @@ fn read_pid(path: &Path) -> u32 {
 /// that it has waited for 5 s, goes on when that one does, and ends with the bits of a run in which nobody was late.
 #[test]
 fn slow_and_stopped_programs_are_waited_for() {
-    let _machine = whole_machine();
     let scene = Scene::new();
     let until = || scene.run(&both([STIFFNESS; 2])).until(0.05);
     let prompt = until().start().wait().finished();
@@ -229,7 +226,6 @@ fn slow_and_stopped_programs_are_waited_for() {
 /// Alive and without a word: after the patience it is named.
 #[test]
 fn a_silent_program_is_named() {
-    let _machine = whole_machine();
     let scene = Scene::new();
     for silent in ["left", "right"] {
         let line = |name: &str| block(name, STIFFNESS, if name == silent { "5" } else { "" });
@@ -248,7 +244,6 @@ fn a_silent_program_is_named() {
 /// A sweep over the water's density: what is twice as heavy pushes the blocks twice as far.
 #[test]
 fn a_sweep_takes_programs() {
-    let _machine = whole_machine();
     let scene = Scene::new();
     let out = scene.folder.path().join("sweep");
     let mut command = Command::new(program());

@@ -123,7 +123,6 @@ fn a_killed_launcher_takes_external_programs_along() {
 /// Cleaners of temporary folders remove what has not been touched for long. The run's sockets are among it.
 #[test]
 fn a_run_whose_temporary_folder_is_removed_goes_on() {
-    let _machine = whole_machine();
     let temporary = tempfile::tempdir().unwrap();
     let gate = || scene("elastic-gate").set("resolution", 0.0025).until(0.03);
     let running = gate().variable("TMPDIR", temporary.path()).start();
@@ -144,7 +143,6 @@ fn a_run_whose_temporary_folder_is_removed_goes_on() {
 
 #[test]
 fn an_interrupted_run_is_stopped_and_complete() {
-    let _machine = whole_machine();
     let running = under_way();
     let launcher = running.pid();
     let roles = ["fluid", "solid"].map(|role| role_of(launcher, role).expect("a child"));
@@ -168,7 +166,6 @@ fn an_interrupted_run_is_stopped_and_complete() {
 /// What a crash of the machine would leave: rows and steps so far. A killed run can be drawn from it.
 #[test]
 fn a_run_that_goes_on_tells_how_far_it_is() {
-    let _machine = whole_machine();
     let running = under_way();
     let path = running.dir().join("run.json");
     let report = || halfstep_output::RunReport::read(&path).unwrap();
@@ -189,7 +186,6 @@ fn a_run_that_goes_on_tells_how_far_it_is() {
 /// Rows that go to a file that nobody can find are no rows.
 #[test]
 fn a_run_whose_probes_are_removed_fails_and_says_so() {
-    let _machine = whole_machine();
     let running = under_way();
     std::fs::remove_file(running.dir().join("probes.csv")).unwrap();
     let outcome = running.wait();
@@ -202,7 +198,6 @@ fn a_run_whose_probes_are_removed_fails_and_says_so() {
 /// The one who cannot go on says why, and the run repeats it.
 #[test]
 fn the_cause_of_an_end_leads_the_message() {
-    let _machine = whole_machine();
     let running = under_way();
     let frames = running.dir().join("frames");
     std::fs::rename(&frames, running.dir().join("aside")).unwrap();
@@ -224,7 +219,6 @@ fn the_cause_of_an_end_leads_the_message() {
 #[test]
 fn a_signal_to_all_processes_stops_the_run_in_order() {
     for signal in [libc::SIGTERM, libc::SIGHUP] {
-        let _machine = whole_machine();
         let running = under_way();
         let launcher = running.pid();
         let roles = ["fluid", "solid"].map(|role| role_of(launcher, role).expect("a child"));
@@ -243,7 +237,6 @@ fn a_signal_to_all_processes_stops_the_run_in_order() {
 #[test]
 fn a_run_with_a_silent_role_can_be_interrupted() {
     for signals in [1, 2] {
-        let _machine = whole_machine();
         let running = under_way();
         let launcher = running.pid();
         let solid = role_of(launcher, "solid").expect("a child");
@@ -276,7 +269,6 @@ fn the_end_of_one_role_ends_the_wait_for_another() {
 }
 
 fn the_fluid_ends_while_the_solid_is_awaited(probe_interval: f64) {
-    let _machine = whole_machine();
     let running = under_way_with_rows_each(probe_interval);
     let launcher = running.pid();
     let [fluid, solid] = ["fluid", "solid"].map(|role| role_of(launcher, role).expect("a child"));
@@ -340,7 +332,6 @@ fn a_run_that_cannot_be_held_is_refused_at_its_start() {
 
 #[test]
 fn a_folder_in_use_is_refused() {
-    let _machine = whole_machine();
     let running = under_way();
     let (launcher, dir) = (running.pid(), running.dir().to_owned());
     for arguments in [&["--force"][..], &[]] {

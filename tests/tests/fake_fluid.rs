@@ -42,7 +42,6 @@ fn solids(out: &Path) -> Vec<u32> {
 fn a_block_on_a_spring_swings_as_its_formula_says() {
     const STIFFNESS: f64 = 2e4;
     const FORCE: f64 = 100.0;
-    let _machine = whole_machine();
     let folder = tempfile::tempdir().unwrap();
     let line = format!(
         "{} {} {STIFFNESS}",
@@ -69,7 +68,6 @@ fn a_block_on_a_spring_swings_as_its_formula_says() {
 
 #[test]
 fn a_solid_that_fails_says_why() {
-    let _machine = whole_machine();
     let folder = tempfile::tempdir().unwrap();
     let script = folder.path().join("failing.py");
     std::fs::write(&script, FAILING_SOLID).unwrap();
@@ -103,7 +101,6 @@ fn a_load_that_grows_moves_the_block_as_its_formula_says() {
     const STIFFNESS: f64 = 2e4;
     const FORCE: f64 = 100.0;
     const RAMP: f64 = 0.1;
-    let _machine = whole_machine();
     let folder = tempfile::tempdir().unwrap();
     let script = repository().join("tests/python/spring_block.py");
     let line = format!("{} {} {STIFFNESS}", python().display(), script.display());
@@ -215,7 +212,6 @@ fn a_trial_that_is_stopped_before_its_solid_came_has_not_failed() {
 /// Steps with which the time stays the same.
 #[test]
 fn steps_that_never_reach_the_end_are_refused() {
-    let _machine = whole_machine();
     let folder = tempfile::tempdir().unwrap();
     let script = folder.path().join("slow.py");
     let slow = FAILING_SOLID.replace("0.0)\n", "0.0, dt_limit=1e-300)\n");

@@ -5,7 +5,7 @@ use halfstep_output::run_json::RunStatus;
 use halfstep_sph::lane::Isa;
 use halfstep_tests::baseline::baselines;
 use halfstep_tests::process::{kill, role_of};
-use halfstep_tests::run::{Outcome, files, repository, whole_machine};
+use halfstep_tests::run::{Outcome, files, repository};
 use halfstep_tests::scene;
 use std::hash::{BuildHasher, RandomState};
 use std::path::Path;
@@ -77,7 +77,6 @@ fn a_killed_run_leaves_the_files_of_one_that_was_not() {
 
 /// Starts a run and interrupts it when it has left some checkpoints.
 fn interrupted(run: halfstep_tests::RunBuilder, dir: &Path, signal: i32, checkpoints: f64) -> Outcome {
-    let _machine = whole_machine();
     let mut running = run.start();
     let newest = || FOLDERS.iter().filter_map(|f| Manifest::read(&dir.join(f)).ok()?).map(|m| m.number).max();
     while (newest().unwrap_or(0) as f64) < checkpoints {
@@ -204,7 +203,6 @@ fn a_run_with_a_living_role_is_not_resumed() {
     let folder = tempfile::tempdir().unwrap();
     let dir = folder.path().join("run");
     let gate = scene("elastic-gate").set("resolution", 0.0025).set("output.checkpoint_interval", 0.002);
-    let machine = whole_machine();
     let mut running = gate.until(0.03).out(&dir).start();
     let whole = || FOLDERS.iter().any(|name| dir.join(name).join(MANIFEST).exists());
     while !whole() {
@@ -219,6 +217,5 @@ fn a_run_with_a_living_role_is_not_resumed() {
     assert_eq!(refused.code(), Some(1), "{}", refused.stderr);
     assert!(refused.stderr.contains("a run goes on in"), "{}", refused.stderr);
     kill(solid, libc::SIGCONT);
-    drop(machine);
     scene("elastic-gate").resume(&dir).run();
 }

@@ -1,6 +1,6 @@
 //! Hard cases stay numerically stable: the cases of `tests/stability`, see docs/stability.md.
 //!
-//! The short form runs every case at its coarsest resolution. The long form runs all resolutions and the long rests and
+//! The short form runs cases at their coarsest resolution. The long form runs all resolutions and the long rests and
 //! prints the table: `make stability` puts it into docs/stability.md.
 
 use halfstep_tests::run::{Outcome, repository, scene_at};

@@ -35,6 +35,9 @@ pub struct Case {
     /// Solid models to run it with; none for a fluid alone.
     #[serde(default)]
     pub models: Vec<String>,
+    /// Only in the long form: one that is as hard stands beside it.
+    #[serde(default)]
+    pub long: bool,
     /// As three processes instead of threads of one.
     #[serde(default)]
     pub processes: bool,
