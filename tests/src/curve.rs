@@ -85,6 +85,16 @@ impl Curve {
         self.values.iter().sum::<f64>() / self.values.len() as f64
     }
 
+    /// Amplitude of the part with this period, s, about a value; the curve has whole periods.
+    pub fn amplitude(&self, period: f64, about: f64) -> f64 {
+        let part = |of: fn(f64) -> f64| {
+            let rows = self.times.iter().zip(&self.values);
+            let sum: f64 = rows.map(|(t, v)| (v - about) * of(std::f64::consts::TAU * t / period)).sum();
+            2.0 * sum / self.values.len() as f64
+        };
+        part(f64::cos).hypot(part(f64::sin))
+    }
+
     /// Slope of the line through the curve by least squares, per second.
     pub fn slope(&self) -> f64 {
         let n = self.times.len() as f64;
@@ -130,6 +140,15 @@ mod tests {
     fn sampled(f: impl Fn(f64) -> f64) -> Curve {
         let times: Vec<f64> = (0..=1000).map(|k| 1e-3 * f64::from(k)).collect();
         Curve { values: times.iter().map(|&t| f(t)).collect(), times }
+    }
+
+    #[test]
+    fn the_part_of_a_period_by_hand() {
+        // 0.3 sin - 0.4 cos has the amplitude 0.5; two other whole numbers of periods have no part in it.
+        let turn = |t: f64| std::f64::consts::TAU * t;
+        let wave =
+            sampled(|t| 2.0 + 0.3 * turn(4.0 * t).sin() - 0.4 * turn(4.0 * t).cos() + turn(8.0 * t).sin());
+        assert!((wave.amplitude(0.25, 2.0) - 0.5).abs() < 2e-3, "{}", wave.amplitude(0.25, 2.0));
     }
 
     #[test]

@@ -4,7 +4,6 @@ use halfstep_output::read_probes;
 use halfstep_tests::Curve;
 use halfstep_tests::python::{python, python_of};
 use halfstep_tests::run::{repository, scene, scene_at};
-use std::f64::consts::TAU;
 use std::process::Command;
 
 /// Spacing of the floating box's water, m.
@@ -118,7 +117,7 @@ fn the_motor_of_a_flap_takes_the_power_of_waves() {
     let folder = repository().join("python/examples/mujoco");
     let flume = scene_at(&folder.join("wave-flume.toml")).until(4.31).run();
     let level = flume.curve("gauge.level").between(3.4, 3.4 + PERIOD);
-    let amplitude = at_period(&level, PERIOD);
+    let amplitude = level.amplitude(PERIOD, 0.0);
     assert!((amplitude - 9.12e-3).abs() < 1e-5, "{amplitude} m");
     let theory = Command::new(python())
         .args([folder.join("wave_theory.py"), flume.dir().join("probes.csv")])
@@ -140,7 +139,7 @@ fn the_motor_of_a_flap_takes_the_power_of_waves() {
         let motor = read_probes(&run.dir().join("motor.csv")).expect("the motor's rows");
         let [work, angle] = ["work", "angle"].map(|name| Curve::of(&motor, name).between(3.4, 3.4 + PERIOD));
         let measured = work.values.iter().sum::<f64>() / PERIOD;
-        let turned = 1e3 * at_period(&angle, PERIOD);
+        let turned = 1e3 * angle.amplitude(PERIOD, 0.0);
         println!("{damping} N m s/rad, {stiffness} N m/rad: {measured} W/m, {turned} mrad");
         assert!((measured - power).abs() < 1e-3 && (turned - swing).abs() < 0.1, "{measured}, {turned}");
         let of_theory: f64 = row.split(' ').next().and_then(|power| power.parse().ok()).expect("a power");
@@ -153,16 +152,6 @@ fn the_motor_of_a_flap_takes_the_power_of_waves() {
         println!("{braked} W/m by the tip's rate");
         assert!((measured / braked - 1.0).abs() < 0.01, "{measured} and {braked} W/m");
     }
-}
-
-/// Amplitude of the part of a curve, over one period, that has this period, s.
-fn at_period(curve: &Curve, period: f64) -> f64 {
-    let part = |of: fn(f64) -> f64| {
-        let rows = curve.times.iter().zip(&curve.values);
-        let sum: f64 = rows.map(|(time, value)| value * of(TAU * time / period)).sum();
-        2.0 * sum / curve.values.len() as f64
-    };
-    part(f64::cos).hypot(part(f64::sin))
 }
 
 /// A wall of Akantu's cohesive finite elements breaks when the built-in one does: when its tip has gone 1 mm, twice as

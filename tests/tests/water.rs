@@ -302,12 +302,7 @@ fn paddle(dx: f64) -> f64 {
     let run =
         scene("wave-paddle").set("resolution", dx).set("shape.paddle.box.min", behind).in_process().run();
     let level = run.curve("gauge.level").between(2.3, 5.0);
-    let omega = std::f64::consts::TAU / 0.9;
-    let part = |f: fn(f64) -> f64| -> f64 {
-        let products = level.times.iter().zip(&level.values).map(|(t, y)| (y - 0.2) * f(omega * t)).collect();
-        2.0 * Curve { times: level.times.clone(), values: products }.mean()
-    };
-    2.0 * part(f64::cos).hypot(part(f64::sin)) / 0.0231
+    2.0 * level.amplitude(0.9, 0.2) / 0.0231
 }
 
 #[test]
