@@ -1,7 +1,7 @@
 //! Runs a shipped scene with the real program, as a user would, and reads what it leaves behind.
 //!
 //! Runs share the machine: processes in lock-step wait for each other, and leave half of two cores idle. A test that
-//! holds a run to seconds has the machine for itself.
+//! holds a run to seconds keeps off those that others wait for ([`RunBuilder::outcome`]).
 
 use crate::curve::Curve;
 use crate::process::kill;
@@ -159,7 +159,8 @@ impl RunBuilder {
     }
 }
 
-/// Keeps other runs off the machine, for tests that hold a run to seconds; they [`RunBuilder::start`] it.
+/// Keeps runs that other tests wait for off the machine, for tests that hold a run to seconds; they
+/// [`RunBuilder::start`] it.
 pub fn whole_machine() -> RwLockWriteGuard<'static, ()> {
     MACHINE.write().unwrap_or_else(PoisonError::into_inner)
 }
