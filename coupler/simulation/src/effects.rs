@@ -139,11 +139,18 @@ pub(crate) fn share(report: &mut RunReport, reports: &[(Phase, Report)], coupler
         share_row(report, WALLS, walls);
     }
     share_row(report, MOVING_WALLS, sum(&|own| own.moving_walls));
-    share_row(report, INTERFACE, sum(&|own| own.interface));
-    share_row(report, CROSS_VISCOSITY, coupler / total);
+    // What the coupler computes is told by the first of these that takes part.
+    let computed = [CROSS_VISCOSITY, SOLID_CONTACT, INTERFACE].into_iter().find(|name| is_on(report, name));
+    let interface = sum(&|own| own.interface);
+    share_row(report, INTERFACE, interface);
+    match computed {
+        Some(INTERFACE) => share_row(report, INTERFACE, interface + coupler / total),
+        Some(name) => share_row(report, name, coupler / total),
+        None => {}
+    }
     for (name, phase) in [(FLUID, Phase::Fluid), (SOLID, Phase::Solid)] {
         let rest = |own: &Report| {
-            let shown = own.effects.iter().filter(|(effect, _)| is_on(report, *effect));
+            let shown = own.effects.iter().filter(|(effect, _)| is_on(report, effect.name()));
             let effects: f64 = shown.map(|(_, seconds)| seconds).sum();
             (own.compute - own.walls - own.moving_walls - own.interface - effects).max(0.0)
         };
@@ -154,8 +161,8 @@ pub(crate) fn share(report: &mut RunReport, reports: &[(Phase, Report)], coupler
 
 /// There is a row that can show what the effect costs. (A solid's artificial viscosity has none without a
 /// fluid's: then it is part of the solid.)
-fn is_on(report: &RunReport, effect: EffectName) -> bool {
-    report.effects.iter().any(|row| row.on && row.name == effect.name())
+fn is_on(report: &RunReport, name: &str) -> bool {
+    report.effects.iter().any(|row| row.on && row.name == name)
 }
 
 fn share_row(report: &mut RunReport, name: &str, share: f64) {

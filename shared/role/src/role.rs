@@ -35,13 +35,17 @@ pub struct Costs {
 }
 
 impl Costs {
-    /// The same in seconds, for this much time in the sums and in all.
-    pub fn of(self, sums: f64, compute: f64) -> Self {
-        let seconds = if self.of_whole { compute } else { sums };
+    /// The same in seconds, for this much time in the sums, in all, and in what is neither the sums nor another part
+    /// that is told by itself. What was measured by leaving it out may add up to more than the whole (two effects
+    /// may hide each other's time, another program may have taken the processor): then each part is less by the
+    /// same factor.
+    pub fn of(self, sums: f64, compute: f64, beside: f64) -> Self {
+        let parts = self.walls + self.effects.iter().sum::<f64>();
+        let seconds = if self.of_whole { compute } else { sums } / parts.max(1.0);
         Self {
             effects: self.effects.map(|e| e * seconds),
             walls: self.walls * seconds,
-            moving_walls: self.moving_walls * seconds,
+            moving_walls: (self.moving_walls * sums).min(beside.max(0.0)),
             ..self
         }
     }
@@ -164,4 +168,30 @@ pub struct CoverageError {
     pub allowed: f64,
     /// Place of the solid among the peers.
     pub peer: usize,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn costs(parts: [f64; 3], moving_walls: f64) -> Costs {
+        let mut costs = Costs { walls: parts[0], moving_walls, ..Costs::default() };
+        costs.effects[..2].copy_from_slice(&parts[1..]);
+        costs
+    }
+
+    #[test]
+    fn parts_that_fit_are_taken_as_measured() {
+        let seconds = costs([0.25, 0.5, 0.125], 0.25).of(4.0, 8.0, 3.0);
+        assert_eq!((seconds.walls, seconds.moving_walls, &seconds.effects[..2]), (1.0, 1.0, &[2.0, 0.5][..]));
+        let of_whole = Costs { of_whole: true, ..costs([0.0, 0.5, 0.125], 0.0) }.of(4.0, 8.0, 0.0);
+        assert_eq!(of_whole.effects[..2], [4.0, 1.0]);
+    }
+
+    #[test]
+    fn parts_beyond_the_whole_share_it() {
+        // 0.5 + 1 + 0.5 of 4 s; the walls' places within half a second.
+        let seconds = costs([0.5, 1.0, 0.5], 0.25).of(4.0, 8.0, 0.5);
+        assert_eq!((seconds.walls, seconds.moving_walls, &seconds.effects[..2]), (1.0, 0.5, &[2.0, 1.0][..]));
+    }
 }

@@ -246,8 +246,8 @@ impl Track {
 
     pub(crate) fn report(&mut self, port: &dyn Port) -> Report {
         let times = port.times();
-        let compute = self.compute.as_secs_f64();
-        let costs = self.member.role.costs().of(self.sums.as_secs_f64(), compute);
+        let [compute, sums, cross] = [self.compute, self.sums, self.cross].map(|time| time.as_secs_f64());
+        let costs = self.member.role.costs().of(sums, compute, compute - sums - cross);
         let effects = EffectName::ALL.iter().copied().zip(costs.effects);
         Report {
             name: self.member.role.name().to_string(),
@@ -259,7 +259,7 @@ impl Track {
             pair_evaluations: self.member.role.pair_evaluations(),
             walls: costs.walls,
             moving_walls: costs.moving_walls,
-            interface: self.cross.as_secs_f64(),
+            interface: cross,
             effects: effects.filter(|(_, seconds)| *seconds > 0.0).collect(),
             energy: self.member.role.ledger().map_or_else(Vec::new, Ledger::entries),
             open_joints: self.member.role.open_joints(),
