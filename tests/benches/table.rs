@@ -11,7 +11,7 @@ use halfstep_fluid::composition::Shares;
 use halfstep_role::serve::on_threads;
 use halfstep_sph::lane::{Isa, Precision};
 use serde_json::{Value, json};
-use support::{Clock, LEAN, Patch, Running, collapse, medians, naive, tank};
+use support::{Clock, LEAN, NARROW, Patch, Running, collapse, medians, naive, tank};
 
 const STEPS: usize = 10;
 const ROUNDS: usize = 15;
@@ -109,6 +109,7 @@ fn steps(report: &mut Value) {
         ("cubic spline", with(&["numerics.kernel=cubic-spline"])),
         ("physical viscosity", with(&["fluid.viscosity=1.0", "effects.viscosity=on"])),
         ("the defaults of water alone: h / dx = 2, shifting", vec![]),
+        ("lean and narrow: h / dx = 1.33, no shifting", with(NARROW)),
     ];
     for threads in [1, 2] {
         println!("\nwhole step, 14 000 particles in a tank, {threads} thread(s)");
@@ -154,17 +155,19 @@ fn timed(clock: Clock, running: &mut [Running]) -> Vec<f64> {
 /// A collapsed column 0.35 s after its release, splashing.
 fn violent(report: &mut Value) {
     println!("\nwhole step, violent flow, 14 000 particles");
-    for threads in [1, 2] {
-        let clock = if threads == 1 { Clock::Cpu } else { Clock::Wall };
-        let rate = on_threads(threads, || {
-            let mut running = [Running::fluid(&collapse(LEAN), Isa::preferred())];
-            running[0].run_until(0.35);
-            let n = running[0].particles();
-            n * STEPS as f64 / timed(clock, &mut running)[0] * 1e-6
-        })
-        .expect("threads");
-        line(&format!("  lean, {threads} thread(s)"), format!("{rate:6.2} Mstep/s"));
-        report["violent"][format!("{threads} threads")] = json!(rate);
+    for (name, more) in [("lean", &[][..]), ("lean and narrow", NARROW)] {
+        for threads in [1, 2] {
+            let clock = if threads == 1 { Clock::Cpu } else { Clock::Wall };
+            let rate = on_threads(threads, || {
+                let mut running = [Running::fluid(&collapse(&[LEAN, more].concat()), Isa::preferred())];
+                running[0].run_until(0.35);
+                let n = running[0].particles();
+                n * STEPS as f64 / timed(clock, &mut running)[0] * 1e-6
+            })
+            .expect("threads");
+            line(&format!("  {name}, {threads} thread(s)"), format!("{rate:6.2} Mstep/s"));
+            report["violent"][name][format!("{threads} threads")] = json!(rate);
+        }
     }
 }
 

@@ -20,14 +20,14 @@ thread_local! {
 
 /// The other threads of a pool.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Awake {
+pub struct Awake {
     /// Those that are awake.
     count: Arc<AtomicUsize>,
 }
 
 impl Awake {
     /// What follows has work for all threads of the pool that this one is of.
-    pub(crate) fn wake(&self) {
+    pub fn wake(&self) {
         let others = rayon::current_num_threads() - 1;
         let Some(own) = rayon::current_thread_index() else { return };
         if self.count.load(Ordering::Relaxed) >= others {

@@ -10,7 +10,7 @@
 //! assert_eq!(on_threads(2, || 6 * 7).expect("two threads"), 42);
 //! ```
 
-mod awake;
+pub mod awake;
 pub mod balance;
 mod error;
 mod latency;

@@ -9,6 +9,7 @@ use halfstep_fluid::composition::{Pass, Shares};
 use halfstep_fluid::effects::artificial_viscosity::ArtificialViscosity;
 use halfstep_fluid::effects::density_diffusion::{Diffusion, Simple, Strength};
 use halfstep_fluid::rates::{PairEffect, RateLaw, RateSum};
+use halfstep_role::awake::Awake;
 use halfstep_role::role::Role;
 use halfstep_scene::{self as scene, ArtificialViscosity as Coefficients, Scene};
 use halfstep_sph::kernel::{Kernel, WendlandC2};
@@ -24,6 +25,9 @@ use std::time::Instant;
 
 /// Settings that the targets of the fluid step are stated for: pressure, artificial viscosity, simple diffusion.
 pub(crate) const LEAN: &[&str] = &["fluid.density_diffusion=simple", "numerics.kernel=wendland-c2"];
+
+/// With LEAN: the narrow kernel of water beside a solid of the base method, without shifting.
+pub(crate) const NARROW: &[&str] = &["smoothing_ratio=1.33", "effects.particle-shifting=off"];
 
 /// Water 1.4 times as wide as high, at rest in a tank, with about `particles` particles.
 pub(crate) fn tank(particles: usize, overrides: &[&str]) -> Scene {
@@ -63,15 +67,21 @@ fn parse(text: &str, overrides: &[&str]) -> Scene {
 pub(crate) struct Running {
     role: Box<dyn Role>,
     step: u64,
+    /// As in a run.
+    awake: Awake,
 }
 
 impl Running {
     pub(crate) fn fluid(scene: &Scene, isa: Isa) -> Self {
-        Self { role: halfstep_fluid::role(scene, isa).expect("a fluid"), step: 0 }
+        Self::of(halfstep_fluid::role(scene, isa).expect("a fluid"))
     }
 
     pub(crate) fn solid(scene: &Scene) -> Self {
-        Self { role: halfstep_solid::role(scene, 0, Isa::preferred()).expect("a solid"), step: 0 }
+        Self::of(halfstep_solid::role(scene, 0, Isa::preferred()).expect("a solid"))
+    }
+
+    fn of(role: Box<dyn Role>) -> Self {
+        Self { role, step: 0, awake: Awake::default() }
     }
 
     pub(crate) fn particles(&self) -> f64 {
@@ -86,6 +96,7 @@ impl Running {
     pub(crate) fn step(&mut self) -> f64 {
         let dt = self.role.dt_limit();
         for half_step in HalfStep::begin(self.step, 0.0).lasting(dt).both() {
+            self.awake.wake();
             self.role.publish(&[], &mut Vec::new());
             self.role.own_sums();
             self.role.advance(&half_step, &[]).expect("a stable step");
