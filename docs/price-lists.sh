@@ -99,7 +99,7 @@ price solitary-wave-wall --set resolution=0.02 --set 'shape.piston.box.min=[-0.1
     --vary resolution=0.01,0.04 --vary smoothing_ratio=1.5 --vary fluid.density_diffusion=delta-sph
 price floating-box --set resolution=0.0125 --vary resolution=0.01,0.02 --vary smoothing_ratio=2 \
     --vary interface.cross_viscosity_reach=1.25 --vary effects.particle-shifting=off
-price block-wall --set resolution=0.02 --vary resolution=0.01 --vary effects.particle-shifting=off
+price block-wall --until 0.4 --set resolution=0.02 --vary resolution=0.01,0.005 --vary effects.particle-shifting=off
 price gate-lift --until 0.45 --set resolution=0.002 --vary resolution=0.0016 --vary shape.plate.across=3,5 \
     --vary solid.model=total-lagrangian
 price rolling-tank --until 1.0 --set resolution=0.002 --vary resolution=0.0013333333333333333 \

@@ -8,6 +8,7 @@ use crate::step_cost::step_cost;
 use crate::{effects, remarks};
 use halfstep_coupling::roles;
 use halfstep_output::run_json::EffectReport;
+use halfstep_role::role::Role;
 use halfstep_scene::geometry::{self, Counts};
 use halfstep_scene::{self as scene, Phase, Scene, TimeStep, dispatch};
 use halfstep_solid::SubStepping;
@@ -167,6 +168,9 @@ fn check_in<const D: usize>(scene: &Scene, isa: Isa) -> Check {
     let mut warnings = remarks::on(scene, &layout, &shapes);
     warnings.extend(limits::too_long(scene, &limits));
     warnings.extend(limits::too_soft(scene, &contact));
+    for role in &built {
+        warnings.extend(remarks::jerked(&role.name().to_string(), &role.jerked_joints()));
+    }
     let steps = (scene.end_time / time_step).ceil() as u64;
     let expected_seconds = expected_seconds(built, time_step, scene.end_time);
     warnings.extend(limits::takes_days(scene, expected_seconds, steps, &limits));
@@ -231,7 +235,7 @@ fn pairs(scene: &Scene) -> Option<String> {
     (!text.is_empty()).then(|| text.join("; "))
 }
 
-fn expected_seconds(roles: Vec<Box<dyn halfstep_role::role::Role>>, dt: f64, end: f64) -> Option<f64> {
+fn expected_seconds(roles: Vec<Box<dyn Role>>, dt: f64, end: f64) -> Option<f64> {
     let costs: Option<Vec<f64>> = roles.into_iter().map(|role| step_cost(role, dt)).collect();
     costs.map(|costs| costs.into_iter().fold(0.0, f64::max) * end / dt)
 }

@@ -53,8 +53,8 @@ pub(crate) use bodies::{MOST_LISTED, listed as bodies_listed};
 pub(crate) use contacts::bodies_of;
 pub(crate) use joined::{Joined, Massive, joined, massive};
 pub(crate) use loads::{Loaded, listed as loaded};
-pub(crate) use outcome::DEEP;
 pub use outcome::outcome;
+pub(crate) use outcome::{DEEP, jerked};
 pub(crate) use probed::{Probed, probed};
 pub(crate) use shapes::{Placed, placed};
 

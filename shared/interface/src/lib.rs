@@ -321,16 +321,24 @@ impl<const D: usize> Interface<D> {
 
     /// Smallest distance between a fluid and a solid particle, m; infinite where none is within the kernel's support.
     pub fn smallest_distance(&self) -> f64 {
-        let mut least = f64::INFINITY;
-        for (i, _) in self.fluid.slots() {
-            for j in self.fluid_list.of(i) {
-                let apart = |d: usize| self.fluid.position[d][i] - self.solid.position[d][j];
-                let r2: f64 = (0..D).map(|d| apart(d).powi(2)).sum();
-                least = least.min(r2);
+        let mut least = [f64::INFINITY; LANES];
+        for first in (0..self.fluid.density.len()).step_by(LANES) {
+            let own: [[f64; LANES]; D] =
+                std::array::from_fn(|d| std::array::from_fn(|k| self.fluid.position[d][first + k]));
+            for j in self.fluid_list.of(first) {
+                let mut r2 = [0.0; LANES];
+                for (own, solid) in own.iter().zip(&self.solid.position) {
+                    for (r2, x) in r2.iter_mut().zip(own) {
+                        *r2 += (x - solid[j]) * (x - solid[j]);
+                    }
+                }
+                for (least, r2) in least.iter_mut().zip(r2) {
+                    *least = if r2 < *least { r2 } else { *least };
+                }
             }
         }
         // What else a list holds hangs on how many particles share it.
-        let distance = least.sqrt();
+        let distance = least.into_iter().fold(f64::INFINITY, f64::min).sqrt();
         if distance < 2.0 * self.parameters.smoothing_length { distance } else { f64::INFINITY }
     }
 }

@@ -47,6 +47,10 @@ pub(super) struct Face {
 /// The faces of the thin plates.
 #[derive(Clone, Debug)]
 pub(super) struct Screen<const D: usize> {
+    /// Positions of the records at the first half-step, m.
+    first: Vec<SVector<f64, D>>,
+    /// And now; beside each other, since each is read for all of its neighbours.
+    now: Vec<SVector<f64, D>>,
     material: Vec<Material<D>>,
     neighbours: Vec<u32>,
     /// Of a solid that can break.
@@ -63,7 +67,6 @@ pub(super) struct Screen<const D: usize> {
 /// A solid record at the first half-step.
 #[derive(Clone, Copy, Debug)]
 struct Material<const D: usize> {
-    position: SVector<f64, D>,
     /// N_s.
     across: SVector<f64, D>,
     /// M N_s; zero where there is no thin plate.
@@ -84,9 +87,9 @@ impl<const D: usize> Screen<D> {
         order.sort_by(|&a, &b| x[a][widest].total_cmp(&x[b][widest]));
         let mut place = vec![0; x.len()];
         order.iter().enumerate().for_each(|(k, &i)| place[i] = k);
+        let first: Vec<SVector<f64, D>> = x.iter().map(|&x| x.into()).collect();
         let (mut material, mut neighbours) = (Vec::with_capacity(x.len()), Vec::new());
         for i in 0..x.len() {
-            let position = SVector::from(x[i]);
             let (mut moment, mut normal, mut before) = (SMatrix::zeros(), [0.0; D], 0.0);
             if let Some(plate) = plates[i] {
                 (normal, before) = parameters.thin_plates[plate].across(&x[i]);
@@ -94,7 +97,7 @@ impl<const D: usize> Screen<D> {
                 let below = order[..place[i]].iter().copied().rev().take_while(near);
                 let above = order[place[i] + 1..].iter().copied().take_while(near);
                 for j in below.chain(above).filter(|&j| plates[j] == plates[i]) {
-                    let apart = SVector::from(x[j]) - position;
+                    let apart = first[j] - first[i];
                     if apart.norm() <= reach {
                         moment += apart * apart.transpose();
                         neighbours.push(j as u32);
@@ -103,13 +106,14 @@ impl<const D: usize> Screen<D> {
             }
             let end = neighbours.len() as u32;
             let across = SVector::from(normal);
-            material.push(Material { position, across, normal: moment * across, before, end });
+            material.push(Material { across, normal: moment * across, before, end });
         }
         let pieces = parameters.torn.map(|torn| {
-            let first = material.iter().map(|material| material.position).collect();
-            Pieces::new(first, torn, reach, |record| &neighbours[range(&material, record)])
+            Pieces::new(first.clone(), torn, reach, |record| &neighbours[range(&material, record)])
         });
         Self {
+            now: Vec::with_capacity(first.len()),
+            first,
             material,
             neighbours,
             pieces,
@@ -122,7 +126,7 @@ impl<const D: usize> Screen<D> {
 
     /// Positions of the solid's records at the first half-step.
     pub(super) fn first_positions(&self) -> Vec<[f64; D]> {
-        self.material.iter().map(|material| material.position.into()).collect()
+        self.first.iter().map(|&x| x.into()).collect()
     }
 
     /// Number of the solid's records.
@@ -131,25 +135,24 @@ impl<const D: usize> Screen<D> {
     }
 
     /// The unit normal of a record's plate; zero where it has none.
-    fn normal(&mut self, record: usize, records: &[StateRecord]) -> SVector<f64, D> {
+    fn normal(&mut self, record: usize) -> SVector<f64, D> {
         let own = &self.material[record];
-        let at = |j: usize| SVector::from(std::array::from_fn::<_, D, _>(|d| records[j].position[d]));
-        let here = at(record);
+        let (then, here) = (self.first[record], self.now[record]);
         let neighbours = &self.neighbours[range(&self.material, record)];
         let mut piece = self.pieces.as_mut().filter(|_| !neighbours.is_empty());
         if let Some(pieces) = &mut piece {
-            pieces.gather(record, at);
+            pieces.gather(record, |j| self.now[j]);
         }
         let mut moment = SMatrix::<f64, D, D>::zeros();
         let mut first = SMatrix::<f64, D, D>::zeros();
         for j in neighbours.iter().map(|&j| j as usize) {
-            let apart = self.material[j].position - own.position;
+            let apart = self.first[j] - then;
             match &piece {
                 Some(pieces) if !pieces.holds(j) => continue,
                 Some(_) => first += apart * apart.transpose(),
                 None => {}
             }
-            moment += (at(j) - here) * apart.transpose();
+            moment += (self.now[j] - here) * apart.transpose();
         }
         let even = (first.trace() / D as f64).powi(D as i32);
         if piece.is_some() && tensor::determinant(&first) <= FLAT * even {
@@ -165,6 +168,8 @@ impl<const D: usize> Screen<D> {
     /// Where the faces are now.
     fn carry(&mut self, solid: &InterfaceParticles<D>, records: &[StateRecord]) {
         let slots = solid.density.len();
+        self.now.clear();
+        self.now.extend(records.iter().map(|r| SVector::from_fn(|d, _| r.position[d])));
         for column in self.normal.iter_mut().chain([&mut self.before]) {
             column.resize(slots, 0.0);
         }
@@ -173,7 +178,7 @@ impl<const D: usize> Screen<D> {
             // A padding slot repeats the particle before it.
             if solid.record_of(slot) != PADDING {
                 let record = solid.record_of(slot) as usize;
-                normal = self.normal(record, records);
+                normal = self.normal(record);
                 before = if normal.norm() > 0.0 { self.material[record].before } else { 0.0 };
             }
             for d in 0..D {

@@ -38,7 +38,7 @@ pub use alone::{measure_alone, places_alone};
 pub use at_start::cantilever_velocity;
 use at_start::{added, field_velocity, initial_pressure, surfaces};
 pub use boxes::{around, bounding_box, domain, fluid_boxes};
-pub use cells::{Cells, cell};
+pub use cells::{CellSet, Cells, cell};
 pub use crossing::{Cracks, crosses};
 pub use line::along;
 pub use moved::Moved;

@@ -47,7 +47,7 @@ pub(super) struct Ball {
     pub(super) radius: f64,
     /// How deep another surface may lie in it and be pushed out, m.
     pub(super) depth: f64,
-    /// Of a wall's corner: between which normals faces lie on it.
+    /// Of a point in the plane: between which normals, of the sides before and after it, faces lie on it.
     pub(super) between: Option<[Vec3; 2]>,
 }
 
@@ -64,6 +64,16 @@ impl Ball {
         cross(&before, &from) >= -BESIDE
             && cross(&from, &after) >= -BESIDE
             && from.dot(&(before + after)) > 0.0
+    }
+
+    /// It is where two sides meet.
+    pub(super) fn is_corner(&self) -> bool {
+        self.between.is_some_and(|[before, after]| before != after)
+    }
+
+    /// Direction from a point into its body, which is turned; none of a disc.
+    pub(super) fn inward(&self, turn: &UnitQuaternion<f64>) -> Option<Vec3> {
+        self.between.map(|[before, after]| turn * -(before + after).normalize())
     }
 }
 

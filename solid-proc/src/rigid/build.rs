@@ -121,8 +121,9 @@ fn corner_ball(corner: &WallCorner) -> Ball {
 
 /// Calls `visit` with the balls of a surface about a centre of the scene, with points at most `spacing`, m, apart.
 fn balls<const D: usize>(surface: &Surface, center: &Vec3, spacing: f64, mut visit: impl FnMut(Ball)) {
-    surface.balls::<D>(spacing, &mut |place, radius| {
-        visit(Ball { arm: wide(&place) - center, radius, depth: 0.5 * surface.depth(), between: None });
+    surface.balls::<D>(spacing, &mut |place, radius, normals| {
+        let between = normals.map(|both| both.map(|normal| wide(&normal)));
+        visit(Ball { arm: wide(&place) - center, radius, depth: 0.5 * surface.depth(), between });
     });
 }
 

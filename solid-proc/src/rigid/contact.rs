@@ -98,6 +98,12 @@ const ROUNDING: f64 = 0.1;
 /// How far beside a place a face is looked at, in tolerances of contact.
 const BESIDE: f64 = 10.0;
 
+/// How far into its body a ball at a corner is looked at, in tolerances of contact.
+const ASIDE: f64 = 0.1;
+
+/// How far from each other two corners are that touch, in tolerances of contact: along either side one at most.
+const CORNER: f64 = 1.5;
+
 /// Normals of one face agree to this cosine.
 const SAME_FACE: f64 = 1.0 - 1e-9;
 
@@ -178,6 +184,9 @@ impl System {
         let (on_a, on_b): (&Pose, &Pose) = (&self.poses[surface], &self.poses[ball]);
         let back = on_a.turn.inverse();
         let mut faces: Vec<OnFace> = Vec::new();
+        // Distances and normals of a surface's faces near a ball.
+        let mut near: Vec<(f64, [f64; D])> = Vec::new();
+        let outward = |own: &[f64; D]| on_a.turn * Vec3::from_fn(|d, _| if d < D { own[d] } else { 0.0 });
         for touching in &b.balls {
             let Ball { arm, radius, depth, .. } = touching;
             let at = on_b.center + on_b.turn * arm;
@@ -187,37 +196,73 @@ impl System {
             }
             let reference = a.center + back * (at - on_a.center);
             for (k, of) in a.surfaces.iter().enumerate() {
-                of.nearest::<D>(std::array::from_fn(|d| reference[d]), &mut |distance, normal| {
-                    let gap = distance - radius;
-                    if gap > self.tolerance || gap < -depth {
-                        return;
+                let within = |distance: f64| (-depth..=self.tolerance).contains(&(distance - radius));
+                let meets = |own: &[f64; D]| touching.is_met_from(&on_b.turn, &outward(own));
+                near.clear();
+                of.nearest::<D>(std::array::from_fn(|d| reference[d]), &mut |distance, own| {
+                    if within(distance) {
+                        near.push((distance, own));
                     }
-                    let foot = std::array::from_fn(|d| reference[d] - distance * normal[d]);
-                    let own = normal;
-                    let normal = on_a.turn * Vec3::from_fn(|d, _| if d < D { own[d] } else { 0.0 });
-                    if !touching.is_met_from(&on_b.turn, &normal)
-                        || (self.plane && self.is_covered::<D>(surface, k, foot, own))
-                    {
-                        return;
+                });
+                // Where the ball is at a corner, the face that it lies on is as near as the one beside it. It is the
+                // nearest one a little farther in the ball's own body.
+                if !near.is_empty()
+                    && !near.iter().any(|(_, own)| meets(own))
+                    && let Some(inward) = touching.inward(&on_b.turn)
+                {
+                    near.clear();
+                    let way = back * inward * (ASIDE * self.tolerance);
+                    of.nearest::<D>(std::array::from_fn(|d| reference[d] + way[d]), &mut |distance, own| {
+                        let distance = distance - (0..D).map(|d| way[d] * own[d]).sum::<f64>();
+                        if within(distance) {
+                            near.push((distance, own));
+                        }
+                    });
+                }
+                if !near.is_empty() && self.is_corner_on_corner(a, touching, &reference, |own| meets(own)) {
+                    continue;
+                }
+                for &(distance, own) in near.iter().filter(|(_, own)| meets(own)) {
+                    let foot = std::array::from_fn(|d| reference[d] - distance * own[d]);
+                    if self.plane && self.is_covered::<D>(surface, k, foot, own) {
+                        continue;
                     }
+                    let normal = outward(&own);
                     let point = at - normal * *radius;
-                    let row = Row::between([surface, ball], &self.poses, point, normal, gap);
+                    let row = Row::between([surface, ball], &self.poses, point, normal, distance - radius);
                     let touch = self.contact(row, point);
                     if !self.plane {
                         all.push(touch);
-                        return;
+                        continue;
                     }
                     let along = point[1] * normal[0] - point[0] * normal[1];
                     match faces.iter_mut().find(|face| face.normal.dot(&normal) > SAME_FACE) {
                         None => faces.push(OnFace::of(normal, along, &touch)),
                         Some(face) => face.add(along, touch),
                     }
-                });
+                }
             }
         }
         for face in faces {
             face.counting(ROUNDING * self.tolerance, all);
         }
+    }
+
+    /// Whether a point lies on a corner of a body both of whose faces `meets` it, in the reference configuration: either
+    /// could part the two, and what slides over a seam of two bodies would be held by the one in its way.
+    fn is_corner_on_corner<const D: usize>(
+        &self,
+        body: &Body,
+        touching: &Ball,
+        reference: &Vec3,
+        meets: impl Fn(&[f64; D]) -> bool,
+    ) -> bool {
+        let near = CORNER * self.tolerance;
+        let on = |ball: &&Ball| (body.center + ball.arm - reference).norm_squared() < near * near;
+        touching.is_corner()
+            && body.balls.iter().filter(|ball| ball.is_corner()).find(on).is_some_and(|corner| {
+                corner.between.iter().flatten().all(|n| meets(&std::array::from_fn(|d| n[d])))
+            })
     }
 
     /// Whether a face of a body's surface of that number is covered all around a place on it, by other surfaces of the

@@ -125,6 +125,7 @@ impl Law {
     }
 
     /// First Piola-Kirchhoff stress, Pa; `j` is [`Self::volume_ratio`].
+    #[inline(always)]
     pub(crate) fn first_piola_kirchhoff<const D: usize>(&self, f: &Matrix<D>, j: f64) -> Matrix<D> {
         self.nominal(f, j, self.log_of_volume(j))
     }
@@ -137,7 +138,8 @@ impl Law {
         }
     }
 
-    /// P for F, J and [`Self::log`], Pa.
+    /// P for F, J and [`Self::log_of_volume`], Pa.
+    #[inline(always)]
     fn nominal<const D: usize>(&self, f: &Matrix<D>, j: f64, log: f64) -> Matrix<D> {
         match self.material {
             Material::StVenantKirchhoff => f * self.second_piola_kirchhoff(&green(f)),

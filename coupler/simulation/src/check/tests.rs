@@ -172,3 +172,22 @@ fn bodies_and_joints_are_listed_as_they_begin() {
         (&"hinge".into(), &6.0.into())
     );
 }
+
+/// A bar on two hinges that begins to turn about the first of them: the second is 0.2 m away and does not move.
+#[test]
+fn velocities_that_a_joint_takes_are_told_before_a_run() {
+    let text = "resolution = 0.01\nend_time = 0.5\n[solid]\nmodel = \"rigid\"\ndensity = 500.0\n\
+        [[solid.bodies]]\nname = \"bar\"\nangular_velocity = 0.3\n\
+        [[solid.joints]]\nname = \"near\"\nkind = \"hinge\"\nbody = \"bar\"\nat = [0.0, 0.05]\n\
+        [[solid.joints]]\nname = \"far\"\nkind = \"hinge\"\nbody = \"bar\"\nat = [0.2, 0.05]\n\
+        [[shape]]\nname = \"bar\"\nphase = \"solid\"\nbox = { min = [0.0, 0.0], max = [0.2, 0.1] }\n";
+    let told = |text: &str| {
+        let scene = halfstep_scene::parse(text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}"));
+        let warnings = check(&scene, Isa::detect()).expect("in the plane").warnings;
+        warnings.into_iter().filter(|told| told.contains("begin with velocities")).collect::<Vec<_>>()
+    };
+    let jerked = told(text);
+    let far = "the ends of the joint `far` of the solid begin with velocities that differ by 6.00e-2 m/s";
+    assert!(jerked.len() == 1 && jerked[0].starts_with(far), "{jerked:?}");
+    assert_eq!(told(&text.replace("0.3\n", "0.0\n")), <[String; 0]>::default());
+}

@@ -152,8 +152,9 @@ impl<'a> Pusher<'a> {
                 }
                 let order = if stops { order::STOP } else { order::GO };
                 let header = ForceHeader { order, ..half_step.with_step(dt, next_time).force_header() };
-                link.send_forces(SOLID, &header, if stops { &[] } else { &forces })?;
+                // Before the forces are there: a solid that is woken may take this core.
                 sent = Some(Instant::now());
+                link.send_forces(SOLID, &header, if stops { &[] } else { &forces })?;
                 drop(state);
                 link.send_forces(FLUID, &header, &[])?;
                 if stops {

@@ -29,6 +29,17 @@ const RUBBLE: f64 = 10.0;
 /// Part of the largest energy that the ledger may leave to the error of time integration.
 const RESIDUAL: f64 = 0.05;
 
+/// Joints of a solid whose ends begin with different velocities, m/s and rad/s.
+pub(crate) fn jerked(solid: &str, joints: &[(String, [f64; 2])]) -> Vec<String> {
+    let told = joints.iter().map(|(joint, [apart, turned])| {
+        format!(
+            "the ends of the joint `{joint}` of the {solid} begin with velocities that differ by {apart:.2e} m/s and \
+             {turned:.2e} rad/s: the first step takes that by an impulse, and its energy with it"
+        )
+    });
+    told.collect()
+}
+
 /// What at the end of a run says that its result is not to be trusted as it is.
 pub fn outcome(scene: &Scene, report: &RunReport) -> Vec<String> {
     let mut all = Vec::new();
@@ -51,14 +62,8 @@ pub fn outcome(scene: &Scene, report: &RunReport) -> Vec<String> {
             100.0 * tension
         ));
     }
-    for (own, (joint, [apart, turned])) in
-        report.participants.iter().flat_map(|own| own.jerked_joints.iter().map(move |j| (own, j)))
-    {
-        all.push(format!(
-            "the ends of the joint `{joint}` of the {} began with velocities that differ by {apart:.2e} m/s and \
-             {turned:.2e} rad/s: the first step took that by an impulse, and its energy with it",
-            own.name
-        ));
+    for own in &report.participants {
+        all.extend(jerked(&own.name, &own.jerked_joints));
     }
     for (own, (joint, apart)) in
         report.participants.iter().flat_map(|own| own.open_joints.iter().map(move |j| (own, j)))
@@ -241,7 +246,7 @@ mod tests {
         };
         let told = outcome(&scene, &RunReport { participants: vec![jerked], ..RunReport::default() });
         let begins =
-            "the ends of the joint `pin` of the flap began with velocities that differ by 1.20e-1 m/s";
+            "the ends of the joint `pin` of the flap begin with velocities that differ by 1.20e-1 m/s";
         assert!(told.len() == 1 && told[0].starts_with(begins), "{told:?}");
     }
 

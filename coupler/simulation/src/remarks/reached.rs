@@ -1,9 +1,8 @@
 //! Where the fluid can come: from its particles at the start through what walls leave free.
 
 use super::near;
-use halfstep_scene::geometry::{self, Cells, Layout, cell};
+use halfstep_scene::geometry::{self, CellSet, Cells, Layout, cell};
 use halfstep_scene::{Phase, Scene};
-use std::collections::HashSet;
 
 /// Distance within which a place counts as filled by a particle, in spacings: half the diagonal of a cell and some
 /// more.
@@ -59,7 +58,7 @@ pub(super) fn filled<const D: usize>(cells: &Cells<[f64; D], D>, at: &[f64; D], 
 }
 
 /// Cells of side dx.
-pub(super) type Places<const D: usize> = HashSet<[i64; D]>;
+pub(super) type Places<const D: usize> = CellSet<D>;
 
 fn middle<const D: usize>(k: &[i64; D], dx: f64) -> [f64; D] {
     k.map(|k| (k as f64 + 0.5) * dx)

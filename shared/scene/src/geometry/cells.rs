@@ -1,20 +1,21 @@
 //! Things at places, sorted into cells.
 
-use std::collections::HashMap;
-use std::hash::BuildHasherDefault;
-use xxhash_rust::xxh3::Xxh3Default;
+use rustc_hash::{FxHashMap, FxHashSet};
+
+/// Cells by their indices.
+pub type CellSet<const D: usize> = FxHashSet<[i64; D]>;
 
 /// Things at places, in cells of one side.
 #[derive(Clone, Debug)]
 pub struct Cells<T, const D: usize> {
-    cells: HashMap<[i64; D], Vec<T>, BuildHasherDefault<Xxh3Default>>,
+    cells: FxHashMap<[i64; D], Vec<T>>,
     side: f64,
 }
 
 impl<T, const D: usize> Cells<T, D> {
     /// None yet, in cells of this side, m.
     pub fn new(side: f64) -> Self {
-        Self { cells: HashMap::default(), side }
+        Self { cells: FxHashMap::default(), side }
     }
 
     /// Adds a thing at a place, m.

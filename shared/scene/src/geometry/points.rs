@@ -1,8 +1,7 @@
 //! The lattice of one shape, and the normals of walls.
 
-use super::{Moved, TOLERANCE, moved, polygon, region};
+use super::{Cells, Moved, TOLERANCE, moved, polygon, region};
 use crate::{Block, Geometry, TankSide};
-use std::collections::HashMap;
 
 /// How a shape is filled.
 #[derive(Clone, Copy, Debug)]
@@ -108,8 +107,7 @@ pub(super) fn with_copies<const D: usize>(geometry: &Geometry, spacing: Spacing)
 fn copies<const D: usize>(moved: &Moved, spacing: Spacing) -> Vec<(Point<D>, u32)> {
     let first = of_shape::<D>(&moved.geometry, spacing);
     let mut points = Vec::with_capacity(first.len().saturating_mul(moved.count as usize));
-    let cell = |x: &[f64; D]| x.map(|x| (x / spacing.dx).floor() as i64);
-    let mut cells: HashMap<[i64; D], Vec<[f64; D]>> = HashMap::new();
+    let mut cells = Cells::new(spacing.dx);
     for copy in moved.copies() {
         let placed = first.iter().map(|point| Point {
             position: moved.place(copy, point.position),
@@ -118,19 +116,12 @@ fn copies<const D: usize>(moved: &Moved, spacing: Spacing) -> Vec<(Point<D>, u32
         });
         let limit = (0.5 - TOLERANCE) * spacing.dx;
         let free = |point: &Point<D>| {
-            let home = cell(&point.position);
-            !(0..3_usize.pow(D as u32)).any(|code| {
-                let near: [i64; D] =
-                    std::array::from_fn(|a| home[a] + (code / 3_usize.pow(a as u32) % 3) as i64 - 1);
-                cells.get(&near).is_some_and(|others| {
-                    let r2 = |q: &[f64; D]| (0..D).map(|a| (q[a] - point.position[a]).powi(2)).sum::<f64>();
-                    others.iter().any(|q| r2(q) < limit * limit)
-                })
-            })
+            let r2 = |q: &[f64; D]| (0..D).map(|a| (q[a] - point.position[a]).powi(2)).sum::<f64>();
+            !cells.around(&point.position).any(|q| r2(q) < limit * limit)
         };
         let kept: Vec<Point<D>> = placed.filter(free).collect();
         for point in &kept {
-            cells.entry(cell(&point.position)).or_default().push(point.position);
+            cells.add(&point.position, point.position);
         }
         points.extend(kept.into_iter().map(|point| (point, copy)));
     }

@@ -77,11 +77,19 @@ impl Surface {
 
     /// Calls `visit` with balls (centre, radius, m) that touch the surface from within, at most `spacing` (m) apart: of
     /// discs and rings the whole disc, of others points on the surface.
-    pub fn balls<const D: usize>(&self, spacing: f64, visit: &mut impl FnMut([f64; D], f64)) {
+    pub fn balls<const D: usize>(
+        &self,
+        spacing: f64,
+        visit: &mut impl FnMut([f64; D], f64, Option<[[f64; D]; 2]>),
+    ) {
         for copy in self.copies.clone() {
-            self.part.balls(spacing, &mut |center, radius| match &self.moved {
-                None => visit(center, radius),
-                Some(moved) => visit(moved.place(copy, center), radius),
+            self.part.balls(spacing, &mut |center, radius, normals| match &self.moved {
+                None => visit(center, radius, normals),
+                Some(moved) => visit(
+                    moved.place(copy, center),
+                    radius,
+                    normals.map(|both| both.map(|n| moved.turned(n))),
+                ),
             });
         }
     }
@@ -177,7 +185,11 @@ impl Part {
         }
     }
 
-    fn balls<const D: usize>(&self, spacing: f64, visit: &mut impl FnMut([f64; D], f64)) {
+    fn balls<const D: usize>(
+        &self,
+        spacing: f64,
+        visit: &mut impl FnMut([f64; D], f64, Option<[[f64; D]; 2]>),
+    ) {
         match self {
             Self::Block(block) => {
                 let extent: [f64; D] = std::array::from_fn(|a| block.max[a] - block.min[a]);
@@ -192,11 +204,16 @@ impl Part {
                     });
                     if (0..D).any(|a| index[a] == 0 || index[a] == cells[a]) {
                         let place = |a: usize| block.min[a] + extent[a] * index[a] as f64 / cells[a] as f64;
-                        visit(std::array::from_fn(place), 0.0);
+                        let side = |a: usize| match index[a] {
+                            0 => -1.0,
+                            k if k == cells[a] => 1.0,
+                            _ => 0.0,
+                        };
+                        visit(std::array::from_fn(place), 0.0, (D == 2).then(|| beside([0, 1].map(side))));
                     }
                 }
             }
-            Self::Ring { center, outer, .. } => visit(std::array::from_fn(|a| center[a]), *outer),
+            Self::Ring { center, outer, .. } => visit(std::array::from_fn(|a| center[a]), *outer, None),
             Self::Tank { .. } => {}
             Self::Polygon(edges) => {
                 for edge in &edges.all {
@@ -204,11 +221,33 @@ impl Part {
                     for k in 0..parts {
                         let share = k as f64 / parts as f64;
                         let place = |a: usize| edge.from[a] + share * (edge.to[a] - edge.from[a]);
-                        visit(std::array::from_fn(|a| if a < 2 { place(a) } else { 0.0 }), 0.0);
+                        let before = if k == 0 { &edges.all[edge.before] } else { edge };
+                        let normals = [before, edge].map(|side| in_plane(side.normal()));
+                        visit(in_plane([0, 1].map(place)), 0.0, (D == 2).then_some(normals));
                     }
                 }
             }
         }
+    }
+}
+
+/// A vector of the plane.
+fn in_plane<const D: usize>(v: [f64; 2]) -> [f64; D] {
+    std::array::from_fn(|a| if a < 2 { v[a] } else { 0.0 })
+}
+
+/// Normals of the sides of a box in the plane before and after a point of its outline, counter-clockwise. `side`: by
+/// axis, -1 on the lower side, 1 on the upper one, 0 between them.
+fn beside<const D: usize>([x, y]: [f64; 2]) -> [[f64; D]; 2] {
+    let (of_x, of_y) = (in_plane([x, 0.0]), in_plane([0.0, y]));
+    if x == 0.0 {
+        [of_y; 2]
+    } else if y == 0.0 {
+        [of_x; 2]
+    } else if x * y > 0.0 {
+        [of_x, of_y]
+    } else {
+        [of_y, of_x]
     }
 }
 
@@ -340,8 +379,17 @@ mod tests {
     fn balls_touch_from_within() {
         let block = Geometry::Box(Block { min: [0.0; 3], max: [0.2, 0.1, 0.0] });
         let mut count = 0;
-        Surface::new(&block, None).balls(0.05, &mut |center: [f64; 2], radius| {
+        Surface::new(&block, None).balls(0.05, &mut |center: [f64; 2], radius, normals| {
             count += 1;
+            // Lower corners: of the left side and the floor, of the floor and the right side.
+            let right = match center {
+                [0.0, 0.0] => [[-1.0, 0.0], [0.0, -1.0]],
+                [x, 0.0] if x > 0.19 => [[0.0, -1.0], [1.0, 0.0]],
+                [_, 0.0] => [[0.0, -1.0]; 2],
+                [0.0, y] if y < 0.09 => [[-1.0, 0.0]; 2],
+                _ => normals.unwrap(),
+            };
+            assert_eq!(normals, Some(right), "{center:?}");
             let (distance, _) = nearest(&block, center)[0];
             assert!((distance + radius).abs() < 1e-15);
         });

@@ -62,6 +62,7 @@ impl<const D: usize> Fracture<D> {
 
 impl<const D: usize> TotalLagrangian<D> {
     /// P of a slot, with its damage.
+    #[inline(always)]
     pub(in crate::total_lagrangian) fn stress_at(&self, slot: usize, f: &Matrix<D>, j: f64) -> Matrix<D> {
         match self.damage_at(slot) {
             d if d > 0.0 => self.law.damaged(f, j, d).stress,

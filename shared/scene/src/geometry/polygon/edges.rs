@@ -10,7 +10,7 @@ pub(crate) struct Edge {
     /// End, m.
     pub(crate) to: [f64; 2],
     /// Index of the side that ends where this one begins.
-    pub(super) before: usize,
+    pub(in crate::geometry) before: usize,
     /// Index of the side that begins where this one ends.
     pub(super) after: usize,
     /// Length of the line of sides up to its begin, m.
