@@ -248,8 +248,8 @@ impl System {
         }
     }
 
-    /// Whether a point lies on a corner of a body both of whose faces `meets` it, in the reference configuration: either
-    /// could part the two, and what slides over a seam of two bodies would be held by the one in its way.
+    /// Whether a point, in the reference configuration, lies on a corner both of whose faces `meets` it: either could
+    /// part the two, and what slides over a seam of two bodies would be held by the one in its way.
     fn is_corner_on_corner<const D: usize>(
         &self,
         body: &Body,

@@ -141,8 +141,9 @@ impl<const D: usize> Plate<D> {
     }
 }
 
-/// The box that a geometry of a shape is, grown by the boxes of the shape's body that lie beside it across its thin
-/// side and are as long and as wide: together they are one plate. `None` of another geometry.
+/// The box that a geometry of a shape is, grown by the boxes of the shape's body that lie beside it or over it across
+/// its thin side and are at least as long and as wide: there they are one plate, or none, as ballast in a hull.
+/// `None` of another geometry.
 pub(crate) fn joined(scene: &Scene, shape: &Shape, geometry: &Geometry) -> Option<Block> {
     let Geometry::Box(block) = geometry else { return None };
     let mut block = *block;
@@ -160,22 +161,25 @@ pub(crate) fn joined(scene: &Scene, shape: &Shape, geometry: &Geometry) -> Optio
     if !has_room(&block) {
         return Some(block);
     }
-    let close = |a: f64, b: f64| (a - b).abs() < 1e-6 * scene.spacing(shape);
+    let rounding = 1e-6 * scene.spacing(shape);
     let of_body = |other: &&Shape| {
         let alike = other.phase == Phase::Solid && other.solid == shape.solid && other.body == shape.body;
         alike && scene.spacing(other) == scene.spacing(shape)
     };
     let mut others: Vec<Block> = scene.shapes.iter().filter(of_body).filter_map(Shape::block).collect();
     others.retain(|b| {
-        let along = |a: usize| close(b.min[a], block.min[a]) && close(b.max[a], block.max[a]);
+        let along = |a: usize| b.min[a] < block.min[a] + rounding && b.max[a] > block.max[a] - rounding;
         has_room(b) && axes().filter(|&a| a != across).all(along)
     });
     let mut grown = true;
     while std::mem::take(&mut grown) {
         for b in &others {
-            if close(b.min[across], block.max[across]) {
+            let meets =
+                b.min[across] < block.max[across] + rounding && b.max[across] > block.min[across] - rounding;
+            if meets && b.max[across] > block.max[across] + rounding {
                 (block.max[across], grown) = (b.max[across], true);
-            } else if close(b.max[across], block.min[across]) {
+            }
+            if meets && b.min[across] < block.min[across] - rounding {
                 (block.min[across], grown) = (b.min[across], true);
             }
         }
@@ -287,6 +291,19 @@ mod tests {
         assert_eq!(whole.rows, 4.0);
         let (_, before) = whole.across(&[0.125, 0.1]);
         assert!((before - 0.005).abs() < 1e-15 && whole.holds(&[0.135, 0.1]), "{before}");
+        // A longer one counts as far as it lies beside, and one that lies over it, too.
+        let over = plate(
+            "body = \"b\"\nbox = { min = [0.1, 0.0], max = [0.12, 0.2] }\n[[shape]]\nname = \"t\"\nphase = \"solid\"\n\
+             body = \"b\"\nbox = { min = [0.1, -0.1], max = [0.13, 0.2] }",
+        );
+        assert_eq!([beside(0.3, "b"), over].map(|plate| plate.unwrap().rows), [4.0, 3.0]);
+        // Ballast of one row in a hull is no plate.
+        let hull = "[[shape]]\nname = \"hull\"\nphase = \"solid\"\nbody = \"b\"\n\
+                    box = { min = [0.0, 0.1], max = [0.2, 0.3] }";
+        assert_eq!(
+            plate(&format!("body = \"b\"\nbox = {{ min = [0.02, 0.2], max = [0.18, 0.21] }}\n{hull}")),
+            None
+        );
         // A shorter one, and another body's.
         assert_eq!([beside(0.15, "b"), beside(0.2, "c")].map(|plate| plate.unwrap().rows), [2.0; 2]);
     }
