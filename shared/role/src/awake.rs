@@ -2,7 +2,7 @@
 //!
 //! A pool's thread that finds no work falls asleep within microseconds, and waking it takes tens of them on a virtual
 //! machine, whose idle processor halts: as long as half of a short pass. While a participant computes, the other
-//! threads of its pool ask for work in turn, for [`PATIENCE`] at most, and offer their processor to whoever else wants
+//! threads of its pool ask for work in turn, for `PATIENCE` at most, and offer their processor to whoever else wants
 //! it in between.
 
 use rayon::Yield;
