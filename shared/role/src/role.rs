@@ -35,17 +35,16 @@ pub struct Costs {
 }
 
 impl Costs {
-    /// The same in seconds, for this much time in the sums, in all, and in what is neither the sums nor another part
-    /// that is told by itself. What was measured by leaving it out may add up to more than the whole (two effects
-    /// may hide each other's time, another program may have taken the processor): then each part is less by the
-    /// same factor.
-    pub fn of(self, sums: f64, compute: f64, beside: f64) -> Self {
+    /// The same in seconds, for this much time in the sums, in all, and in sums across the interface, which are told
+    /// by themselves. What was measured by leaving it out may add up to more than the whole (two effects may hide
+    /// each other's time, another program may have taken the processor): then each part is less by the same factor.
+    pub fn of(self, sums: f64, compute: f64, cross: f64) -> Self {
         let parts = self.walls + self.effects.iter().sum::<f64>();
-        let seconds = if self.of_whole { compute } else { sums } / parts.max(1.0);
+        let seconds = if self.of_whole { compute - cross } else { sums } / parts.max(1.0);
         Self {
             effects: self.effects.map(|e| e * seconds),
             walls: self.walls * seconds,
-            moving_walls: (self.moving_walls * sums).min(beside.max(0.0)),
+            moving_walls: (self.moving_walls * sums).min((compute - cross - sums).max(0.0)),
             ..self
         }
     }
@@ -182,16 +181,16 @@ mod tests {
 
     #[test]
     fn parts_that_fit_are_taken_as_measured() {
-        let seconds = costs([0.25, 0.5, 0.125], 0.25).of(4.0, 8.0, 3.0);
+        let seconds = costs([0.25, 0.5, 0.125], 0.25).of(4.0, 8.0, 1.0);
         assert_eq!((seconds.walls, seconds.moving_walls, &seconds.effects[..2]), (1.0, 1.0, &[2.0, 0.5][..]));
-        let of_whole = Costs { of_whole: true, ..costs([0.0, 0.5, 0.125], 0.0) }.of(4.0, 8.0, 0.0);
+        let of_whole = Costs { of_whole: true, ..costs([0.0, 0.5, 0.125], 0.0) }.of(4.0, 9.0, 1.0);
         assert_eq!(of_whole.effects[..2], [4.0, 1.0]);
     }
 
     #[test]
     fn parts_beyond_the_whole_share_it() {
-        // 0.5 + 1 + 0.5 of 4 s; the walls' places within half a second.
-        let seconds = costs([0.5, 1.0, 0.5], 0.25).of(4.0, 8.0, 0.5);
+        // 0.5 + 1 + 0.5 of 4 s; the walls' places within the half a second that is left.
+        let seconds = costs([0.5, 1.0, 0.5], 0.25).of(4.0, 8.0, 3.5);
         assert_eq!((seconds.walls, seconds.moving_walls, &seconds.effects[..2]), (1.0, 0.5, &[2.0, 1.0][..]));
     }
 }

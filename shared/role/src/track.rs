@@ -247,7 +247,7 @@ impl Track {
     pub(crate) fn report(&mut self, port: &dyn Port) -> Report {
         let times = port.times();
         let [compute, sums, cross] = [self.compute, self.sums, self.cross].map(|time| time.as_secs_f64());
-        let costs = self.member.role.costs().of(sums, compute, compute - sums - cross);
+        let costs = self.member.role.costs().of(sums, compute, cross);
         let effects = EffectName::ALL.iter().copied().zip(costs.effects);
         Report {
             name: self.member.role.name().to_string(),
