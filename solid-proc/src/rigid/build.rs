@@ -1,9 +1,9 @@
 //! From a scene to its bodies and what holds them.
 
-use super::Vec3;
 use super::body::{Ball, Body, Pose};
 use super::joint::{Link, LinkKind};
 use super::step::{System, Wrench};
+use super::{Vec3, wide};
 use crate::effects::takes_part;
 use crate::ledger::Given;
 use halfstep_scene::geometry::{self, Layout, SolidPoint, Surface, WallCorner};
@@ -15,11 +15,6 @@ const TOLERANCE: f64 = 1e-4;
 
 /// Depth in a body, in spacings, from which on what of a wall begins there does not touch it.
 const BEGUN: f64 = 0.01;
-
-/// A point or vector of the scene.
-fn wide<const D: usize>(x: &[f64; D]) -> Vec3 {
-    Vec3::from_fn(|d, _| if d < D { x[d] } else { 0.0 })
-}
 
 /// The bodies of the scene's solid of that index, each with the name that joints and probes find it by.
 pub(super) fn system<const D: usize>(

@@ -4,11 +4,11 @@
 //! in the plane corners of walls against those of bodies: a contact does not know the spacing of particles. Of the
 //! points on one face the outermost two count in the plane, and one between them that is deeper than both.
 
-use super::Vec3;
 use super::body::{Ball, Body, Pose};
 use super::joint::across;
 use super::row::Row;
 use super::step::System;
+use super::{Vec3, wide};
 use halfstep_scene::geometry::Surface;
 
 /// A contact, or a stop that a joint has reached.
@@ -186,7 +186,7 @@ impl System {
         let mut faces: Vec<OnFace> = Vec::new();
         // Distances and normals of a surface's faces near a ball.
         let mut near: Vec<(f64, [f64; D])> = Vec::new();
-        let outward = |own: &[f64; D]| on_a.turn * Vec3::from_fn(|d, _| if d < D { own[d] } else { 0.0 });
+        let outward = |own: &[f64; D]| on_a.turn * wide(own);
         for touching in &b.balls {
             let Ball { arm, radius, depth, .. } = touching;
             let at = on_b.center + on_b.turn * arm;
@@ -219,7 +219,7 @@ impl System {
                         }
                     });
                 }
-                if !near.is_empty() && self.is_corner_on_corner(a, touching, &reference, |own| meets(own)) {
+                if !near.is_empty() && self.is_corner_on_corner(a, touching, &reference, meets) {
                     continue;
                 }
                 for &(distance, own) in near.iter().filter(|(_, own)| meets(own)) {

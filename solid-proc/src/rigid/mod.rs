@@ -28,3 +28,8 @@ pub use model::Rigid;
 
 /// A vector in space.
 type Vec3 = nalgebra::Vector3<f64>;
+
+/// A point or vector of the scene.
+fn wide<const D: usize>(x: &[f64; D]) -> Vec3 {
+    Vec3::from_fn(|d, _| if d < D { x[d] } else { 0.0 })
+}
