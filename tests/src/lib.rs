@@ -16,6 +16,8 @@ pub mod soak;
 pub mod sources;
 pub mod stability;
 pub mod torture;
+pub mod written;
 
 pub use curve::Curve;
 pub use run::{Finished, Outcome, RunBuilder, Running, repository, scene, scene_at};
+pub use written::Written;

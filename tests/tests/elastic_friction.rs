@@ -2,29 +2,10 @@
 //! holds them.
 
 use halfstep_output::run_json::ContactReport;
-use halfstep_tests::run::{Finished, RunBuilder, scene_at};
-use std::path::PathBuf;
+use halfstep_tests::{Finished, Written};
 
 const MODELS: [&str; 3] = ["total-lagrangian", "finite-element", "hypoelastic"];
 const G: f64 = 9.81;
-
-struct Written {
-    _folder: tempfile::TempDir,
-    path: PathBuf,
-}
-
-impl Written {
-    fn new(text: &str) -> Self {
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("scene.toml");
-        std::fs::write(&path, text).expect("a scene");
-        Self { _folder: folder, path }
-    }
-
-    fn run(&self, model: &str) -> RunBuilder {
-        scene_at(&self.path).set("solid.model", model)
-    }
-}
 
 fn contact(run: &Finished) -> &ContactReport {
     let contact = run.report.contacts.first().expect("contact");
@@ -75,7 +56,7 @@ phase = "solid"
 fn a_sliding_block_stops_as_coulomb_says() {
     let scene = Written::new(BLOCK);
     for model in MODELS {
-        let run = scene.run(model).in_process().run();
+        let run = scene.run_as(model).in_process().run();
         let way = run.curve("block.x").at(0.5) - 0.05;
         let expected = 1.0 / (2.0 * 0.3 * G);
         let [normal, friction] = [contact(&run).normal, contact(&run).friction];
@@ -113,7 +94,7 @@ fn on_a_slab(block: &str) -> String {
 fn a_block_that_slides_on_a_slab_of_its_own_solid_stops_as_coulomb_says() {
     let scene = Written::new(&on_a_slab(BLOCK));
     for model in &MODELS[..2] {
-        let run = scene.run(model).in_process().run();
+        let run = scene.run_as(model).in_process().run();
         let x = run.curve("position.x");
         let way = x.at(0.5) - x.at(0.0);
         let contact = run.report.contacts.first().expect("contact");
@@ -144,12 +125,12 @@ fn on_a_slope(block: &str, tangent: f64) -> Written {
 #[test]
 fn a_block_on_a_slope_holds_below_the_angle_of_friction_and_slides_above() {
     for model in MODELS {
-        let run = on_a_slope(BLOCK, 0.27).run(model).in_process().run();
+        let run = on_a_slope(BLOCK, 0.27).run_as(model).in_process().run();
         let x = run.curve("block.x");
         let (lean, creep) = (x.at(0.25) - 0.05, x.at(0.5) - x.at(0.25));
         println!("{model}: leans by {lean:.2e} m, then creeps by {creep:.2e} m");
         assert!(lean.abs() < 5e-4 && creep.abs() < 2e-5, "{model}: {lean:e}, {creep:e}");
-        let run = on_a_slope(BLOCK, 0.4).run(model).in_process().run();
+        let run = on_a_slope(BLOCK, 0.4).run_as(model).in_process().run();
         // Once it has come to rest on the slope: the second difference of the way over 0.15 s.
         let x = run.curve("block.x");
         let rate = (x.at(0.5) - 2.0 * x.at(0.35) + x.at(0.2)) / (0.15 * 0.15);
@@ -203,7 +184,7 @@ fn a_disc_comes_back_with_about_the_restitution_that_is_asked() {
     let scene = Written::new(DISC);
     for model in MODELS {
         for (restitution, measured) in [(1.0, 1.0), (0.5, 0.507), (0.2, 0.2), (0.0, 0.12)] {
-            let run = scene.run(model).set("solid.contact.restitution", restitution).in_process().run();
+            let run = scene.run_as(model).set("solid.contact.restitution", restitution).in_process().run();
             let height = run.curve("disc.y");
             let left = (height.at(0.02) - height.at(0.018)) / 0.002;
             let scale = run.curve("ledger.kinetic").at(0.0);
@@ -264,7 +245,7 @@ fn processes_do_not_matter_for_bodies_of_one_solid() {
 /// Who touches whom, and loses energy by friction, is the same in processes, threads and after an interruption.
 fn goes_on(scene: &Written, models: &[&str], touching: &[[&str; 2]]) {
     for model in models {
-        let run = || scene.run(model);
+        let run = || scene.run_as(model);
         let whole = run().run();
         println!("{model}: {:?}", whole.report.contacts);
         let names: Vec<&[String]> = whole.report.contacts.iter().map(|of| of.solids.as_slice()).collect();
@@ -278,7 +259,7 @@ fn goes_on(scene: &Written, models: &[&str], touching: &[[&str; 2]]) {
         let folder = tempfile::tempdir().expect("a folder");
         let dir = folder.path().join("run");
         run().set("output.checkpoint_interval", 0.03).until(0.1).out(&dir).run();
-        let resumed = scene_at(&scene.path).resume(&dir).until(0.2).run();
+        let resumed = scene.run().resume(&dir).until(0.2).run();
         assert!(resumed.report.resumed[0].step > 0);
         assert_eq!(resumed.state_hash(), whole.state_hash(), "{model}");
         assert_eq!(resumed.report.contacts, whole.report.contacts, "{model}");
@@ -291,7 +272,7 @@ fn goes_on(scene: &Written, models: &[&str], touching: &[[&str; 2]]) {
 fn a_floor_that_goes_up_lifts_the_block() {
     let floor = "name = \"floor\"\nmotion = { velocity = [0.0, 0.2] }\ncontact = true\n";
     let text = BLOCK.replace("name = \"floor\"\n", floor).replace("velocity = [1.0, 0.0]\n", "");
-    let run = Written::new(&text).run("total-lagrangian").in_process().until(0.3).run();
+    let run = Written::new(&text).run_as("total-lagrangian").in_process().until(0.3).run();
     let rise = run.curve("block.y").at(0.3) - run.curve("block.y").at(0.0);
     let given = contact(&run).normal / (5.0 * (G * 0.06 + 0.5 * 0.04));
     let row = run.report.effects.iter().find(|row| row.name == "wall-contact").expect("a row");
@@ -311,7 +292,7 @@ fn a_block_slides_on_particles_as_on_a_smooth_slope() {
         let angle = degrees.to_radians();
         let scene = on_a_slope(&held_by_its_model(), angle.tan());
         for model in MODELS {
-            let run = scene.run(model).set("shape.block.box.max", "[0.08, 0.06]");
+            let run = scene.run_as(model).set("shape.block.box.max", "[0.08, 0.06]");
             let run = run.set("shape.floor.box.max", "[3.0, 0.0]").until(1.0).in_process().run();
             let (way, smooth) = (run.curve("block.x").at(1.0) - 0.04, 0.5 * G * angle.sin());
             println!("{model}, {degrees} degrees: {way:.4} of {smooth:.4} m");
@@ -326,7 +307,7 @@ fn a_block_slides_on_particles_as_on_a_smooth_slope() {
 fn a_block_slides_on_a_body_of_its_solid_without_friction() {
     let scene = Written::new(&on_a_slab(&held_by_its_model()));
     for model in &MODELS[..2] {
-        let run = scene.run(model).in_process().run();
+        let run = scene.run_as(model).in_process().run();
         let left = run.curve("ledger.kinetic").at(0.5);
         println!("{model}: {left:.4} of 2.5 J/m");
         assert!((2.485..2.5).contains(&left), "{model}: {left}");
@@ -365,7 +346,7 @@ phase = "solid"
 "#;
     let scene = Written::new(corner);
     for model in MODELS {
-        let run = scene.run(model).in_process().run();
+        let run = scene.run_as(model).in_process().run();
         let off = [("block.x", 0.04), ("block.y", 0.03)].map(|(of, right)| {
             let curve = run.curve(of).between(1.5, 2.0);
             curve.values.iter().map(|x| (x - right).abs()).fold(0.0, f64::max)

@@ -2,28 +2,7 @@
 
 use halfstep_output::RunReport;
 use halfstep_output::run_json::{ContactReport, ForceKind};
-use halfstep_tests::run::scene_at;
-use halfstep_tests::{Finished, RunBuilder};
-use std::path::PathBuf;
-
-/// A scene's file, gone with the folder.
-struct Written {
-    _folder: tempfile::TempDir,
-    path: PathBuf,
-}
-
-impl Written {
-    fn new(text: &str) -> Self {
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("scene.toml");
-        std::fs::write(&path, text).expect("a scene");
-        Self { _folder: folder, path }
-    }
-
-    fn run(&self) -> RunBuilder {
-        scene_at(&self.path)
-    }
-}
+use halfstep_tests::{Finished, Written};
 
 fn contact(report: &RunReport) -> &ContactReport {
     report.contacts.first().expect("a pair of solids")
@@ -144,8 +123,9 @@ phase = "solid"
 solid = "block"
 "#;
 
-/// v² / (2 mu g) = 42.47 mm, after 0.17 s. Bands: the way is 0.9 to 1.3e-3 short and friction takes 1.8 to 3.9e-3 less
-/// than the block had, which its own viscosity takes as it shears; then it stays, shaking by 0.02 mm.
+/// v² / (2 mu g) = 42.47 mm, after 0.17 s. Bands: the way is off by -0.6 to 0.4e-3 of it, 0.5e-3 of which may be that
+/// the block shakes by 0.02 mm as it stays; friction takes 0.9 to 3.5e-3 less than the block had, which its own
+/// viscosity takes as it shears.
 #[test]
 fn solids_that_strain_rub_on_each_other_as_coulomb_says() {
     let scene = Written::new(RUBBING);
@@ -161,7 +141,7 @@ fn solids_that_strain_rub_on_each_other_as_coulomb_says() {
         let (way, late) = (x.at(0.22) - 0.05, x.at(0.22) - x.at(0.19));
         let (right, did) = (0.25 / (2.0 * 0.3 * 9.81), contact(&run.report));
         println!("{block} on {slab}: {way:.6} m of {right:.6} m, {late:.1e} m at last, {did:?}");
-        assert!((-2e-3..0.0).contains(&(way / right - 1.0)), "{block} on {slab}: {way}");
+        assert!((way / right - 1.0).abs() < 1e-3, "{block} on {slab}: {way}");
         assert!(late.abs() < 5e-5, "{block} on {slab}: {late}");
         assert!((-5e-3..0.0).contains(&(-did.friction / energy - 1.0)), "{block} on {slab}: {did:?}");
         assert!(did.normal <= 0.0 && did.normal > -0.01 * energy, "{block} on {slab}: {did:?}");
@@ -316,120 +296,4 @@ fn processes_do_not_matter_and_an_interrupted_run_goes_on() {
     assert_eq!(resumed.state_hash(), whole.state_hash());
     assert_eq!(resumed.report.contacts, whole.report.contacts);
     assert_eq!(resumed.report.forces, whole.report.forces);
-}
-
-/// A slab that a ram of 10 m/s crushes against an anvil: 380 fragments of single particles.
-const CRUSHED: &str = r#"
-resolution = 0.005
-end_time = 0.03
-gravity = [0.0, 0.0]
-[[solid]]
-name = "brittle"
-density = 2400.0
-youngs_modulus = 1e8
-poissons_ratio = 0.2
-fracture = { strength = 3e5, energy = 8.0 }
-[[solid]]
-name = "first"
-model = "rigid"
-density = 2400.0
-[[solid]]
-name = "second"
-model = "rigid"
-density = 2400.0
-[output]
-frame_interval = 0.01
-probe_interval = 1e-4
-[[shape]]
-name = "slab"
-phase = "solid"
-solid = "brittle"
-box = { min = [0.0, 0.0], max = [0.05, 0.2] }
-[[shape]]
-name = "ram"
-phase = "solid"
-solid = "first"
-box = { min = [-0.11, 0.0], max = [-0.01, 0.1] }
-velocity = [10.0, 0.0]
-[[shape]]
-name = "anvil"
-phase = "solid"
-solid = "second"
-box = { min = [0.06, 0.05], max = [0.26, 0.25] }
-[[probe]]
-name = "pieces"
-kind = "bodies"
-solid = "brittle"
-[[probe]]
-name = "broken"
-kind = "crack-energy"
-solid = "brittle"
-"#;
-
-/// Where points held on whose particles were in different fragments, contact gave energy: the slab's particles came to
-/// 140 m/s and the run diverged at 0.018 s. What contact does only takes energy: 339, 120 and 0 J/m of the ram's
-/// 1200 J/m by 0.06 s; rubble goes 20 mm into the ram.
-#[test]
-fn crumbs_between_two_solids_gain_nothing() {
-    let crushed = Written::new(CRUSHED);
-    let run = crushed.run().in_process().run();
-    let bodies = run.curve("pieces.bodies").values.last().copied().unwrap_or(0.0);
-    assert!(bodies > 200.0, "it is crushed: {bodies} bodies");
-    for pair in &run.report.contacts {
-        println!("{:?} {:.2} J/m, {:.1} mm deep", pair.solids, pair.normal, 1e3 * pair.largest_penetration);
-        assert!(pair.normal <= 0.0 && pair.friction == 0.0, "{pair:?}");
-        assert!(pair.largest_penetration <= 0.025, "{pair:?}");
-    }
-    let same = crushed.run().run();
-    assert_eq!(run.state_hash(), same.state_hash(), "three processes");
-}
-
-/// A brick of eight by six particles that a plate shatters. Where the plate's points were looked for in what was left
-/// of the brick's outline, contact gave up to 2190 J/m.
-#[test]
-fn a_brick_that_shatters_on_a_plate_gains_nothing() {
-    let brick = r#"
-resolution = 0.01
-end_time = 0.01
-gravity = [0.0, 0.0]
-[[solid]]
-name = "brick"
-density = 2400.0
-youngs_modulus = 3e8
-poissons_ratio = 0.2
-fracture = { strength = 2e5, energy = 2.0, friction = 0.3 }
-[[solid]]
-name = "plate"
-density = 2400.0
-youngs_modulus = 3e8
-poissons_ratio = 0.2
-[[contact]]
-solids = ["brick", "plate"]
-[output]
-probe_interval = 1e-4
-[[shape]]
-name = "brick"
-phase = "solid"
-solid = "brick"
-box = { min = [-0.09, 0.0], max = [-0.01, 0.06] }
-velocity = [10.0, 0.0]
-[[shape]]
-name = "plate"
-phase = "solid"
-solid = "plate"
-box = { min = [0.0, -0.1], max = [0.05, 0.2] }
-clamp = [{ min = [0.0, -0.1], max = [0.05, -0.08] }, { min = [0.0, 0.18], max = [0.05, 0.2] }]
-[[probe]]
-name = "pieces"
-kind = "bodies"
-solid = "brick"
-"#;
-    for speed in [8.0, 10.0, 12.0, 15.0, 20.0] {
-        let scene = Written::new(&brick.replace("[10.0, 0.0]", &format!("[{speed:?}, 0.0]")));
-        let run = scene.run().in_process().run();
-        let loose = run.curve("pieces.loose").values.last().copied().unwrap_or(0.0);
-        let (pair, start) = (&run.report.contacts[0], 0.5 * 2400.0 * 0.08 * 0.06 * speed * speed);
-        println!("{speed} m/s: {:.3} of {start} J/m, {loose} loose, {pair:?}", pair.normal / start);
-        assert!(loose > 20.0 && pair.normal < 0.0, "{speed}: {pair:?}");
-    }
 }

@@ -22,6 +22,9 @@
 //! A law for leaving: Walton and Braun 1986; the spring along the surface: Cundall and Strack 1979.
 
 mod corners;
+mod flanks;
+#[cfg(test)]
+mod flanks_tests;
 mod law;
 mod outline;
 mod placed;

@@ -2,7 +2,7 @@
 //! these knows. The law is that of a point of another solid whose mass is infinite ([`Law::pass`]).
 
 use super::Side;
-use super::law::{Law, Touch};
+use super::law::{Law, Touch, dot, less};
 use super::outline::{Outline, Piece, Point};
 use super::placed::Placed;
 use halfstep_scene::geometry::{WallCorner, wall_corners};
@@ -11,11 +11,24 @@ use halfstep_scene::{Placement, Scene};
 /// Depth in the solid, in spacings, from which on a corner that begins there is left out.
 const BEGUN: f64 = 0.01;
 
+/// Distance from the line of a face within which a corner is its own, in spacings.
+const FLUSH: f64 = 1e-6;
+
+/// A corner of a wall.
+#[derive(Clone, Copy, Debug)]
+struct Corner {
+    /// Which wall.
+    wall: usize,
+    /// Where on it, m.
+    place: [f64; 2],
+    /// Of its faces before and after it.
+    normals: [[f64; 2]; 2],
+}
+
 /// Corners of all walls that a solid may touch, as an outline of points without parts.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Corners {
-    /// Which wall, and where on it, m.
-    all: Vec<(usize, [f64; 2])>,
+    all: Vec<Corner>,
     outline: Outline,
     placed: Placed,
     /// Contacts at n, ascending.
@@ -36,20 +49,23 @@ impl Corners {
                 .position(|(index, wall)| *index == corner.shape && wall.velocity == [0.0; 3])?;
             let begun = solid.1.depth_of(solid.0, corner.place);
             // Twice its share of the walls' outline: in a pass between two solids half of K is the other's.
-            (begun <= BEGUN * spacing).then_some((k, corner.place, corner.length.min(spacing)))
+            let WallCorner { place, normals, .. } = *corner;
+            let own = Corner { wall: k, place, normals };
+            (begun <= BEGUN * spacing).then_some((own, corner.length.min(spacing)))
         };
         let all: Vec<_> = wall_corners(scene).iter().filter_map(wall).collect();
-        let point = |&(.., length): &(usize, [f64; 2], f64)| Point {
+        let point = |&(_, length): &(Corner, f64)| Point {
             weights: Vec::new(),
             offset: [0.0; 2],
             length,
             radius: 0.0,
+            beside: None,
         };
         let points: Vec<Point> = all.iter().map(point).collect();
         let piece = Piece::of_points((0..points.len() as u32).collect());
         Self {
             outline: Outline { points, pieces: vec![piece], spacing, ..Outline::default() },
-            all: all.into_iter().map(|(wall, place, _)| (wall, place)).collect(),
+            all: all.into_iter().map(|(corner, _)| corner).collect(),
             ..Self::default()
         }
     }
@@ -64,8 +80,10 @@ impl Corners {
         (on, records): (&mut Side, usize),
         (dt, whole): (f64, bool),
     ) -> f64 {
-        let at = |(k, place): &(usize, [f64; 2])| placements[*k].position_of(*place);
-        let velocity = |(k, place): &(usize, [f64; 2])| placements[*k].velocity_of(*place);
+        let at = |corner: &Corner| placements[corner.wall].position_of(corner.place);
+        let velocity = |corner: &Corner| placements[corner.wall].velocity_of(corner.place);
+        let normals =
+            |corner: &Corner| corner.normals.map(|normal| placements[corner.wall].direction_of(normal));
         self.halfway.clear();
         let touching = |at: [f64; 2]| solid.1.targets.iter().any(|target| target.holds(at, 0.0));
         if !self.all.iter().map(at).any(touching) {
@@ -74,7 +92,8 @@ impl Corners {
             }
             return 0.0;
         }
-        self.placed.put(self.all.iter().map(at).collect(), self.all.iter().map(velocity).collect());
+        let places = [self.all.iter().map(at).collect(), self.all.iter().map(velocity).collect()];
+        self.placed.put(places, self.all.iter().map(normals).collect());
         on.forces.iter_mut().for_each(|forces| forces.resize(records, [0.0; 2]));
         let mut walls = Side { solid: usize::MAX, ..Side::default() };
         let own = (&self.outline, &self.placed);
@@ -83,6 +102,19 @@ impl Corners {
             std::mem::swap(&mut self.touches, &mut self.halfway);
         }
         deepest
+    }
+
+    /// Whether a corner of a wall at that face, a place on it, m, and its normal, is in the solid.
+    pub(super) fn are_in(
+        &self,
+        solid: (&Outline, &Placed),
+        (wall, placement): (usize, &Placement),
+        [on, normal]: [[f64; 2]; 2],
+    ) -> bool {
+        let own = self.all.iter().filter(|corner| corner.wall == wall);
+        let own = own.map(|corner| placement.position_of(corner.place));
+        let mut of_face = own.filter(|corner| dot(less(*corner, on), normal).abs() < FLUSH * solid.0.spacing);
+        of_face.any(|corner| solid.1.depth_of(solid.0, corner) > 0.0)
     }
 
     /// Whether contacts are those of corners and parts that there are.

@@ -1,5 +1,6 @@
 //! The law of contact, and the search for points of one outline inside of another.
 
+use super::flanks::facing;
 use super::outline::Outline;
 use super::placed::Placed;
 use super::{Side, THETA};
@@ -53,12 +54,12 @@ pub(super) struct Touch {
 }
 
 /// What is nearest to a point.
-struct Foot {
-    part: u32,
-    share: f64,
+pub(super) struct Foot {
+    pub(super) part: u32,
+    pub(super) share: f64,
     /// How far inside the point is, m.
-    depth: f64,
-    normal: [f64; 2],
+    pub(super) depth: f64,
+    pub(super) normal: [f64; 2],
 }
 
 pub(super) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
@@ -132,11 +133,14 @@ impl Law {
                         continue;
                     }
                     let Some(foot) = nearest(other, k, at, radius) else { continue };
+                    let Some((foot, share)) = facing([own, other], [own_piece, k], point, foot) else {
+                        continue;
+                    };
                     let key = [pass, point, k as u32];
                     let before =
                         touches.binary_search_by(|touch| touch.key.cmp(&key)).ok().map(|k| touches[k]);
                     deepest = deepest.max(foot.depth);
-                    let (forces, touch) = self.force([own, other], key, &foot, (before, dt));
+                    let (forces, touch) = self.force([own, other], key, (&foot, share), (before, dt));
                     found.push(touch);
                     let part = &other.0.parts[foot.part as usize];
                     for (kind, force) in forces.into_iter().enumerate() {
@@ -160,7 +164,7 @@ impl Law {
         &self,
         [(outline, placed), (other, surface)]: [(&Outline, &Placed); 2],
         key: [u32; 3],
-        foot: &Foot,
+        (foot, share): (&Foot, f64),
         (before, dt): (Option<Touch>, f64),
     ) -> ([[f64; 2]; 2], Touch) {
         let point = key[1] as usize;
@@ -180,7 +184,7 @@ impl Law {
             before.unwrap_or(Touch { key, part: foot.part, share: foot.share, approach: 0.0, rest });
         touch.rest = touch.rest.min(foot.depth);
         touch.approach = touch.approach.max(approach);
-        let spring = 0.5 * self.stiffness * outline.points[point].length;
+        let spring = 0.5 * self.stiffness * share * outline.points[point].length;
         let push = self.push(spring, foot.depth - touch.rest, [approach, touch.approach], dt);
         let stuck = on(touch.part, touch.share, &surface.position);
         let from = less(placed.position[point], stuck);
@@ -251,7 +255,12 @@ pub(super) fn depth_in(of: (&Outline, &Placed), piece: usize, at: [f64; 2]) -> f
 }
 
 /// The nearest place on a piece to a point whose surface, at a distance before it, is inside of it.
-fn nearest((outline, placed): (&Outline, &Placed), piece: usize, at: [f64; 2], radius: f64) -> Option<Foot> {
+pub(super) fn nearest(
+    (outline, placed): (&Outline, &Placed),
+    piece: usize,
+    at: [f64; 2],
+    radius: f64,
+) -> Option<Foot> {
     let ends = |part: u32| outline.parts[part as usize].ends.map(|end| placed.position[end as usize]);
     let mut best: Option<(f64, u32, f64)> = None;
     for part in outline.pieces[piece].parts.clone() {

@@ -1,5 +1,7 @@
 //! Outline of a solid: points that go with its particles, and straight parts between them.
 
+use super::flanks::find_corners;
+use super::law::less;
 use halfstep_scene::geometry::{self, Cells, Layout, Surface};
 use halfstep_scene::{Phase, Scene};
 use nalgebra::{Matrix2, Vector2};
@@ -31,6 +33,8 @@ pub(super) struct Point {
     pub(super) length: f64,
     /// How far before it the surface lies, m: half a spacing of a single particle.
     pub(super) radius: f64,
+    /// The parts before and after it; `None` of a point alone.
+    pub(super) beside: Option<[u32; 2]>,
 }
 
 /// A straight part; the solid lies on its left.
@@ -40,6 +44,8 @@ pub(super) struct Part {
     pub(super) ends: [u32; 2],
     /// The parts before and after it; itself where there is none.
     pub(super) beside: [u32; 2],
+    /// The convex corners at which its straight or round side begins and ends.
+    pub(super) corners: [Option<u32>; 2],
 }
 
 /// A body's parts, in a row.
@@ -220,12 +226,12 @@ impl Outline {
     fn add(&mut self, particles: &Particles, piece: u32, parts: &[ShapePart]) {
         let mut known: BTreeMap<(u32, u32, [u64; 2]), Option<u32>> = BTreeMap::new();
         let first = self.parts.len() as u32;
-        let mut points = Vec::new();
+        let (mut points, mut lines) = (Vec::new(), Vec::new());
         for (shape, copy, ends) in parts {
             let found = ends.map(|end| {
                 *known.entry((*shape, *copy, end.map(f64::to_bits))).or_insert_with(|| {
                     let (weights, offset) = particles.weights(end, piece)?;
-                    self.points.push(Point { weights, offset, length: 0.0, radius: 0.0 });
+                    self.points.push(Point { weights, offset, length: 0.0, radius: 0.0, beside: None });
                     points.push(self.points.len() as u32 - 1);
                     points.last().copied()
                 })
@@ -236,7 +242,8 @@ impl Outline {
                 self.points[end as usize].length += 0.5 * length;
             }
             let own = self.parts.len() as u32;
-            self.parts.push(Part { ends: [from, to], beside: [own, own] });
+            self.parts.push(Part { ends: [from, to], beside: [own, own], corners: [None; 2] });
+            lines.push(less(ends[1], ends[0]));
         }
         let all = first..self.parts.len() as u32;
         let mut begins: BTreeMap<u32, u32> = BTreeMap::new();
@@ -247,8 +254,10 @@ impl Outline {
             if let Some(&after) = begins.get(&self.parts[k as usize].ends[1]) {
                 self.parts[k as usize].beside[1] = after;
                 self.parts[after as usize].beside[0] = k;
+                self.points[self.parts[k as usize].ends[1] as usize].beside = Some([k, after]);
             }
         }
+        find_corners(&mut self.parts[first as usize..], first, &lines);
         points.retain(|&p| self.points[p as usize].length > 0.0);
         if !all.is_empty() {
             self.pieces.push(Piece { parts: all, points, singles: Vec::new(), number: piece, mass: 0.0 });
@@ -268,6 +277,7 @@ impl Outline {
                 offset: [0.0; 2],
                 length: self.spacing.min(mass[record] / piece.mass),
                 radius: 0.5 * self.spacing,
+                beside: None,
             });
         }
     }

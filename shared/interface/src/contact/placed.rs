@@ -59,6 +59,8 @@ pub(super) struct Placed {
     pub(super) position: Vec<[f64; 2]>,
     /// Of each point, m/s.
     pub(super) velocity: Vec<[f64; 2]>,
+    /// Of each point without parts beside it, where it has a surface: before and after it.
+    pub(super) normals: Vec<[[f64; 2]; 2]>,
     /// Around the points of each piece.
     pub(super) pieces: Vec<Around>,
     /// Around the outline of each piece, in which others' points are looked for: nothing where it is torn.
@@ -76,6 +78,7 @@ impl Default for Placed {
             fresh: false,
             position: Vec::new(),
             velocity: Vec::new(),
+            normals: Vec::new(),
             pieces: Vec::new(),
             targets: Vec::new(),
             torn: Vec::new(),
@@ -139,11 +142,11 @@ impl Placed {
         self.around.meets(&other.around, self.margin + other.margin)
     }
 
-    /// Puts the points of an outline of one piece without parts, m and m/s.
-    pub(super) fn put(&mut self, position: Vec<[f64; 2]>, velocity: Vec<[f64; 2]>) {
+    /// Puts the points of an outline of one piece without parts, m and m/s, and their surfaces' normals.
+    pub(super) fn put(&mut self, [position, velocity]: [Vec<[f64; 2]>; 2], normals: Vec<[[f64; 2]; 2]>) {
         self.pieces.clear();
         self.pieces.push(Around::of(position.iter().copied()));
-        (self.position, self.velocity) = (position, velocity);
+        (self.position, self.velocity, self.normals) = (position, velocity, normals);
     }
 
     /// How deep a place is in a piece of the outline, m: zero outside.

@@ -5,29 +5,29 @@ use halfstep_scene::geometry;
 use std::path::Path;
 
 /// A block of a solid without rotation.
-struct Block {
+pub(super) struct Block {
     records: Vec<StateRecord>,
     start: Vec<[f64; 2]>,
-    at: [f64; 2],
-    velocity: [f64; 2],
-    mass: f64,
+    pub(super) at: [f64; 2],
+    pub(super) velocity: [f64; 2],
+    pub(super) mass: f64,
     /// It stays where it is.
-    fixed: bool,
+    pub(super) fixed: bool,
 }
 
-struct Run {
-    contact: Contact,
-    blocks: Vec<Block>,
-    gravity: [f64; 2],
+pub(super) struct Run {
+    pub(super) contact: Contact,
+    pub(super) blocks: Vec<Block>,
+    pub(super) gravity: [f64; 2],
     dt: f64,
     steps: usize,
 }
 
-fn shape(name: &str, geometry: &str) -> String {
+pub(super) fn shape(name: &str, geometry: &str) -> String {
     format!("[[shape]]\nname = \"{name}\"\nphase = \"solid\"\nsolid = \"{name}\"\n{geometry}\n")
 }
 
-fn boxed(name: &str, min: [f64; 2], max: [f64; 2]) -> String {
+pub(super) fn boxed(name: &str, min: [f64; 2], max: [f64; 2]) -> String {
     shape(name, &format!("box = {{ min = {min:?}, max = {max:?} }}"))
 }
 
@@ -38,7 +38,7 @@ fn solids(names: [&str; 2]) -> String {
 
 impl Run {
     /// Two solids with these shapes; `more`: keys of their contact.
-    fn of(resolution: f64, shapes: [String; 2], velocities: [[f64; 2]; 2], more: &str) -> Self {
+    pub(super) fn of(resolution: f64, shapes: [String; 2], velocities: [[f64; 2]; 2], more: &str) -> Self {
         let text = format!(
             "resolution = {resolution}\nend_time = 1.0\ngravity = [0.0, -10.0]\n{}[[contact]]\n\
              solids = [\"b\", \"a\"]\n{more}\n{}",
@@ -115,10 +115,14 @@ impl Run {
         self.steps += 1;
     }
 
-    fn until(&mut self, time: f64) {
-        while (self.steps as f64) * self.dt < time {
+    pub(super) fn until(&mut self, time: f64) {
+        while self.time() < time {
             self.step();
         }
+    }
+
+    pub(super) fn time(&self) -> f64 {
+        self.steps as f64 * self.dt
     }
 
     fn momentum(&self) -> [f64; 2] {
@@ -130,7 +134,7 @@ impl Run {
         self.blocks.iter().map(|b| 0.5 * b.mass * (b.velocity[0].powi(2) + b.velocity[1].powi(2))).sum()
     }
 
-    fn booked(&self) -> Booked {
+    pub(super) fn booked(&self) -> Booked {
         self.contact.booked().next().expect("a pair").2
     }
 }

@@ -8,6 +8,7 @@
 //! not thrown out of it.
 
 use super::corners::Corners;
+use super::flanks::share_of_wall;
 use super::law::{Law, dot, give, less};
 use super::outline::Outline;
 use super::placed::Placed;
@@ -232,7 +233,11 @@ impl WallContact {
         let fresh = Touch { key, place: below, time, approach: 0.0 };
         let mut touch = before.map_or(fresh, |k| self.touches[k]);
         touch.approach = touch.approach.max(approach);
-        let spring = self.law.stiffness * self.outline.points[key[1] as usize].length;
+        let solid = (&self.outline, &self.placed);
+        let foot = [0, 1].map(|d| at[d] + near.depth * normal[d]);
+        let on_tip = || self.corners.are_in(solid, (key[0] as usize, placement), [foot, normal]);
+        let share = share_of_wall(solid, key[1], normal, on_tip);
+        let spring = self.law.stiffness * share * self.outline.points[key[1] as usize].length;
         let push = self.law.push(spring, depth, [approach, touch.approach], dt);
         let stuck = placement.position_of(touch.place);
         let from = [0, 1].map(|d| at[d] - stuck[d] - wall.belt[d] * (time - touch.time));

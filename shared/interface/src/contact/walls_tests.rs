@@ -190,6 +190,16 @@ fn a_tip_between_two_points_carries_a_block() {
     assert!((run.walls.booked().normal / (-MASS * 10.0 * (0.01 + depth)) - 1.0).abs() < 1e-3);
 }
 
+/// The points of the block that are in the tip are pushed by neither flank.
+#[test]
+fn a_tip_without_friction_holds_nothing_sideways() {
+    let mut run = Run::of(&scene(0.0, "", TIP), [0.1, 0.0]);
+    run.until(0.2);
+    println!("{:?}, {:?}", run.velocity, run.walls.booked());
+    assert!(run.walls.booked().largest_penetration > 1e-3);
+    assert!((run.velocity[0] / 0.1 - 1.0).abs() < 1e-12, "{:?}", run.velocity);
+}
+
 /// A foot that is let into the floor is not thrown out by the floor's corners beside it.
 #[test]
 fn corners_in_the_solid_at_the_start_are_left_out() {
