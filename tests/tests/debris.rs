@@ -158,17 +158,24 @@ fn a_run_that_is_killed_among_debris_goes_on_with_a_solid_of_another_program() {
     assert!(whole.curve("back.x").peak().1 > 1e-5, "the block is hit");
 }
 
-/// A plate of scikit-fem.
+/// A plate of scikit-fem. How far one run bends it hangs on the last digits of E (43 to 76 µm of particles, 46 to 89 µm
+/// of finite elements): means of five are compared, 59.0 and 64.8 µm, of whose difference a standard error is 10 µm.
 #[test]
-#[ignore = "half a minute"]
+#[ignore = "a minute"]
 fn a_run_that_is_killed_among_debris_goes_on_with_finite_elements() {
     let script = repository().join("python/examples/scikit-fem/gate.py");
     let plate = format!("OMP_NUM_THREADS=1 {} {}", python().display(), script.display());
-    let tip = killed_among_debris(&plate).curve("back.x").peak().1;
-    let own = debris(tempfile::tempdir().unwrap().path()).run().curve("back.x").peak().1;
-    // Of particles 56 µm, by the last digits of E 45 to 80.
-    println!("the second wall bends by {tip} m, of particles by {own} m");
-    assert!((tip / own - 1.0).abs() < 0.3, "{tip} {own}");
+    let folder = tempfile::tempdir().unwrap();
+    let bends = |run: RunBuilder, last: u32| {
+        let modulus = 1e8 * (1.0 + 1e-9 * f64::from(last));
+        run.set("solid.first.youngs_modulus", modulus).run().curve("back.x").peak().1
+    };
+    let elements = || debris(folder.path()).argument("--solid").argument(&format!("second={plate}"));
+    let first = killed_among_debris(&plate).curve("back.x").peak().1;
+    let of_elements = first + (1..5).map(|last| bends(elements(), last)).sum::<f64>();
+    let of_particles: f64 = (0..5).map(|last| bends(debris(folder.path()), last)).sum();
+    println!("the second wall bends by {} m, of particles by {} m", of_elements / 5.0, of_particles / 5.0);
+    assert!((of_elements / of_particles - 1.0).abs() < 0.3, "{of_elements} {of_particles}");
 }
 
 /// A run whose second solid is this command, and one that was killed when there was debris: the same bits.

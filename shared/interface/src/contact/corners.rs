@@ -82,8 +82,6 @@ impl Corners {
     ) -> f64 {
         let at = |corner: &Corner| placements[corner.wall].position_of(corner.place);
         let velocity = |corner: &Corner| placements[corner.wall].velocity_of(corner.place);
-        let normals =
-            |corner: &Corner| corner.normals.map(|normal| placements[corner.wall].direction_of(normal));
         self.halfway.clear();
         let touching = |at: [f64; 2]| solid.1.targets.iter().any(|target| target.holds(at, 0.0));
         if !self.all.iter().map(at).any(touching) {
@@ -92,8 +90,7 @@ impl Corners {
             }
             return 0.0;
         }
-        let places = [self.all.iter().map(at).collect(), self.all.iter().map(velocity).collect()];
-        self.placed.put(places, self.all.iter().map(normals).collect());
+        self.placed.put(self.all.iter().map(at).collect(), self.all.iter().map(velocity).collect());
         on.forces.iter_mut().for_each(|forces| forces.resize(records, [0.0; 2]));
         let mut walls = Side { solid: usize::MAX, ..Side::default() };
         let own = (&self.outline, &self.placed);
@@ -104,17 +101,21 @@ impl Corners {
         deepest
     }
 
-    /// Whether a corner of a wall at that face, a place on it, m, and its normal, is in the solid.
-    pub(super) fn are_in(
-        &self,
-        solid: (&Outline, &Placed),
-        (wall, placement): (usize, &Placement),
+    /// Normals of the faces that a wall's face, known by a place on it, m, and its normal, meets at corners inside of
+    /// the solid.
+    pub(super) fn beyond<'a>(
+        &'a self,
+        solid: (&'a Outline, &'a Placed),
+        (wall, placement): (usize, &'a Placement),
         [on, normal]: [[f64; 2]; 2],
-    ) -> bool {
-        let own = self.all.iter().filter(|corner| corner.wall == wall);
-        let own = own.map(|corner| placement.position_of(corner.place));
-        let mut of_face = own.filter(|corner| dot(less(*corner, on), normal).abs() < FLUSH * solid.0.spacing);
-        of_face.any(|corner| solid.1.depth_of(solid.0, corner) > 0.0)
+    ) -> impl Iterator<Item = [f64; 2]> {
+        let own = self.all.iter().filter(move |corner| corner.wall == wall);
+        let of_face = own.filter(move |corner| {
+            let at = placement.position_of(corner.place);
+            dot(less(at, on), normal).abs() < FLUSH * solid.0.spacing && solid.1.depth_of(solid.0, at) > 0.0
+        });
+        // Of its own face and the other one: the first is known.
+        of_face.flat_map(move |corner| corner.normals.map(|normal| placement.direction_of(normal)))
     }
 
     /// Whether contacts are those of corners and parts that there are.

@@ -1,29 +1,23 @@
 //! Faces on tips. Where a corner of one solid is inside of another, its points are pushed along the other's normal. The
 //! other's points beside it are inside of the tip as well, nearest to one of its flanks: pushed along the flanks'
-//! normals they would hold the tip between them, as friction does.
+//! normals they would hold the tip between them, as friction does. (At an edge of a body that lies flat one of the two
+//! sides faces them, and is what they come to next.) How much of the push such a point takes is found
+//! when its contact begins and stays until that ends, so what it pushes with follows from an energy.
 
-use super::law::{Foot, dot, less, nearest};
+use super::law::{depth_in, dot, out};
 use super::outline::{Outline, Part};
 use super::placed::Placed;
 
-/// Two parts meet at a corner where the cosine of what they turn by is less: not those of a disc two spacings across.
+/// Two parts meet at a corner where they turn by an angle whose cosine is less, 26 degrees: not those of a disc 2.2
+/// spacings across.
 const CORNER: f64 = 0.9;
 
-/// Cosine of the angle from a point's normal to that against a flank from which on the flank does not push it, and
-/// below which it does in full: bodies that lie flat on each other strain and rock.
+/// A part pushes a point in full whose own normal is against the part's within 18 degrees, and not at all one off by
+/// more than 37: the cosines, the second one first. Bodies that lie flat on each other strain and rock.
 const OBLIQUE: [f64; 2] = [0.8, 0.95];
-
-/// A part that a point faces pushes it instead of a nearer flank within so many times the flank's distance.
-const NEAR: f64 = 2.0;
 
 fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[1] - a[1] * b[0]
-}
-
-/// The normal of a part's line, out of the solid on its left.
-fn out(line: [f64; 2]) -> [f64; 2] {
-    let length = libm::hypot(line[0], line[1]);
-    [line[1] / length, -line[0] / length]
 }
 
 /// Finds the convex corners at which the sides of a piece's parts, of these lines, m, begin and end.
@@ -55,89 +49,45 @@ pub(super) fn find_corners(parts: &mut [Part], first: u32, lines: &[[f64; 2]]) {
     }
 }
 
-/// The normals of a point's own outline before and after it; `None` of a particle alone.
-fn own_normals((outline, placed): (&Outline, &Placed), point: u32) -> Option<[[f64; 2]; 2]> {
-    let normal = |part: u32| {
-        let [from, to] = outline.parts[part as usize].ends.map(|end| placed.position[end as usize]);
-        out(less(to, from))
-    };
-    let beside = outline.points[point as usize].beside.map(|parts| parts.map(normal));
-    beside.or_else(|| placed.normals.get(point as usize).copied())
-}
-
-/// How much of a push along `normal` a point with these normals takes: all of one against its own outline, none of one
-/// along it.
-fn share_of_push([before, after]: [[f64; 2]; 2], normal: [f64; 2]) -> f64 {
-    let against = normal.map(|n| -n);
-    if is_convex([before, after]) && cross(before, against) >= 0.0 && cross(against, after) >= 0.0 {
+/// How much of the push of a part with that normal a point takes whose contact begins now. `beyond`: normals of the
+/// sides that the part's own side meets at corners inside of the point's body. Where there is such a corner, and the
+/// point lies within a face, it takes what the face is turned toward the nearer of the two sides.
+pub(super) fn share_at_first(
+    (outline, placed): (&Outline, &Placed),
+    point: u32,
+    normal: [f64; 2],
+    mut beyond: impl Iterator<Item = [f64; 2]>,
+) -> f64 {
+    let Some(beside) = outline.points[point as usize].beside else { return 1.0 };
+    let ends = beside.map(|part| outline.parts[part as usize].ends);
+    // Beside a crack there is no face.
+    if ends.iter().flatten().any(|&end| placed.is_torn(end)) {
         return 1.0;
     }
-    let cosine = dot(before, against).max(dot(after, against));
+    let own = ends.map(|ends| out(placed.line(ends)));
+    let toward = |normal: [f64; 2]| -dot(own[0], normal).min(dot(own[1], normal));
+    if toward(normal) >= OBLIQUE[1] || dot(own[0], own[1]) < CORNER {
+        return 1.0;
+    }
+    let Some(first) = beyond.next() else { return 1.0 };
+    let cosine = beyond.fold(toward(normal).max(toward(first)), |most, normal| most.max(toward(normal)));
     let way = ((cosine - OBLIQUE[0]) / (OBLIQUE[1] - OBLIQUE[0])).clamp(0.0, 1.0);
     way * way * (3.0 - 2.0 * way)
 }
 
-fn is_convex([before, after]: [[f64; 2]; 2]) -> bool {
-    cross(before, after) > 0.0
-}
-
-fn is_corner([before, after]: [[f64; 2]; 2]) -> bool {
-    is_convex([before, after]) && dot(before, after) < CORNER
-}
-
-/// Where a point is pushed that is `nearest` to a part of the other's piece, and how much of the push it takes; `None`
-/// where nothing pushes it but flanks that its own surface does not face.
-pub(super) fn facing(
-    [own, other]: [(&Outline, &Placed); 2],
-    [own_piece, piece]: [usize; 2],
-    point: u32,
-    nearest: Foot,
-) -> Option<(Foot, f64)> {
-    let Some(normals) = own_normals(own, point) else { return Some((nearest, 1.0)) };
-    let share = share_of_push(normals, nearest.normal);
-    if share == 1.0 {
-        return Some((nearest, 1.0));
-    }
-    let at = own.1.position[point as usize];
-    let met = |part: u32| {
-        let [from, to] = other.0.parts[part as usize].ends.map(|end| other.1.position[end as usize]);
-        let (line, way) = (less(to, from), less(at, from));
-        let (normal, along) = (out(line), dot(way, line) / dot(line, line));
-        let (depth, share) = (-dot(way, normal), share_of_push(normals, normal));
-        let met = depth > 0.0 && (0.0..=1.0).contains(&along) && share > 0.0;
-        met.then_some((Foot { part, share: along, depth, normal }, share))
-    };
-    let all = other.0.pieces[piece].parts.clone().filter_map(met);
-    let faced = all.min_by(|(a, _), (b, _)| a.depth.total_cmp(&b.depth));
-    let corners = other.0.parts[nearest.part as usize].corners.into_iter().flatten();
-    let mut places = corners.map(|corner| other.1.position[corner as usize]);
-    let is_near = faced.as_ref().is_some_and(|(faced, _)| faced.depth <= NEAR * nearest.depth);
-    if !is_near && !is_corner(normals) && !places.any(|corner| is_inside(own, own_piece, corner)) {
-        return Some((nearest, 1.0));
-    }
-    let (foot, share) = faced?;
-    // The flank beside the point is where its push begins: all of it from where the faced part is as near, or where
-    // all of the point's length is inside.
-    let all_of_it = foot.depth.min(0.5 * own.0.points[point as usize].length);
-    let begun = (nearest.depth / all_of_it).min(1.0);
-    Some((foot, share * begun))
-}
-
-/// A wall's face does not push a point of a solid, or how much of its push the point takes: `corners` says whether a
-/// corner of the face is in the solid.
-pub(super) fn share_of_wall(
-    solid: (&Outline, &Placed),
-    point: u32,
-    normal: [f64; 2],
-    corners: impl FnOnce() -> bool,
-) -> f64 {
-    let Some(normals) = own_normals(solid, point) else { return 1.0 };
-    let share = share_of_push(normals, normal);
-    if share == 1.0 || is_corner(normals) || corners() { share } else { 1.0 }
-}
-
-/// A place is inside of a piece of an outline that is whole.
-fn is_inside(of: (&Outline, &Placed), piece: usize, at: [f64; 2]) -> bool {
-    of.1.targets.get(piece).is_some_and(|target| target.holds(at, 0.0))
-        && nearest(of, piece, at, 0.0).is_some()
+/// Normals of the sides that a part's side meets at corners inside of a whole piece of another outline.
+pub(super) fn beyond<'a>(
+    (outline, placed): (&'a Outline, &'a Placed),
+    part: u32,
+    of: (&'a Outline, &'a Placed),
+    piece: usize,
+) -> impl Iterator<Item = [f64; 2]> {
+    let corners = outline.parts[part as usize].corners.into_iter().enumerate();
+    corners.filter_map(move |(end, corner)| {
+        let corner = corner? as usize;
+        let at = placed.position[corner];
+        let side = outline.points[corner].beside?[end];
+        let inside = of.1.targets[piece].holds(at, 0.0) && depth_in(of, piece, at) > 0.0;
+        inside.then(|| out(placed.line(outline.parts[side as usize].ends)))
+    })
 }

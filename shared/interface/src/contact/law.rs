@@ -1,6 +1,6 @@
 //! The law of contact, and the search for points of one outline inside of another.
 
-use super::flanks::facing;
+use super::flanks::{beyond, share_at_first};
 use super::outline::Outline;
 use super::placed::Placed;
 use super::{Side, THETA};
@@ -49,17 +49,19 @@ pub(super) struct Touch {
     pub(super) share: f64,
     /// Largest approach so far, m/s.
     pub(super) approach: f64,
+    /// How much of the push it takes.
+    pub(super) share_of_push: f64,
     /// Depth from which on it is pushed, m: of a point of a torn solid that came to be deep inside.
     pub(super) rest: f64,
 }
 
 /// What is nearest to a point.
-pub(super) struct Foot {
-    pub(super) part: u32,
-    pub(super) share: f64,
+struct Foot {
+    part: u32,
+    share: f64,
     /// How far inside the point is, m.
-    pub(super) depth: f64,
-    pub(super) normal: [f64; 2],
+    depth: f64,
+    normal: [f64; 2],
 }
 
 pub(super) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
@@ -68,6 +70,12 @@ pub(super) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
 
 pub(super) fn less(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0] - b[0], a[1] - b[1]]
+}
+
+/// The normal of a part's line, out of the solid on its left.
+pub(super) fn out(line: [f64; 2]) -> [f64; 2] {
+    let length = libm::hypot(line[0], line[1]);
+    [line[1] / length, -line[0] / length]
 }
 
 impl Law {
@@ -133,13 +141,19 @@ impl Law {
                         continue;
                     }
                     let Some(foot) = nearest(other, k, at, radius) else { continue };
-                    let Some((foot, share)) = facing([own, other], [own_piece, k], point, foot) else {
-                        continue;
-                    };
                     let key = [pass, point, k as u32];
                     let before =
                         touches.binary_search_by(|touch| touch.key.cmp(&key)).ok().map(|k| touches[k]);
-                    deepest = deepest.max(foot.depth);
+                    let share = before.map_or_else(
+                        || {
+                            let beyond = beyond(other, foot.part, own, own_piece);
+                            share_at_first(own, point, foot.normal, beyond)
+                        },
+                        |touch| touch.share_of_push,
+                    );
+                    if share > 0.0 {
+                        deepest = deepest.max(foot.depth);
+                    }
                     let (forces, touch) = self.force([own, other], key, (&foot, share), (before, dt));
                     found.push(touch);
                     let part = &other.0.parts[foot.part as usize];
@@ -164,7 +178,7 @@ impl Law {
         &self,
         [(outline, placed), (other, surface)]: [(&Outline, &Placed); 2],
         key: [u32; 3],
-        (foot, share): (&Foot, f64),
+        (foot, share_of_push): (&Foot, f64),
         (before, dt): (Option<Touch>, f64),
     ) -> ([[f64; 2]; 2], Touch) {
         let point = key[1] as usize;
@@ -180,11 +194,11 @@ impl Law {
         // apart.
         let deep = placed.has_torn() && foot.depth > DEEP * outline.spacing;
         let rest = if deep { foot.depth } else { 0.0 };
-        let mut touch =
-            before.unwrap_or(Touch { key, part: foot.part, share: foot.share, approach: 0.0, rest });
+        let Foot { part, share, .. } = *foot;
+        let mut touch = before.unwrap_or(Touch { key, part, share, approach: 0.0, share_of_push, rest });
         touch.rest = touch.rest.min(foot.depth);
         touch.approach = touch.approach.max(approach);
-        let spring = 0.5 * self.stiffness * share * outline.points[point].length;
+        let spring = 0.5 * self.stiffness * share_of_push * outline.points[point].length;
         let push = self.push(spring, foot.depth - touch.rest, [approach, touch.approach], dt);
         let stuck = on(touch.part, touch.share, &surface.position);
         let from = less(placed.position[point], stuck);
@@ -255,12 +269,7 @@ pub(super) fn depth_in(of: (&Outline, &Placed), piece: usize, at: [f64; 2]) -> f
 }
 
 /// The nearest place on a piece to a point whose surface, at a distance before it, is inside of it.
-pub(super) fn nearest(
-    (outline, placed): (&Outline, &Placed),
-    piece: usize,
-    at: [f64; 2],
-    radius: f64,
-) -> Option<Foot> {
+fn nearest((outline, placed): (&Outline, &Placed), piece: usize, at: [f64; 2], radius: f64) -> Option<Foot> {
     let ends = |part: u32| outline.parts[part as usize].ends.map(|end| placed.position[end as usize]);
     let mut best: Option<(f64, u32, f64)> = None;
     for part in outline.pieces[piece].parts.clone() {
@@ -274,11 +283,9 @@ pub(super) fn nearest(
         }
     }
     let (square, part, share) = best?;
-    let out = |part: u32| {
+    let normal = |part: u32| {
         let [from, to] = ends(part);
-        let line = less(to, from);
-        let length = libm::hypot(line[0], line[1]);
-        [line[1] / length, -line[0] / length]
+        out(less(to, from))
     };
     let [from, to] = ends(part);
     let line = less(to, from);
@@ -286,9 +293,9 @@ pub(super) fn nearest(
     // At a corner both of its parts say which side is out.
     let beside = outline.parts[part as usize].beside;
     let side = match share {
-        s if s <= 0.0 => [out(part), out(beside[0])],
-        s if s >= 1.0 => [out(part), out(beside[1])],
-        _ => [out(part); 2],
+        s if s <= 0.0 => [normal(part), normal(beside[0])],
+        s if s >= 1.0 => [normal(part), normal(beside[1])],
+        _ => [normal(part); 2],
     };
     let apart = square.sqrt();
     let outside = dot(away, side[0]) + dot(away, side[1]) >= 0.0;

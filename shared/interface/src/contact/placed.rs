@@ -1,6 +1,6 @@
 //! Where an outline is, and which of its points belong together no longer.
 
-use super::law::depth_in;
+use super::law::{depth_in, less};
 use super::outline::{Outline, Point, REACH, distance};
 use halfstep_wire::protocol::StateRecord;
 
@@ -59,8 +59,6 @@ pub(super) struct Placed {
     pub(super) position: Vec<[f64; 2]>,
     /// Of each point, m/s.
     pub(super) velocity: Vec<[f64; 2]>,
-    /// Of each point without parts beside it, where it has a surface: before and after it.
-    pub(super) normals: Vec<[[f64; 2]; 2]>,
     /// Around the points of each piece.
     pub(super) pieces: Vec<Around>,
     /// Around the outline of each piece, in which others' points are looked for: nothing where it is torn.
@@ -78,7 +76,6 @@ impl Default for Placed {
             fresh: false,
             position: Vec::new(),
             velocity: Vec::new(),
-            normals: Vec::new(),
             pieces: Vec::new(),
             targets: Vec::new(),
             torn: Vec::new(),
@@ -90,6 +87,11 @@ impl Placed {
     /// Some points' particles belong to different fragments.
     pub(super) fn has_torn(&self) -> bool {
         !self.torn.is_empty()
+    }
+
+    /// From one point to another, m.
+    pub(super) fn line(&self, [from, to]: [u32; 2]) -> [f64; 2] {
+        less(self.position[to as usize], self.position[from as usize])
     }
 
     /// A point's particles belong to different fragments, or the point is a single particle that others carry.
@@ -142,11 +144,11 @@ impl Placed {
         self.around.meets(&other.around, self.margin + other.margin)
     }
 
-    /// Puts the points of an outline of one piece without parts, m and m/s, and their surfaces' normals.
-    pub(super) fn put(&mut self, [position, velocity]: [Vec<[f64; 2]>; 2], normals: Vec<[[f64; 2]; 2]>) {
+    /// Puts the points of an outline of one piece without parts, m and m/s.
+    pub(super) fn put(&mut self, position: Vec<[f64; 2]>, velocity: Vec<[f64; 2]>) {
         self.pieces.clear();
         self.pieces.push(Around::of(position.iter().copied()));
-        (self.position, self.velocity, self.normals) = (position, velocity, normals);
+        (self.position, self.velocity) = (position, velocity);
     }
 
     /// How deep a place is in a piece of the outline, m: zero outside.

@@ -18,19 +18,21 @@ impl State for Booked {
 fn touch_fields(fields: &mut Fields<'_>, touches: &mut Vec<Touch>) -> Result<(), StateError> {
     let numbers_of = |t: &Touch| [t.key[0], t.key[1], t.key[2], t.part];
     let mut numbers: Vec<u32> = touches.iter().flat_map(numbers_of).collect();
-    let mut reals: Vec<f64> = touches.iter().flat_map(|t| [t.share, t.approach, t.rest]).collect();
+    let mut reals: Vec<f64> =
+        touches.iter().flat_map(|t| [t.share, t.approach, t.share_of_push, t.rest]).collect();
     fields.numbers("touches", &mut numbers)?;
     fields.reals("sticking", &mut reals)?;
-    fields.length("sticking", numbers.len() / 4 * 3, reals.len())?;
+    fields.length("sticking", numbers.len(), reals.len())?;
     if fields.loading() {
         let of = |(n, r): (&[u32], &[f64])| Touch {
             key: [n[0], n[1], n[2]],
             part: n[3],
             share: r[0],
             approach: r[1],
-            rest: r[2],
+            share_of_push: r[2],
+            rest: r[3],
         };
-        *touches = numbers.chunks_exact(4).zip(reals.chunks_exact(3)).map(of).collect();
+        *touches = numbers.chunks_exact(4).zip(reals.chunks_exact(4)).map(of).collect();
     }
     Ok(())
 }

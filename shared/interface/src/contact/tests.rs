@@ -6,7 +6,7 @@ use std::path::Path;
 
 /// A block of a solid without rotation.
 pub(super) struct Block {
-    records: Vec<StateRecord>,
+    pub(super) records: Vec<StateRecord>,
     start: Vec<[f64; 2]>,
     pub(super) at: [f64; 2],
     pub(super) velocity: [f64; 2],
@@ -119,6 +119,10 @@ impl Run {
         while self.time() < time {
             self.step();
         }
+    }
+
+    pub(super) fn dt(&self) -> f64 {
+        self.dt
     }
 
     pub(super) fn time(&self) -> f64 {

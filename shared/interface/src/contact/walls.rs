@@ -8,7 +8,7 @@
 //! not thrown out of it.
 
 use super::corners::Corners;
-use super::flanks::share_of_wall;
+use super::flanks::share_at_first;
 use super::law::{Law, dot, give, less};
 use super::outline::Outline;
 use super::placed::Placed;
@@ -47,6 +47,8 @@ struct Touch {
     time: f64,
     /// Largest approach so far, m/s.
     approach: f64,
+    /// How much of the push it takes.
+    share_of_push: f64,
 }
 
 /// Contact of a solid with all walls of a scene.
@@ -230,14 +232,16 @@ impl WallContact {
         let tangent = [-normal[1], normal[0]];
         let approach = -dot(slip, normal);
         let before = self.touches.binary_search_by_key(&key, |touch| touch.key);
-        let fresh = Touch { key, place: below, time, approach: 0.0 };
-        let mut touch = before.map_or(fresh, |k| self.touches[k]);
+        let fresh = || {
+            let solid = (&self.outline, &self.placed);
+            let foot = [0, 1].map(|d| at[d] + near.depth * normal[d]);
+            let beyond = self.corners.beyond(solid, (key[0] as usize, placement), [foot, normal]);
+            let share_of_push = share_at_first(solid, key[1], normal, beyond);
+            Touch { key, place: below, time, approach: 0.0, share_of_push }
+        };
+        let mut touch = before.map_or_else(|_| fresh(), |k| self.touches[k]);
         touch.approach = touch.approach.max(approach);
-        let solid = (&self.outline, &self.placed);
-        let foot = [0, 1].map(|d| at[d] + near.depth * normal[d]);
-        let on_tip = || self.corners.are_in(solid, (key[0] as usize, placement), [foot, normal]);
-        let share = share_of_wall(solid, key[1], normal, on_tip);
-        let spring = self.law.stiffness * share * self.outline.points[key[1] as usize].length;
+        let spring = self.law.stiffness * touch.share_of_push * self.outline.points[key[1] as usize].length;
         let push = self.law.push(spring, depth, [approach, touch.approach], dt);
         let stuck = placement.position_of(touch.place);
         let from = [0, 1].map(|d| at[d] - stuck[d] - wall.belt[d] * (time - touch.time));
@@ -252,7 +256,7 @@ impl WallContact {
             on.resize(records, [0.0; 2]);
             give(&self.outline, key[1], force, on);
         }
-        depth
+        if touch.share_of_push > 0.0 { depth } else { 0.0 }
     }
 }
 
@@ -269,19 +273,20 @@ impl State for WallContact {
         fields.length("along_force", normal.len(), along.len())?;
         let touches = &mut self.touches;
         let mut numbers: Vec<u32> = touches.iter().flat_map(|t| t.key).collect();
-        let real = |t: &Touch| [t.place[0], t.place[1], t.time, t.approach];
+        let real = |t: &Touch| [t.place[0], t.place[1], t.time, t.approach, t.share_of_push];
         let mut reals: Vec<f64> = touches.iter().flat_map(real).collect();
         fields.numbers("touches", &mut numbers)?;
         fields.reals("sticking", &mut reals)?;
-        fields.length("sticking", numbers.len() / 3 * 4, reals.len())?;
+        fields.length("sticking", numbers.len() / 3 * 5, reals.len())?;
         if fields.loading() {
             let of = |(n, r): (&[u32], &[f64])| Touch {
                 key: [n[0], n[1], n[2]],
                 place: [r[0], r[1]],
                 time: r[2],
                 approach: r[3],
+                share_of_push: r[4],
             };
-            *touches = numbers.chunks_exact(3).zip(reals.chunks_exact(4)).map(of).collect();
+            *touches = numbers.chunks_exact(3).zip(reals.chunks_exact(5)).map(of).collect();
         }
         fields.part("corners", &mut self.corners)
     }
