@@ -1,32 +1,31 @@
 //! What the coupler holds of the solids: their interfaces with the fluid, the forces on both sides, and the work that
 //! these do.
 
+mod contacts;
 mod expected;
 mod kinds;
+mod state;
 mod touched;
 mod walls;
 
 use crate::error::RunError;
 use crate::external::{Continuity, ExternalSolid};
+pub use contacts::ContactSummary;
 use expected::Expected;
-use halfstep_interface::contact::{Booked, Contact, PairLaw, WallContact};
+use halfstep_interface::contact::{Contact, WallContact};
 use halfstep_interface::cross_viscosity::CrossViscosity;
 use halfstep_interface::{Interface, Parameters};
 use halfstep_link::{FLUID, StateMessage};
 use halfstep_output::FirstMessage;
 use halfstep_output::run_json::ForceKind;
 use halfstep_role::balance::Balance;
-use halfstep_role::timeline;
 use halfstep_scene::{Gravity, Scene, geometry};
 use halfstep_sph::lane::Isa;
-use halfstep_wire::half_step::Stage;
 use halfstep_wire::protocol::{ForceRecord, StateRecord};
-use halfstep_wire::state::{Fields, State, StateError};
 use halfstep_wire::wide;
 use kinds::ByKind;
 pub use kinds::Done;
 use touched::Touched;
-use xxhash_rust::xxh3::Xxh3;
 
 /// What stands in for a solid of another program.
 pub(crate) struct External<'s> {
@@ -34,17 +33,6 @@ pub(crate) struct External<'s> {
     pub(crate) forces: &'s [ForceRecord],
     /// Those of contact among them, N (2D: N/m), where a probe asks for them.
     pub(crate) contact: &'s [[f64; 2]],
-}
-
-/// What contact did to a pair of solids, or to a solid and the walls.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactSummary {
-    /// Indices of the two in the scene; `None`: the walls.
-    pub solids: [Option<usize>; 2],
-    /// Pressure over penetration, Pa/m.
-    pub stiffness: f64,
-    /// Energies and largest values.
-    pub booked: Booked,
 }
 
 /// Work on a participant since the state before, J (2D: J/m).
@@ -168,47 +156,10 @@ impl<const D: usize> Solids<D> {
         compared.collect()
     }
 
-    /// Largest time step that contacts are stable with, s; `None` where nothing can touch.
-    pub(crate) fn contact_limit(&self) -> Option<f64> {
-        let walls = self.solids.iter().filter_map(|side| side.walls.as_ref()).map(WallContact::limit);
-        let least = self.contact.iter().map(Contact::limit).chain(walls).fold(f64::INFINITY, f64::min);
-        least.is_finite().then_some(least)
-    }
-
-    /// What contacts did to each pair of solids and to the bodies of one, and walls to each solid that the coupler
-    /// holds against them.
-    pub(crate) fn contacts(&self) -> Vec<ContactSummary> {
-        let of = |(solids, law, booked): ([usize; 2], &PairLaw, Booked)| ContactSummary {
-            solids: solids.map(Some),
-            stiffness: law.stiffness,
-            booked,
-        };
-        let walls = self.solids.iter().enumerate().filter_map(|(solid, side)| {
-            let walls = side.walls.as_ref()?;
-            let (stiffness, booked) = (walls.law().stiffness, walls.booked());
-            Some(ContactSummary { solids: [Some(solid), None], stiffness, booked })
-        });
-        self.contact.iter().flat_map(Contact::booked).map(of).chain(walls).collect()
-    }
-
     /// What each kind of force did to each solid, by its index in the scene.
     pub(crate) fn forces_by_kind(&self) -> Vec<(usize, ForceKind, Done)> {
         let solids = self.solids.iter().enumerate();
         solids.flat_map(|(solid, side)| side.by_kind.done().map(move |(k, done)| (solid, k, done))).collect()
-    }
-
-    /// Notes the states that a checkpoint is made of.
-    pub(crate) fn note_saved(&mut self, states: &[impl StateMessage]) {
-        for (side, state) in self.solids.iter_mut().zip(&states[self.first..]) {
-            side.saved = state_hash(state.records());
-        }
-    }
-
-    /// Place of a solid whose state is not the one that the checkpoint was made of.
-    pub(crate) fn changed_since_saved<S: StateMessage>(&self, states: &[S]) -> Option<usize> {
-        let changed = |(side, state): (&CoupledSolid<D>, &S)| state_hash(state.records()) != side.saved;
-        let solid = self.solids.iter().zip(&states[self.first..]).position(changed)?;
-        Some(self.first + solid)
     }
 
     /// Checks that each state, of step n at a stage, goes on from the one before, after a time step of at most `dt`, s.
@@ -364,31 +315,6 @@ impl<const D: usize> Solids<D> {
         self.solids.iter_mut().for_each(|side| side.by_kind.book(dt));
     }
 
-    /// Adds the forces of contacts at the states' instant, s, in a time step `dt`, s, to those of the fluid.
-    fn touch(&mut self, states: &[impl StateMessage], [time, dt]: [f64; 2]) {
-        let _phase = timeline::phase("contact");
-        let whole = states[self.first].header().stage == Stage::First.number();
-        for (side, state) in self.solids.iter_mut().zip(&states[self.first..]) {
-            let Some(walls) = &mut side.walls else { continue };
-            walls.evaluate(state.records(), [time, dt], whole);
-            for (record, force) in side.forces.iter_mut().enumerate() {
-                let on = walls.on(record);
-                (0..2).for_each(|d| force.stress_force[d] += on[d]);
-                side.by_kind.add(ForceKind::Walls, wide(on));
-                side.touched.iter_mut().for_each(|touched| touched.add(record, on));
-            }
-        }
-        let Some(contact) = &mut self.contact else { return };
-        contact.evaluate(|solid| states[solid + self.first].records(), whole, dt);
-        contact.forces(|solid, record, force| {
-            let side = &mut self.solids[solid];
-            let sum = &mut side.forces[record].stress_force;
-            (0..2).for_each(|d| sum[d] += force[d]);
-            side.by_kind.add(ForceKind::Contact, wide(force));
-            side.touched.iter_mut().for_each(|touched| touched.add(record, force));
-        });
-    }
-
     /// The forces on each participant, in the order in which they are answered: the solids before the fluid.
     pub(crate) fn answers(&self) -> impl Iterator<Item = (usize, &[ForceRecord])> {
         let solids = self.solids.iter().enumerate();
@@ -417,68 +343,4 @@ impl<const D: usize> Solids<D> {
         }
         all.mismatch()
     }
-}
-
-impl<const D: usize> State for Solids<D> {
-    fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
-        let mut solids = self.solids.iter_mut().enumerate();
-        solids.try_for_each(|(solid, side)| fields.part(&format!("solid_{solid}"), side))?;
-        fields.part("impulse", &mut self.impulse)?;
-        self.contact.as_mut().map_or(Ok(()), |contact| fields.part("contact", contact))
-    }
-
-    fn restored(&mut self) -> Result<(), StateError> {
-        self.contact.as_mut().map_or(Ok(()), State::restored)?;
-        self.solids.iter_mut().try_for_each(State::restored)
-    }
-}
-
-impl<const D: usize> State for CoupledSolid<D> {
-    fn fields(&mut self, fields: &mut Fields<'_>) -> Result<(), StateError> {
-        fields.part("by_kind", &mut self.by_kind)?;
-        fields.optional_count("count", &mut self.continuity.count)?;
-        fields.count("state_published", &mut self.saved)?;
-        fields.points("position", &mut self.at_n)?;
-        let mut cross_viscosity = self.forces.iter().map(|f| f.cross_viscosity).collect();
-        let mut stress_force = self.forces.iter().map(|f| f.stress_force).collect();
-        fields.points("cross_viscosity", &mut cross_viscosity)?;
-        fields.points("stress_force", &mut stress_force)?;
-        if fields.loading() {
-            fields.length("stress_force", cross_viscosity.len(), stress_force.len())?;
-            let of = |(cross_viscosity, stress_force)| ForceRecord {
-                cross_viscosity,
-                stress_force,
-                ..ForceRecord::default()
-            };
-            self.forces = cross_viscosity.into_iter().zip(stress_force).map(of).collect();
-        }
-        if let Some(interface) = &mut self.interface {
-            fields.part("interface", interface)?;
-        }
-        if let Some(external) = &mut self.external {
-            fields.part("external", external)?;
-            if external.own_walls {
-                self.walls = None;
-            }
-        }
-        self.walls.as_mut().map_or(Ok(()), |walls| fields.part("walls", walls))?;
-        self.touched.as_mut().map_or(Ok(()), |touched| fields.part("touched", touched))
-    }
-
-    fn restored(&mut self) -> Result<(), StateError> {
-        self.interface.as_mut().map_or(Ok(()), State::restored)?;
-        self.external.as_mut().map_or(Ok(()), State::restored)?;
-        self.walls.as_mut().map_or(Ok(()), State::restored)
-    }
-}
-
-/// Hash of particles, their positions, velocities and masses.
-fn state_hash(records: &[StateRecord]) -> u64 {
-    let mut hash = Xxh3::new();
-    for record in records {
-        hash.update(&record.id.to_le_bytes());
-        let numbers = record.position.iter().chain(&record.velocity).chain([&record.mass]);
-        numbers.for_each(|x| hash.update(&x.to_le_bytes()));
-    }
-    hash.digest()
 }
