@@ -3,17 +3,17 @@
 //! Lumped mass and velocity Verlet (kick, drift, kick), as of the total-Lagrangian particles: the central difference of
 //! explicit finite elements (Belytschko, Liu, Moran and Elkhodary 2014, section 6.2); or implicit steps.
 
+mod build;
+
 use super::element::Element;
 use super::equations::Equations;
 use super::mesh::Mesh;
 use super::stress::Stressed;
 use crate::account::Account;
-use crate::columns::{ParticleColumns, Vectors, vectors};
-use crate::effects::takes_part;
+use crate::columns::{ParticleColumns, Vectors};
 use crate::model::{Load, OutOfBounds, Particles, SolidModel};
 use crate::shown_velocity::ShownVelocity;
 use crate::side_friction;
-use crate::surface::surface_set;
 use crate::total_lagrangian::bounds::{VolumeBounds, keep_worse, refuse_worst};
 use crate::total_lagrangian::contact::{Contact, Present};
 use crate::total_lagrangian::material::{Law, Matrix};
@@ -21,8 +21,8 @@ use crate::total_lagrangian::step_limit::{squared_stretches, sub_step};
 use crate::verlet::Kinematics;
 use halfstep_role::timeline;
 use halfstep_scene::bounds::Excess;
-use halfstep_scene::geometry::{self, SolidPoint};
-use halfstep_scene::{EffectName, EnergyPart, ModelKeys, Motion, Plane, Scene, Solid, TimeIntegration};
+use halfstep_scene::geometry::SolidPoint;
+use halfstep_scene::{EnergyPart, Motion, Solid};
 use halfstep_sph::lane::Isa;
 use halfstep_wire::half_step::{HalfStep, Stage};
 use halfstep_wire::protocol::StateRecord;
@@ -78,77 +78,6 @@ pub struct FiniteElement<const D: usize> {
 }
 
 impl<const D: usize> FiniteElement<D> {
-    /// The scene's solid of that index.
-    pub fn new(scene: &Scene, solid: usize, isa: Isa) -> Option<Self> {
-        let material = scene.solids.get(solid)?.clone();
-        let ModelKeys::FiniteElement(keys) = &material.model else { return None };
-        let layout = geometry::layout::<D>(scene).with_solid(scene, solid);
-        let points = &layout.solid;
-        let body = geometry::pieces(scene, &layout);
-        let dx = scene.solid_spacing(solid);
-        let (mesh, element) = (Mesh::new(points, &body, dx), Element::new(dx));
-        let contact = Contact::new(scene, solid, &material, &layout, &body, isa);
-        let mass = material.density * element.volume();
-        let nodes = mesh.nodes();
-        let mut clamped = vec![false; nodes];
-        let mut motions: Vec<Option<Motion>> = vec![None; nodes];
-        for (p, point) in points.iter().enumerate().filter(|(_, point)| point.clamped) {
-            let motion = geometry::clamp_motion(scene, point);
-            for &node in mesh.of(p) {
-                clamped[node as usize] = true;
-                motions[node as usize].clone_from(&motion);
-            }
-        }
-        let mut velocity = mesh.spread(|p| points[p].velocity);
-        for column in &mut velocity {
-            column.iter_mut().zip(&clamped).filter(|(_, held)| **held).for_each(|(v, _)| *v = 0.0);
-        }
-        let now = Kinematics::new(velocity);
-        let implicit = keys.time_integration == TimeIntegration::Implicit;
-        let equations = implicit.then(|| Equations::new(&mesh, &clamped));
-        let driven = motions.into_iter().enumerate().filter_map(|(node, motion)| Some((node, motion?)));
-        let kinematic =
-            material.artificial_viscosity.kinematic(material.smoothing_ratio * dx, material.sound_speed());
-        let mut model = Self {
-            law: Law::new(&material, keys.material, keys.plane),
-            hourglass: element.hourglass(bending_modulus(&material, keys.plane)),
-            viscosity: material.density * kinematic,
-            side_friction: takes_part(scene, solid, EffectName::SideFriction)
-                .then(|| material.side_friction / material.density),
-            isa,
-            spacing: dx,
-            gravity: std::array::from_fn(|d| scene.gravity[d]),
-            courant: scene.numerics.solid_cfl,
-            shown: ParticleColumns::new(points, mass),
-            mass,
-            interface_set: surface_set(points, &body, 2.0 * scene.smoothing_ratio * scene.resolution, dx),
-            clamped,
-            driven: driven.collect(),
-            at_n: now.clone(),
-            shown_velocity: ShownVelocity::new((0..points.len()).map(|p| mesh.mean(p, &now.velocity))),
-            load: vectors(nodes),
-            inner: vectors(nodes),
-            gradient: vec![Matrix::identity(); points.len()],
-            volume_ratio: vec![1.0; points.len()],
-            points: layout.solid,
-            element,
-            mesh,
-            now,
-            material,
-            contact,
-            bounds: VolumeBounds::new(scene, solid)?,
-            failure: None,
-            evaluations: 0,
-            account: None,
-            equations,
-            alone: scene.fluid.is_none(),
-        };
-        model.drive(0.0);
-        model.evaluate();
-        model.show_particles();
-        Some(model)
-    }
-
     /// Present position of a particle, m.
     fn position(&self, particle: usize) -> [f64; D] {
         let moved = self.mesh.mean(particle, &self.now.displacement);
@@ -339,14 +268,6 @@ pub(super) fn add_to_nodes<const D: usize>(
         let node = node as usize;
         let part = 1.0 / (Mesh::<D>::CORNERS as f64 * mesh.share(node));
         (0..D).for_each(|d| accelerations[d][node] += a[d] * part);
-    }
-}
-
-/// E' of a plate that is bent, Pa.
-fn bending_modulus(material: &Solid, plane: Plane) -> f64 {
-    match plane {
-        Plane::Strain => material.youngs_modulus / (1.0 - material.poissons_ratio.powi(2)),
-        Plane::Stress => material.youngs_modulus,
     }
 }
 
