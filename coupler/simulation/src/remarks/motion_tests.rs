@@ -1,8 +1,9 @@
 //! Motions that are valid and hardly meant: what is remarked on each, and on what is near it not.
 
 use super::meaning_tests::recorded;
-use super::tests::{PLATE, TANK, WATER};
+use super::tests::{PLATE, TANK, WATER, plain};
 use super::trap_tests::{has, on, with};
+use super::wave_tests::with_paddle;
 
 fn moved(motion: &str) -> Vec<String> {
     wet(&[&with(TANK, &format!("motion = {motion}\n")), WATER])
@@ -131,4 +132,60 @@ fn a_motion_of_frame_and_tank() {
     assert!(has(&text(motion, &frame), said), "{:?}", text(motion, &frame));
     assert_eq!(text("", &frame), [""; 0]);
     assert!(!has(&text(&motion.replace("0.7", "0.6"), &frame), "twice"));
+}
+
+#[test]
+fn a_clamp_in_a_wall_that_moves() {
+    let moving = TANK
+        .replace("phase = \"wall\"", "phase = \"wall\"\nmotion = { amplitude = [0.01, 0.0], period = 1.0 }");
+    let found = plain(&[
+        &moving,
+        WATER,
+        &PLATE.replace("[0.2, 0.0], max = [0.22, 0.01]", "[0.2, -0.01], max = [0.22, 0.01]"),
+    ]);
+    assert_eq!(
+        found,
+        [
+            "the clamp of `plate` stands in `tank`, which moves: the clamp stays where it is (`with = \"tank\"` at the \
+          clamp takes it along)"
+        ]
+    );
+}
+
+#[test]
+fn a_wall_that_goes_through_another_one() {
+    let stop = |x: f64| {
+        format!(
+            "[[shape]]\nname = \"stop\"\nphase = \"wall\"\nbox = {{ min = [{x}, 0.0], max = [{}, 0.2] }}\n",
+            x + 0.02
+        )
+    };
+    let found = with_paddle("{ velocity = [0.1, 0.0] }", &stop(0.08));
+    // More than half a spacing, 2.5 mm, after 80 mm: 0.825 s.
+    assert!(found.iter().any(|r| r.starts_with("`paddle` goes through `stop` from about 0.82")), "{found:?}");
+    // It stops before, goes where no fluid is, or slides along the other.
+    for (motion, x) in [
+        ("{ velocity = [0.1, 0.0], end = 0.5 }", 0.08),
+        ("{ velocity = [-0.1, 0.0] }", -0.12),
+        ("{ velocity = [0.0, 0.1] }", -0.04),
+    ] {
+        let found = with_paddle(motion, &stop(x));
+        assert!(!found.iter().any(|r| r.contains("goes through")), "{motion}: {found:?}");
+    }
+}
+
+#[test]
+fn a_wall_that_slides_along_the_fluid_does_not_push_it() {
+    // A gate at the water's right side, inside the tank, faster than a seventh of the sound speed.
+    let text = |velocity: &str| {
+        let gate = format!(
+            "[[shape]]\nname = \"gate\"\nphase = \"wall\"\nbox = {{ min = [0.1, 0.0], max = [0.12, 0.3] }}\n\
+             motion = {{ velocity = {velocity} }}\n"
+        );
+        let water = "resolution = 0.005\nend_time = 1.0\n[fluid]\ndensity = 1000.0\nsound_speed = 14.0\n";
+        on(&format!("{water}{gate}{TANK}{WATER}pressure = \"hydrostatic\"\n"))
+    };
+    assert_eq!(text("[0.0, 4.0]"), [""; 0]);
+    let pushed = text("[-4.0, 0.0]");
+    assert!(pushed.iter().any(|r| r.contains("can come to 4.00 m/s")), "{pushed:?}");
 }

@@ -55,24 +55,6 @@ fn every_shipped_scene_means_what_it_says() {
 }
 
 #[test]
-fn a_clamp_in_a_wall_that_moves() {
-    let moving = TANK
-        .replace("phase = \"wall\"", "phase = \"wall\"\nmotion = { amplitude = [0.01, 0.0], period = 1.0 }");
-    let found = plain(&[
-        &moving,
-        WATER,
-        &PLATE.replace("[0.2, 0.0], max = [0.22, 0.01]", "[0.2, -0.01], max = [0.22, 0.01]"),
-    ]);
-    assert_eq!(
-        found,
-        [
-            "the clamp of `plate` stands in `tank`, which moves: the clamp stays where it is (`with = \"tank\"` at the \
-          clamp takes it along)"
-        ]
-    );
-}
-
-#[test]
 fn a_plate_of_another_thickness() {
     // 5 mm at 1.4 mm are four rows: 5.6 mm, and (5.6 / 5)³ = 1.40. All else are multiples of 1.4 mm.
     let rest =
@@ -190,100 +172,6 @@ fn units_that_are_hardly_meant() {
     );
 }
 
-#[test]
-fn a_wall_thinner_than_the_support() {
-    // 2h = 3 dx = 15 mm; a weir of 10 mm in the water is two rows.
-    let weir =
-        "[[shape]]\nname = \"weir\"\nphase = \"wall\"\nbox = { min = [0.05, 0.0], max = [0.06, 0.08] }\n";
-    let found = plain(&[TANK, weir, WATER, PLATE]);
-    let thin: Vec<_> = found.iter().filter(|text| text.contains("thick")).collect();
-    assert_eq!(thin.len(), 1, "{found:?}");
-    assert!(thin[0].starts_with("`weir` is about 2.0 dx thick at [0.05"), "{thin:?}");
-    let thick = weir.replace("0.06, 0.08]", "0.065, 0.08]");
-    assert!(plain(&[TANK, &thick, WATER, PLATE]).iter().all(|text| !text.contains("thick")));
-    // The same as a polygon and as a turned box.
-    let polygon = weir.replace(
-        "box = { min = [0.05, 0.0], max = [0.06, 0.08] }",
-        "polygon = [[0.05, 0.0], [0.06, 0.0], [0.06, 0.08], [0.05, 0.08]]",
-    );
-    assert!(
-        plain(&[TANK, &polygon, WATER, PLATE]).iter().any(|text| text.contains("`weir` is about 2.0 dx"))
-    );
-    let turned = weir.replace("max = [0.06, 0.08] }", "max = [0.06, 0.08] }\nrotate = { angle = 30.0 }");
-    assert!(plain(&[TANK, &turned, WATER, PLATE]).iter().any(|text| text.contains("`weir` is about 2.0 dx")));
-}
-
-/// A paddle beside the water, and the tank open toward it.
-fn with_paddle(motion: &str, more: &str) -> Vec<String> {
-    let open = TANK.replace("[\"top\"]", "[\"left\", \"top\"]");
-    let paddle = format!(
-        "[[shape]]\nname = \"paddle\"\nphase = \"wall\"\nbox = {{ min = [-0.02, 0.0], max = [0.0, 0.2] }}\n\
-         motion = {motion}\n{more}"
-    );
-    plain(&[&open, WATER, PLATE, &paddle])
-}
-
-#[test]
-fn a_paddle_for_water_of_another_depth() {
-    let wave = |depth: f64| {
-        let motion = format!("{{ wave = \"regular\", height = 0.005, period = 0.5, depth = {depth} }}");
-        with_paddle(&motion, "")
-    };
-    assert_eq!(wave(0.1), [""; 0]);
-    assert_eq!(
-        wave(0.05),
-        [
-            "`paddle` makes waves for a depth of 0.05 m, and the water is 0.1 m deep: they have another height and length"
-        ]
-    );
-}
-
-#[test]
-fn a_run_that_ends_before_its_wave() {
-    // Goring's piston moves for 2 (5 + H / d) / (kappa c): kappa = sqrt(0.75 * 0.001 / 0.001), c = sqrt(9.81 * 0.101).
-    let found = with_paddle("{ wave = \"solitary\", height = 0.001, depth = 0.1, start = 0.1 }", "");
-    assert_eq!(found[0], "`paddle` moves until 11.724 s for its wave, and the run ends at 1 s");
-}
-
-#[test]
-fn a_wall_that_goes_through_another_one() {
-    let stop = |x: f64| {
-        format!(
-            "[[shape]]\nname = \"stop\"\nphase = \"wall\"\nbox = {{ min = [{x}, 0.0], max = [{}, 0.2] }}\n",
-            x + 0.02
-        )
-    };
-    let found = with_paddle("{ velocity = [0.1, 0.0] }", &stop(0.08));
-    // More than half a spacing, 2.5 mm, after 80 mm: 0.825 s.
-    assert!(found.iter().any(|r| r.starts_with("`paddle` goes through `stop` from about 0.82")), "{found:?}");
-    // It stops before, goes where no fluid is, or slides along the other.
-    for (motion, x) in [
-        ("{ velocity = [0.1, 0.0], end = 0.5 }", 0.08),
-        ("{ velocity = [-0.1, 0.0] }", -0.12),
-        ("{ velocity = [0.0, 0.1] }", -0.04),
-    ] {
-        let found = with_paddle(motion, &stop(x));
-        assert!(!found.iter().any(|r| r.contains("goes through")), "{motion}: {found:?}");
-    }
-}
-
-#[test]
-fn a_wall_that_slides_along_the_fluid_does_not_push_it() {
-    // A gate at the water's right side, inside the tank, faster than a seventh of the sound speed.
-    let text = |velocity: &str| {
-        let gate = format!(
-            "[[shape]]\nname = \"gate\"\nphase = \"wall\"\nbox = {{ min = [0.1, 0.0], max = [0.12, 0.3] }}\n\
-             motion = {{ velocity = {velocity} }}\n"
-        );
-        let water = "resolution = 0.005\nend_time = 1.0\n[fluid]\ndensity = 1000.0\nsound_speed = 14.0\n";
-        let text = format!("{water}{gate}{TANK}{WATER}pressure = \"hydrostatic\"\n");
-        remarks(&parse(&text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}")))
-    };
-    assert_eq!(text("[0.0, 4.0]"), [""; 0]);
-    let pushed = text("[-4.0, 0.0]");
-    assert!(pushed.iter().any(|r| r.contains("can come to 4.00 m/s")), "{pushed:?}");
-}
-
 /// The plate's right face, 20 rows of 5 mm of which 18 are free: one column is a surface, two are twice its force.
 #[test]
 fn a_traction_on_several_rows() {
@@ -337,20 +225,6 @@ fn settings_that_cannot_act() {
     // exp(-rate 0.4 m / (3 sqrt(9.81 0.1) m/s)) = exp(-0.1346 rate).
     for (rate, little) in [(0.5, true), (10.0, false)] {
         assert_eq!(said(&[&beach(rate), TANK, WATER, PLATE], "the beach leaves long waves 0.93"), little);
-    }
-}
-
-#[test]
-fn a_solitary_wave_the_wrong_way() {
-    for (toward, wrong) in [("right", false), ("left", true)] {
-        let text = format!(
-            "resolution = 0.02\nend_time = 3.0\n[fluid]\ndensity = 1000.0\n[[shape]]\nname = \"water\"\n\
-             phase = \"fluid\"\nbox = {{ min = [0.0, 0.0], max = [3.0, 0.2] }}\n[[shape]]\nname = \"piston\"\n\
-             phase = \"wall\"\nbox = {{ min = [-0.1, 0.0], max = [0.0, 0.5] }}\n\
-             motion = {{ wave = \"solitary\", height = 0.05, depth = 0.2, toward = \"{toward}\" }}\n"
-        );
-        let found = remarks(&parse(&text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}")));
-        assert_eq!(found.iter().any(|text| text.contains("its wave is a trough")), wrong, "{found:?}");
     }
 }
 

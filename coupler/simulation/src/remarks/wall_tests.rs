@@ -157,3 +157,26 @@ fn a_thin_polygon_is_refused_by_its_thickness() {
 fn a_tank_holds_what_falls_in_it() {
     assert_eq!(plain(&[TANK, &with(WATER, "velocity = [0.5, 0.0]\n"), PLATE]), [""; 0]);
 }
+
+#[test]
+fn a_wall_thinner_than_the_support() {
+    // 2h = 3 dx = 15 mm; a weir of 10 mm in the water is two rows.
+    let weir =
+        "[[shape]]\nname = \"weir\"\nphase = \"wall\"\nbox = { min = [0.05, 0.0], max = [0.06, 0.08] }\n";
+    let found = plain(&[TANK, weir, WATER, PLATE]);
+    let thin: Vec<_> = found.iter().filter(|text| text.contains("thick")).collect();
+    assert_eq!(thin.len(), 1, "{found:?}");
+    assert!(thin[0].starts_with("`weir` is about 2.0 dx thick at [0.05"), "{thin:?}");
+    let thick = weir.replace("0.06, 0.08]", "0.065, 0.08]");
+    assert!(plain(&[TANK, &thick, WATER, PLATE]).iter().all(|text| !text.contains("thick")));
+    // The same as a polygon and as a turned box.
+    let polygon = weir.replace(
+        "box = { min = [0.05, 0.0], max = [0.06, 0.08] }",
+        "polygon = [[0.05, 0.0], [0.06, 0.0], [0.06, 0.08], [0.05, 0.08]]",
+    );
+    assert!(
+        plain(&[TANK, &polygon, WATER, PLATE]).iter().any(|text| text.contains("`weir` is about 2.0 dx"))
+    );
+    let turned = weir.replace("max = [0.06, 0.08] }", "max = [0.06, 0.08] }\nrotate = { angle = 30.0 }");
+    assert!(plain(&[TANK, &turned, WATER, PLATE]).iter().any(|text| text.contains("`weir` is about 2.0 dx")));
+}

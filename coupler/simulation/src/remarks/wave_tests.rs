@@ -2,6 +2,7 @@
 //! not fit: what is remarked on each, and on what is near it not.
 
 use super::remarks;
+use super::tests::{PLATE, TANK, WATER, plain};
 use super::trap_tests::has;
 use halfstep_scene::parse;
 use std::path::Path;
@@ -200,4 +201,50 @@ fn vortices_of_another_tank() {
     }
     let crosses = "the velocity field of `water` crosses `tank` at [";
     assert!(has(&vortex(0.2, 0.7), crosses), "{:?}", vortex(0.2, 0.7));
+}
+
+/// A paddle beside the water, and the tank open toward it.
+pub(super) fn with_paddle(motion: &str, more: &str) -> Vec<String> {
+    let open = TANK.replace("[\"top\"]", "[\"left\", \"top\"]");
+    let paddle = format!(
+        "[[shape]]\nname = \"paddle\"\nphase = \"wall\"\nbox = {{ min = [-0.02, 0.0], max = [0.0, 0.2] }}\n\
+         motion = {motion}\n{more}"
+    );
+    plain(&[&open, WATER, PLATE, &paddle])
+}
+
+#[test]
+fn a_paddle_for_water_of_another_depth() {
+    let wave = |depth: f64| {
+        let motion = format!("{{ wave = \"regular\", height = 0.005, period = 0.5, depth = {depth} }}");
+        with_paddle(&motion, "")
+    };
+    assert_eq!(wave(0.1), [""; 0]);
+    assert_eq!(
+        wave(0.05),
+        [
+            "`paddle` makes waves for a depth of 0.05 m, and the water is 0.1 m deep: they have another height and length"
+        ]
+    );
+}
+
+#[test]
+fn a_run_that_ends_before_its_wave() {
+    // Goring's piston moves for 2 (5 + H / d) / (kappa c): kappa = sqrt(0.75 * 0.001 / 0.001), c = sqrt(9.81 * 0.101).
+    let found = with_paddle("{ wave = \"solitary\", height = 0.001, depth = 0.1, start = 0.1 }", "");
+    assert_eq!(found[0], "`paddle` moves until 11.724 s for its wave, and the run ends at 1 s");
+}
+
+#[test]
+fn a_solitary_wave_the_wrong_way() {
+    for (toward, wrong) in [("right", false), ("left", true)] {
+        let text = format!(
+            "resolution = 0.02\nend_time = 3.0\n[fluid]\ndensity = 1000.0\n[[shape]]\nname = \"water\"\n\
+             phase = \"fluid\"\nbox = {{ min = [0.0, 0.0], max = [3.0, 0.2] }}\n[[shape]]\nname = \"piston\"\n\
+             phase = \"wall\"\nbox = {{ min = [-0.1, 0.0], max = [0.0, 0.5] }}\n\
+             motion = {{ wave = \"solitary\", height = 0.05, depth = 0.2, toward = \"{toward}\" }}\n"
+        );
+        let found = remarks(&parse(&text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}")));
+        assert_eq!(found.iter().any(|text| text.contains("its wave is a trough")), wrong, "{found:?}");
+    }
 }
