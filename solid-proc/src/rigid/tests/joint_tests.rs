@@ -1,8 +1,9 @@
 //! Each joint by its formula: to space, to walls that move, between bodies, and more than one at a body.
 
+use super::swing_tests::pendulum_period;
 use super::*;
 use crate::rigid::Vec3;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 /// Another box of 0.2 m x 0.1 m, as far to the right, m.
 pub(super) fn second(x: f64) -> String {
