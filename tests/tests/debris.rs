@@ -170,7 +170,7 @@ fn a_run_that_is_killed_among_debris_goes_on_with_finite_elements() {
         let modulus = 1e8 * (1.0 + 1e-9 * f64::from(last));
         run.set("solid.first.youngs_modulus", modulus).run().curve("back.x").peak().1
     };
-    let elements = || debris(folder.path()).argument("--solid").argument(&format!("second={plate}"));
+    let elements = || debris(folder.path()).argument("--solid").argument(format!("second={plate}"));
     let first = killed_among_debris(&plate).curve("back.x").peak().1;
     let of_elements = first + (1..5).map(|last| bends(elements(), last)).sum::<f64>();
     let of_particles: f64 = (0..5).map(|last| bends(debris(folder.path()), last)).sum();

@@ -236,3 +236,22 @@ fn a_report_that_cannot_be_written_hides_no_reason() {
         "{error}"
     );
 }
+
+/// A block of twice the spacing, in a fourth of the particles: told as by a run.
+#[test]
+fn a_trial_compares_the_first_message_with_the_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let script = std::fs::read_to_string(repository().join("tests/python/spring_block.py")).unwrap();
+    let coarse = script.replace("scene[\"resolution\"], scene", "2 * scene[\"resolution\"], scene");
+    assert_ne!(coarse, script);
+    let path = folder.path().join("coarse.py");
+    std::fs::write(&path, coarse).unwrap();
+    let line = format!("{} {} 2e4", python().display(), path.display());
+    let out = folder.path().join("trial");
+    let output = trial("spring-block.toml", &line, &out, &["--force=100,0", "--until", "0.01"]);
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && error.contains("publishes 56 particles"), "{error}");
+    let report = RunReport::read(&out.join("run.json")).unwrap();
+    assert_eq!(report.external.len(), 1);
+    assert!(!report.warnings.is_empty() && error.contains(&report.warnings[0]), "{:?}", report.warnings);
+}

@@ -4,11 +4,12 @@ mod body;
 mod continuity;
 
 use crate::roles::probes_of;
+use crate::solids::expected::Expected;
 pub use continuity::Continuity;
 pub use halfstep_interface::contact::WallContact;
-use halfstep_output::{Frame, FramePoint, FrameWriter, OutputError};
+use halfstep_output::{FirstMessage, Frame, FramePoint, FrameWriter, OutputError};
 use halfstep_scene::geometry::{self, holds, nearest};
-use halfstep_scene::{BodyQuantity, ProbeKind, Scene, Shape, Spot};
+use halfstep_scene::{BodyQuantity, ProbeKind, Scene, Shape, Spot, dispatch};
 use halfstep_wire::Name;
 use halfstep_wire::frame::{body_of, mean_stress, von_mises};
 use halfstep_wire::protocol::{ForceRecord, StateRecord};
@@ -67,6 +68,18 @@ impl ExternalSolid {
     pub fn begin(&mut self, records: &[StateRecord]) {
         self.first = records.iter().map(|r| r.position).collect();
         self.choose_records();
+    }
+
+    /// Its first message, in which these were its records, beside what the scene has for the solid of that index.
+    pub fn first_message(
+        &self,
+        scene: &Scene,
+        solid: usize,
+        records: &[StateRecord],
+    ) -> Option<FirstMessage> {
+        dispatch!(scene.dimension, D => {
+            Expected::<D>::of(scene, &geometry::layout::<D>(scene), solid).compare(self.first(), records)
+        })
     }
 
     /// Positions in its reference configuration, m.

@@ -2,7 +2,7 @@
 //! these do.
 
 mod contacts;
-mod expected;
+pub(crate) mod expected;
 mod kinds;
 mod state;
 mod touched;

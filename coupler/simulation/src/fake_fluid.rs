@@ -177,6 +177,7 @@ pub fn run(scene: &Scene, trial: &Trial) -> Result<Tried, RunError> {
     let half_step_us = pusher.half_step_us();
     let ended = ended.and(pusher.solid.finish().map_err(RunError::from));
     let warnings = std::mem::take(&mut pusher.remarks);
+    let external = pusher.first.take().into_iter().collect();
     drop(pusher);
     let mean = (steps > 0).then(|| time / steps as f64);
     let mut report = RunReport {
@@ -189,6 +190,7 @@ pub fn run(scene: &Scene, trial: &Trial) -> Result<Tried, RunError> {
         dt: TimeSteps { mean, ..TimeSteps::default() },
         round_trip_us: Some(half_step_us),
         warnings,
+        external,
         ..RunReport::default()
     };
     let stopped = stop.stop.load(Ordering::Relaxed);

@@ -111,7 +111,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     joints::starts(scene, layout, &mut all);
     joints::idle(scene, &mut all);
     joints::still(scene, &mut all);
-    joints::far_hinges(scene, &mut all);
+    joints::far(scene, &mut all);
     joints::left_behind(scene, &mut all);
     bodies::held_in_part(scene, &bodies, &mut all);
     bodies::parted(scene, &bodies, &mut all);

@@ -153,6 +153,13 @@ impl<const D: usize> Layout<D> {
         counts
     }
 
+    /// Particles of each shape of the scene.
+    pub fn shape_counts(&self, scene: &Scene) -> Vec<u64> {
+        let mut counts = vec![0; scene.shapes.len()];
+        self.solid.iter().for_each(|point| counts[point.body as usize] += 1);
+        counts
+    }
+
     /// How many there are.
     pub fn counts(&self) -> Counts {
         let [fluid, solid, wall] = [self.fluid.len(), self.solid.len(), self.wall.len()].map(|n| n as u64);

@@ -92,6 +92,9 @@ pub fn parse_with(
         resources::check_solids(&draft.scene, &root, &report);
     }
     if report.is_empty() {
+        resources::check_bodies(&draft.scene, &root, &report);
+    }
+    if report.is_empty() {
         check_lattice::check_lattice(&draft.scene, &root, &report);
     }
     if report.is_empty() { Ok(draft.scene) } else { Err(report.into_errors(path)) }

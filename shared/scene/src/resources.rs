@@ -149,9 +149,47 @@ pub(super) fn check_solids(scene: &Scene, root: &Node, report: &Report) {
     }
 }
 
+/// Refuses joints, and probes of bodies, whose body has no particle: earlier shapes or voids may lie over all of it.
+pub(super) fn check_bodies(scene: &Scene, root: &Node, report: &Report) {
+    let probes = scene.probes.iter().filter_map(|probe| match &probe.kind {
+        ProbeKind::Body { body, .. } => Some((probe.solid?, body.as_str(), format!("probe.{}", probe.name))),
+        _ => None,
+    });
+    let rigid = scene.solids.iter().enumerate().filter_map(|(k, solid)| Some((k, solid.rigid()?)));
+    let joints = rigid.flat_map(|(k, keys)| {
+        let key = move |joint: &Joint| match scene.solids.len() {
+            1 => format!("solid.joints.{}", joint.name),
+            _ => format!("solid.{}.joints.{}", scene.solids[k].name, joint.name),
+        };
+        keys.joints
+            .iter()
+            .flat_map(move |joint| [&joint.body, &joint.with].map(|body| (k, body.as_str(), key(joint))))
+    });
+    let asked: Vec<(usize, &str, String)> = probes.chain(joints).collect();
+    if asked.is_empty() {
+        return;
+    }
+    let own = |solid: usize, body: &str| {
+        let of = move |shape: &&Shape| shape.solid == Some(solid) && shape.body() == body;
+        scene.shapes.iter().any(|shape| of(&shape))
+    };
+    let counts = dispatch!(scene.dimension, D => geometry::solids::<D>(scene).shape_counts(scene));
+    let Some(counts) = counts else { return };
+    for (solid, body, key) in asked.into_iter().filter(|(solid, body, _)| own(*solid, body)) {
+        let of = scene.shapes.iter().zip(&counts);
+        let of = of.filter(|(shape, _)| shape.solid == Some(solid) && shape.body() == body);
+        if of.map(|(_, count)| count).sum::<u64>() == 0 {
+            let reason = format!(
+                "is of `{body}`, which has no particle: shapes that come before it in the file, or voids, lie there"
+            );
+            report.place(&key, root.origin_of(&key), reason);
+        }
+    }
+}
+
 /// The speed that a scene's fluid may reach, m/s: the largest of that of a fall from its highest point to the lowest
 /// floor or solid, sqrt(2 g H), of a free body's fall to the fluid, and of the fastest shape's initial speed, or
-/// field's.
+/// field's, with that of the corner of a rigid body that turns.
 pub fn expected_speed(scene: &Scene) -> f64 {
     speed_with(scene, |_| true)
 }
@@ -178,9 +216,33 @@ fn speed_with(scene: &Scene, pushes: impl Fn(&Shape) -> bool) -> f64 {
         None => 0.0,
     };
     let fastest = scene.shapes.iter().map(|s| speed(&s.velocity) + field(s) + moving(s)).fold(0.0, f64::max);
+    let fastest = fastest.max(spins(scene));
     let frame = scene.frame.as_ref().zip(geometry::around(geometry::fluid_boxes(scene)));
     let frame = frame.map_or(0.0, |(frame, water)| frame.motion.fastest(&water));
     falls.into_iter().map(|height| (2.0 * g * height).sqrt()).fold(fastest + frame, f64::max)
+}
+
+/// How fast the fastest corner of a rigid body that turns at the start goes, m/s: about a hinge, else about its middle.
+fn spins(scene: &Scene) -> f64 {
+    let length = |v: &[f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
+    let mut fastest = 0.0_f64;
+    for (k, solid) in scene.solids.iter().enumerate() {
+        let Some(keys) = solid.rigid() else { continue };
+        for body in keys.bodies.iter().filter(|body| body.angular_velocity != [0.0; 3]) {
+            let own = || scene.shapes.iter().filter(|s| s.solid == Some(k) && s.body() == body.name);
+            let boxes = own().map(|shape| geometry::bounding_box(shape, scene));
+            let Some(Block { min, max }) = geometry::around(boxes) else { continue };
+            let hinge = keys.joints.iter().find_map(|joint| match joint.kind {
+                JointKind::Hinge { at, .. } if joint.body == body.name => Some(at),
+                _ => None,
+            });
+            let pivot = hinge.unwrap_or_else(|| std::array::from_fn(|d| 0.5 * (min[d] + max[d])));
+            let way = (0..scene.dimension).map(|d| (max[d] - pivot[d]).max(pivot[d] - min[d]).powi(2));
+            let goes = own().map(|shape| length(&shape.velocity)).fold(0.0, f64::max);
+            fastest = fastest.max(goes + length(&body.angular_velocity) * way.sum::<f64>().sqrt());
+        }
+    }
+    fastest
 }
 
 /// The sound speed that keeps a fluid weakly compressible: ten times the expected speed.

@@ -189,3 +189,47 @@ fn the_sound_speed_knows_what_falls() {
     let held = block.replace("[0.6, 1.2] }", "[0.6, 1.2] }\nclamp = { min = [0.4, 1.1], max = [0.6, 1.2] }");
     assert!((sound_speed(&held) - 10.0 * (2.0_f64 * 9.81 * 0.1).sqrt()).abs() < 1e-12);
 }
+
+/// A bar of 0.2 m x 0.04 m that turns about its middle, about a hinge at its end, and as it goes.
+#[test]
+fn the_sound_speed_knows_what_turns() {
+    let sound_speed = |keys: &str, velocity: f64| {
+        let text = format!(
+            "resolution = 0.01\nend_time = 1.0\ngravity = [0.0, -9.81]\n[fluid]\ndensity = 1000.0\n[solid]\n\
+             model = \"rigid\"\ndensity = 800.0\n{keys}\n[[solid.bodies]]\nname = \"bar\"\n\
+             angular_velocity = 50.0\n[[shape]]\nname = \"bar\"\nphase = \"solid\"\n\
+             box = {{ min = [0.1, 0.13], max = [0.3, 0.17] }}\nvelocity = [{velocity}, 0.0]\n[[shape]]\n\
+             name = \"water\"\nphase = \"fluid\"\nbox = {{ min = [0.0, 0.0], max = [0.4, 0.1] }}\n"
+        );
+        let scene = parse(&text, Path::new("turns.toml"), &[]);
+        scene.unwrap_or_else(|e| panic!("{e:?}")).fluid.expect("water").sound_speed
+    };
+    let corner = |x: f64, y: f64| x.hypot(y);
+    assert!((sound_speed("", 0.0) - 500.0 * corner(0.1, 0.02)).abs() < 1e-9);
+    assert!((sound_speed("", 1.0) - 10.0 - 500.0 * corner(0.1, 0.02)).abs() < 1e-9);
+    let hinge = "joints = [{ name = \"pin\", kind = \"hinge\", body = \"bar\", at = [0.1, 0.15] }]";
+    assert!((sound_speed(hinge, 0.0) - 500.0 * corner(0.2, 0.02)).abs() < 1e-9);
+}
+
+/// The hull lies over all of the box that a joint and a probe are about.
+#[test]
+fn a_body_without_a_particle_has_no_joints_and_no_probes() {
+    let scene = |more: &str| {
+        let text = format!(
+            "resolution = 0.01\nend_time = 1.0\n[solid]\nmodel = \"rigid\"\ndensity = 800.0\n{more}\n[[shape]]\n\
+             name = \"hull\"\nphase = \"solid\"\nbox = {{ min = [0.0, 0.0], max = [0.3, 0.1] }}\n[[shape]]\n\
+             name = \"box\"\nphase = \"solid\"\nbox = {{ min = [0.1, 0.02], max = [0.2, 0.08] }}\n"
+        );
+        parse(&text, Path::new("s.toml"), &[]).map_err(|errors| format!("{errors:?}"))
+    };
+    assert!(scene("").is_ok());
+    let joint = "joints = [{ name = \"pin\", kind = \"hinge\", body = \"box\", at = [0.15, 0.05] }]";
+    let said =
+        "is of `box`, which has no particle: shapes that come before it in the file, or voids, lie there";
+    let found = scene(joint).expect_err("no body");
+    assert!(found.contains(said) && found.contains("solid.joints.pin"), "{found}");
+    let probe = "[[probe]]\nname = \"place\"\nkind = \"body-position\"\nbody = \"box\"";
+    let found = scene(probe).expect_err("no body");
+    assert!(found.contains(said) && found.contains("probe.place"), "{found}");
+    assert!(scene(&joint.replace("\"box\"", "\"hull\"")).is_ok());
+}

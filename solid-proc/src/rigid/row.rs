@@ -67,48 +67,89 @@ impl Row {
     }
 }
 
-/// Factors L D L^T of J M^-1 J^T; rows that others imply have no pivot, and no impulse.
+/// Factors L D L^T of J M^-1 J^T; rows that others imply have no pivot, and no impulse. Of L each row is kept from the
+/// first other row on that acts on a body of it: left of that it is zero.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Factors {
-    n: usize,
-    lower: Vec<f64>,
+    lower: Vec<Lower>,
     pivots: Vec<f64>,
+    /// Of each column, the row after the last one that may have an entry in it.
+    until: Vec<usize>,
+}
+
+/// A row of L, left of the diagonal.
+#[derive(Clone, Debug)]
+struct Lower {
+    from: usize,
+    entries: Vec<f64>,
+}
+
+impl Lower {
+    /// Entries of the columns from one on, which this row has.
+    fn after(&self, column: usize) -> &[f64] {
+        &self.entries[column - self.from..]
+    }
 }
 
 /// A pivot below this part of the diagonal is what rounding left of zero.
 const SMALLEST_PIVOT: f64 = 1e-10;
 
+/// The first row that acts on a body of each row.
+fn first_beside(rows: &[Row], bodies: &[Body]) -> Vec<usize> {
+    let mut first = vec![usize::MAX; bodies.len()];
+    let beside = |(i, row): (usize, &Row)| {
+        let own = row.ends.into_iter().filter(|k| bodies[*k].gives_way());
+        own.fold(i, |least, k| {
+            first[k] = first[k].min(i);
+            least.min(first[k])
+        })
+    };
+    rows.iter().enumerate().map(beside).collect()
+}
+
 impl Factors {
     pub(super) fn of(rows: &[Row], bodies: &[Body], poses: &[Pose]) -> Self {
         let n = rows.len();
-        let mut f = Self { n, lower: vec![0.0; n * n], pivots: vec![0.0; n] };
-        for j in 0..n {
-            let diagonal = rows[j].response(&rows[j], bodies, poses);
-            let taken: f64 = (0..j).map(|k| f.lower[j * n + k].powi(2) * f.pivots[k]).sum();
-            let pivot = diagonal - taken;
-            if pivot <= SMALLEST_PIVOT * diagonal {
-                continue;
-            }
-            f.pivots[j] = pivot;
-            for i in j + 1..n {
+        let mut f = Self { lower: Vec::with_capacity(n), pivots: vec![0.0; n], until: (1..=n).collect() };
+        for (i, from) in first_beside(rows, bodies).into_iter().enumerate() {
+            let mut own = Lower { from, entries: Vec::with_capacity(i - from) };
+            for j in from..i {
+                let pivot = f.pivots[j];
+                if pivot <= 0.0 {
+                    own.entries.push(0.0);
+                    continue;
+                }
                 let whole = rows[i].response(&rows[j], bodies, poses);
-                let taken: f64 = (0..j).map(|k| f.lower[i * n + k] * f.lower[j * n + k] * f.pivots[k]).sum();
-                f.lower[i * n + j] = (whole - taken) / pivot;
+                let (other, start) = (&f.lower[j], from.max(f.lower[j].from));
+                let pairs = own.after(start).iter().zip(other.after(start));
+                let taken: f64 =
+                    pairs.zip(&f.pivots[start..]).map(|((mine, its), pivot)| mine * its * pivot).sum();
+                own.entries.push((whole - taken) / pivot);
             }
+            let diagonal = rows[i].response(&rows[i], bodies, poses);
+            let squares = own.entries.iter().zip(&f.pivots[from..]);
+            let pivot = diagonal - squares.map(|(entry, pivot)| entry.powi(2) * pivot).sum::<f64>();
+            if pivot > SMALLEST_PIVOT * diagonal {
+                f.pivots[i] = pivot;
+            }
+            f.until[from..i].fill(i + 1);
+            f.lower.push(own);
         }
         f
     }
 
     /// Impulses that change the rows' rates by `change`, which they replace.
     pub(super) fn solve(&self, change: &mut [f64]) {
-        let n = self.n;
-        for i in 0..n {
-            let taken: f64 = (0..i).map(|k| self.lower[i * n + k] * change[k]).sum();
+        let n = self.pivots.len();
+        for (i, Lower { from, entries }) in self.lower.iter().enumerate() {
+            let taken: f64 =
+                entries.iter().zip(&change[*from..i]).map(|(entry, before)| entry * before).sum();
             change[i] -= taken;
         }
         for i in (0..n).rev() {
             change[i] = if self.pivots[i] > 0.0 { change[i] / self.pivots[i] } else { 0.0 };
-            let later: f64 = (i + 1..n).map(|k| self.lower[k * n + i] * change[k]).sum();
+            let rows = (i + 1..self.until[i]).filter(|&k| self.lower[k].from <= i);
+            let later: f64 = rows.map(|k| self.lower[k].entries[i - self.lower[k].from] * change[k]).sum();
             change[i] = if self.pivots[i] > 0.0 { change[i] - later } else { 0.0 };
         }
     }

@@ -7,8 +7,8 @@ use halfstep_coupling::error::RunError;
 use halfstep_coupling::external::{Continuity, ExternalSolid, WallContact};
 use halfstep_coupling::say;
 use halfstep_link::{CouplerLink, CouplerPort, Expect, FLUID, LinkError, Processes, StateMessage};
-use halfstep_output::ProbeLog;
 use halfstep_output::run_json::Percentiles;
+use halfstep_output::{FirstMessage, ProbeLog};
 use halfstep_scene::Scene;
 use halfstep_scene::geometry::holds;
 use halfstep_wire::Name;
@@ -35,6 +35,10 @@ pub(super) struct Pusher<'a> {
     scene: &'a Scene,
     trial: &'a Trial,
     pub(super) solid: ExternalSolid,
+    /// Its index among the scene's.
+    place: usize,
+    /// Its first message beside what the scene has.
+    pub(super) first: Option<FirstMessage>,
     continuity: Continuity,
     /// Contact with walls, unless the solid evaluates it itself.
     walls: Option<WallContact>,
@@ -64,6 +68,8 @@ impl<'a> Pusher<'a> {
             scene,
             trial,
             solid,
+            place,
+            first: None,
             continuity: Continuity::new(scene, place, true),
             walls: WallContact::new(scene, place),
             log,
@@ -171,6 +177,11 @@ impl<'a> Pusher<'a> {
 
     fn begin(&mut self, records: &[StateRecord]) -> Result<(), RunError> {
         self.solid.begin(records);
+        self.first = self.solid.first_message(self.scene, self.place, records);
+        for remark in self.first.iter().flat_map(|first| first.remarks(self.scene.dimension)) {
+            say::warn(format_args!("warning: {remark}"));
+            self.remarks.push(remark);
+        }
         if let Some(walls) = &mut self.walls {
             walls.begin(records);
         }

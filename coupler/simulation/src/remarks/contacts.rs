@@ -25,10 +25,20 @@ struct Toucher<'a> {
     shape: &'a Shape,
     copy: Option<u32>,
     points: Vec<[f64; 2]>,
+    /// Corners of the box around these, m.
+    low: [f64; 2],
+    high: [f64; 2],
     surface: Surface,
 }
 
 impl Toucher<'_> {
+    /// It may lie in another one: a tank's walls reach to infinity.
+    fn meets(&self, other: &Self) -> bool {
+        let is_tank = |one: &Self| matches!(one.shape.geometry.unmoved(), Geometry::Tank { .. });
+        let apart = |d: usize| self.low[d] > other.high[d] || other.low[d] > self.high[d];
+        is_tank(self) || is_tank(other) || !(apart(0) || apart(1))
+    }
+
     /// How deep points of its outline are in another shape, m.
     fn depth_in(&self, other: &Self) -> f64 {
         let mut deepest = 0.0_f64;
@@ -63,7 +73,10 @@ pub(super) fn overlaps<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &
                 let surface = Surface::new(&shape.geometry, copy);
                 let mut points = Vec::new();
                 surface.outline(scene.spacing(shape), &mut |_, [from, _]| points.push(from));
-                Toucher { shape, copy, points, surface }
+                let low =
+                    [0, 1].map(|d| points.iter().map(|p: &[f64; 2]| p[d]).fold(f64::INFINITY, f64::min));
+                let high = [0, 1].map(|d| points.iter().map(|p| p[d]).fold(f64::NEG_INFINITY, f64::max));
+                Toucher { shape, copy, points, low, high, surface }
             })
         })
         .filter(is_there)
@@ -85,7 +98,7 @@ pub(super) fn overlaps<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &
         (None, None) => false,
     };
     for (k, a) in touchers.iter().enumerate() {
-        for b in touchers[k + 1..].iter().filter(|b| contact(a, b)) {
+        for b in touchers[k + 1..].iter().filter(|b| a.meets(b) && contact(a, b)) {
             let depth = a.depth_in(b).max(b.depth_in(a));
             let by_outline = a.shape.solid != b.shape.solid
                 || scene.is_rigid(a.shape)

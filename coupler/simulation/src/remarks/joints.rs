@@ -231,19 +231,24 @@ fn lock(a: &Joint, b: &Joint) -> bool {
     }
 }
 
-/// Bodies whose hinge is far from them.
-pub(super) fn far_hinges(scene: &Scene, all: &mut Vec<String>) {
+/// Bodies whose hinge is far from them, or whose rail is somewhere else.
+pub(super) fn far(scene: &Scene, all: &mut Vec<String>) {
     for (solid, keys) in rigid(scene) {
         for joint in keys.joints.iter().filter(|joint| is_grounded(scene, joint)) {
-            let JointKind::Hinge { at, .. } = joint.kind else { continue };
+            let (JointKind::Hinge { at, .. } | JointKind::Rail { at, .. }) = joint.kind else { continue };
             let boxes = shapes(scene, solid, &joint.body).map(|shape| geometry::bounding_box(shape, scene));
             let Some(around) = geometry::around(boxes) else { continue };
             let [thin, long] = sides(&around, scene.dimension);
             let away = geometry::distance(&Geometry::Box(around), &at);
-            if long > FLAP * thin && away > FAR * long || away > ANYWHERE * long {
+            let (kind, does) = match joint.kind {
+                JointKind::Hinge { .. } => ("hinge", "swings about it on an arm that is not there"),
+                _ => ("rail", "is held at the end of an arm that is not there"),
+            };
+            let is_flap = kind == "hinge" && long > FLAP * thin && away > FAR * long;
+            if is_flap || away > ANYWHERE * long {
                 all.push(format!(
-                    "the hinge `{}` is {} m away from `{}`, which is {} m long: it swings about it on an arm that is \
-                     not there (`at` is in the scene's coordinates)",
+                    "the {kind} `{}` is {} m away from `{}`, which is {} m long: it {does} (`at` is in the scene's \
+                     coordinates)",
                     joint.name,
                     length(away),
                     joint.body,

@@ -38,6 +38,8 @@ const GRID: RGBColor = RGBColor(225, 225, 225);
 pub(crate) const OVERSAMPLING: u32 = 2;
 /// Height of the heading, pixels.
 pub(crate) const HEAD: u32 = 48;
+/// More panels are not drawn: nobody reads them, and the picture grows by 1.5 MB of memory with each.
+const MOST_PANELS: usize = 48;
 /// References with more points are lines without marks.
 const MOST_MARKS: usize = 80;
 
@@ -64,7 +66,9 @@ pub fn draw_plot(scene: &Scene, dir: &Path) -> Result<PathBuf, OutputError> {
 
 /// The oversampled picture, and where its panels are.
 pub(crate) fn paint(scene: &Scene, table: &Table) -> Fallible<(Canvas, Vec<Place>)> {
-    let panels = panels(scene, table);
+    let mut panels = panels(scene, table);
+    let all = panels.len();
+    panels.truncate(MOST_PANELS);
     let columns = match panels.len() {
         0..=3 => 1,
         4..=8 => 2,
@@ -80,7 +84,11 @@ pub(crate) fn paint(scene: &Scene, table: &Table) -> Fallible<(Canvas, Vec<Place
         let (head, below) = area.split_vertically(HEAD * OVERSAMPLING);
         let middle = (head.dim_in_pixel().0 as i32 / 2, (HEAD * OVERSAMPLING) as i32 / 2);
         let style = font(22).pos(Pos::new(HPos::Center, VPos::Center));
-        head.draw(&Text::new(title(scene), middle, style))?;
+        let rest = match all > panels.len() {
+            true => format!(" · the first {} of {all} panels: probes.csv has all", panels.len()),
+            false => String::new(),
+        };
+        head.draw(&Text::new(title(scene) + &rest, middle, style))?;
         for (area, panel) in below.split_evenly((rows, columns)).iter().zip(&panels) {
             places.push(draw_panel(area, panel, last)?);
         }

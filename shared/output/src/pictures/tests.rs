@@ -108,6 +108,28 @@ fn many_probes_share_a_picture_in_columns() {
     assert_eq!((width, height), (1520, HEAD + 4 * 340), "seven panels");
 }
 
+/// Nobody reads thousands, and they would ask for more memory than there is.
+#[test]
+fn the_first_48_of_many_panels_are_drawn() {
+    let dir = folder("plot-thousands");
+    let mut scene = fixture::scene();
+    scene.references.clear();
+    scene.probes = (0..3000)
+        .map(|k| halfstep_scene::Probe {
+            name: format!("p{k}"),
+            kind: halfstep_scene::ProbeKind::Pressure { at: [0.0; 3], to: None, shape: None },
+            solid: None,
+        })
+        .collect();
+    let columns: Vec<String> = scene.probes.iter().flat_map(|probe| probe.columns(2)).collect();
+    let mut log = ProbeLog::create(&dir.join("probes.csv"), &columns).unwrap();
+    for k in 0..3 {
+        log.row(0.1 * f64::from(k), &vec![f64::from(k); 3000]).unwrap();
+    }
+    let (width, height, _) = decode(&draw_plot(&scene, &dir).unwrap());
+    assert_eq!((width, height), (3 * 760, HEAD + 16 * 340));
+}
+
 /// Pixels of the oversampled plot that are drawn in a colour.
 fn drawn(canvas: &canvas::Canvas, color: plotters::style::RGBColor) -> Vec<(i32, i32)> {
     let width = canvas.width as i32;
