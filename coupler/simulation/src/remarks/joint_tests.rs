@@ -209,7 +209,7 @@ fn a_hinge_far_from_its_flap() {
 #[test]
 fn a_rail_that_is_somewhere_else() {
     let rail = |at: &str| jointed(&[joint("rail", "rail", &format!("{at}, axis = [0.0, 1.0]"))], "");
-    let said = "the rail `rail` is 1e6 m away from `flap`, which is 0.3 m long: it is held at the end of an arm that is \
+    let said = "the rail `rail` is 1000000 m away from `flap`, which is 0.3 m long: it is held at the end of an arm that is \
                 not there";
     assert!(has(&rail("at = [1e6, 0.1]"), said), "{:?}", rail("at = [1e6, 0.1]"));
     assert!(!has(&rail("at = [1.0, 0.1]"), "the rail"));
