@@ -1,8 +1,8 @@
 //! Faces on tips. Where a corner of one solid is inside of another, its points are pushed along the other's normal. The
 //! other's points beside it are inside of the tip as well, nearest to one of its flanks: pushed along the flanks'
-//! normals they would hold the tip between them, as friction does. (At an edge of a body that lies flat one of the two
-//! sides faces them, and is what they come to next.) How much of the push such a point takes is found
-//! when its contact begins and stays until that ends, so what it pushes with follows from an energy.
+//! normals they would hold the tip between them, as friction does. (At the edge of a body that lies flat one of the two
+//! sides at the corner faces these points, and all of them are pushed.) How much of the push a point takes is found
+//! when its contact begins and stays until that ends, so the force follows from an energy.
 
 use super::law::{depth_in, dot, out};
 use super::outline::{Outline, Part};
