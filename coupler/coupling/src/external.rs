@@ -70,15 +70,10 @@ impl ExternalSolid {
         self.choose_records();
     }
 
-    /// Its first message, in which these were its records, beside what the scene has for the solid of that index.
-    pub fn first_message(
-        &self,
-        scene: &Scene,
-        solid: usize,
-        records: &[StateRecord],
-    ) -> Option<FirstMessage> {
+    /// Its first message, in which these were its records, beside what the scene has for it.
+    pub fn first_message(&self, scene: &Scene, records: &[StateRecord]) -> Option<FirstMessage> {
         dispatch!(scene.dimension, D => {
-            Expected::<D>::of(scene, &geometry::layout::<D>(scene), solid).compare(self.first(), records)
+            Expected::<D>::of(scene, &geometry::layout::<D>(scene), self.solid).compare(self.first(), records)
         })
     }
 

@@ -3,12 +3,14 @@
 //! Start all children before the coupler opens its link, and from a thread that lives as long as they shall: the system
 //! ends them when that thread ends.
 
+mod log;
+
 use halfstep_link::{LinkConfig, Participant};
 use halfstep_wire::Name;
+use log::Log;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1};
 use std::ffi::OsStr;
-use std::fs::{File, OpenOptions};
-use std::io::{self, Write};
+use std::io;
 use std::os::fd::{AsRawFd, BorrowedFd, RawFd};
 use std::os::unix::process::{CommandExt, ExitStatusExt};
 use std::path::{Path, PathBuf};
@@ -20,10 +22,6 @@ use std::time::{Duration, Instant};
 /// What tells a role to end. Roles hear nothing else: SIGTERM may reach all processes of a run at once (`timeout`,
 /// systemd, Slurm), and then the coupler ends the run in order.
 const END: i32 = SIGUSR1;
-
-/// Length of the log beyond which it is cut, and what is left of it, bytes.
-const LONGEST_LOG: u64 = 64 << 20;
-const CUT_LOG: u64 = 1 << 20;
 
 /// Pause between two looks at the children.
 const TICK: Duration = Duration::from_millis(5);
@@ -57,9 +55,7 @@ pub enum SuperviseError {
 /// still live.
 #[derive(Debug)]
 pub struct Children {
-    log: PathBuf,
-    /// The log has been cut.
-    cut: bool,
+    log: Log,
     /// A file that roles keep open, as long as they live.
     kept: Option<RawFd>,
     children: Vec<Supervised>,
@@ -105,7 +101,7 @@ impl Supervised {
 impl Children {
     /// No children yet; theirs is the log at this path.
     pub fn new(log: &Path) -> Self {
-        Self { log: log.to_owned(), cut: false, kept: None, children: Vec::new() }
+        Self { log: Log::new(log), kept: None, children: Vec::new() }
     }
 
     /// Roles started from now on keep this file open as long as they live: a lock on it ends with the last of them. The
@@ -114,16 +110,9 @@ impl Children {
         self.kept = Some(file.as_raw_fd());
     }
 
-    /// Cuts a log that grows without end; whether it did so for the first time.
-    pub fn cut_log(&mut self) -> bool {
-        let long = std::fs::metadata(&self.log).is_ok_and(|log| log.len() > LONGEST_LOG);
-        let log = long.then(|| self.open_log().ok()).flatten();
-        let cut = log.is_some_and(|mut log| {
-            let cut = log.set_len(CUT_LOG);
-            cut.and_then(|()| writeln!(log, "\n[cut here: {} MiB had been written]", LONGEST_LOG >> 20))
-                .is_ok()
-        });
-        cut && !std::mem::replace(&mut self.cut, true)
+    /// Cuts the log where a program fills it, and says so once.
+    pub fn keep_log_short(&mut self) {
+        self.log.keep_short();
     }
 
     /// Starts a role. It ends with this process, it does not hear Ctrl-C, and its output goes to the log.
@@ -154,9 +143,9 @@ impl Children {
     }
 
     fn start(&mut self, role: Name, mut command: Command, group: bool) -> Result<(), SuperviseError> {
-        let log = self.open_log()?;
-        let errors =
-            log.try_clone().map_err(|source| SuperviseError::Log { path: self.log.clone(), source })?;
+        let unopened = |source| SuperviseError::Log { path: self.log.path().to_owned(), source };
+        let log = self.log.open().map_err(unopened)?;
+        let errors = log.try_clone().map_err(unopened)?;
         command.stdin(Stdio::null()).stdout(log).stderr(errors);
         if group {
             // A shell may have children of its own.
@@ -184,14 +173,6 @@ impl Children {
         })?;
         self.children.push(Supervised { role, child, external: group, group, watchdog: None, status: None });
         Ok(())
-    }
-
-    fn open_log(&self) -> Result<File, SuperviseError> {
-        OpenOptions::new()
-            .create(true)
-            .append(true)
-            .open(&self.log)
-            .map_err(|source| SuperviseError::Log { path: self.log.clone(), source })
     }
 
     /// Process numbers of the roles, in the order of their start.
@@ -413,24 +394,6 @@ mod tests {
         let is = |missed: Option<Name>, children: &mut Children| children.culprit(missed).unwrap();
         assert_eq!(is(Some(left), &mut children).0, left);
         assert_eq!(is(None, &mut children).0, right);
-    }
-
-    /// The head of the log stays, and what comes afterwards.
-    #[test]
-    fn a_log_without_end_is_cut() {
-        let folder = tempfile::tempdir().unwrap();
-        let log = folder.path().join("log.txt");
-        let mut children = Children::new(&log);
-        std::fs::write(&log, "the scene\n").unwrap();
-        assert!(!children.cut_log());
-        OpenOptions::new().write(true).open(&log).unwrap().set_len(LONGEST_LOG + 1).unwrap();
-        assert!(children.cut_log());
-        let text = std::fs::read_to_string(&log).unwrap();
-        assert!(text.starts_with("the scene\n") && text.ends_with("\n[cut here: 64 MiB had been written]\n"));
-        assert!((text.len() as u64) < CUT_LOG + 100);
-        OpenOptions::new().write(true).open(&log).unwrap().set_len(LONGEST_LOG + 1).unwrap();
-        assert!(!children.cut_log(), "told once");
-        assert!(std::fs::metadata(&log).unwrap().len() < CUT_LOG + 100);
     }
 
     #[test]

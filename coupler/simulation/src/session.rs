@@ -392,13 +392,6 @@ impl Drop for Raised<'_> {
     }
 }
 
-/// Cuts the log where a program fills it, and says so.
-pub(crate) fn keep_log_short(children: &mut Children) {
-    if children.cut_log() {
-        say::warn(format_args!("warning: log.txt has been cut: a program writes very much"));
-    }
-}
-
 /// Watches for a child that ends, or for Ctrl-C, during the handshake.
 pub(crate) fn watch(
     children: &mut Children,
@@ -417,7 +410,7 @@ pub(crate) fn watch(
                 names.join(", ")
             ));
         }
-        keep_log_short(children);
+        children.keep_log_short();
         let exit = children.first_exit();
         if exit.is_some() || stop.load(Ordering::Relaxed) {
             abort.store(true, Ordering::Relaxed);

@@ -1,7 +1,6 @@
 //! Watches a coupled run for silence: says who is waited for, and ends the wait where the run was told to stop or where
 //! a process has failed.
 
-use crate::session::keep_log_short;
 use halfstep_coupling::course::Progress;
 use halfstep_coupling::say;
 use halfstep_coupling::supervise::{Children, StopFlags};
@@ -71,7 +70,7 @@ impl<'a> Silence<'a> {
         stop: &StopFlags,
     ) -> Option<Ended> {
         while !done.load(Ordering::Relaxed) {
-            keep_log_short(children);
+            children.keep_log_short();
             let silence = self.look();
             let patient = GRACE.max(3 * self.longest);
             let stopped = stop.stop.load(Ordering::Relaxed);

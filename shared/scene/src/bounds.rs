@@ -13,7 +13,7 @@
 //! Particles of the shipped scenes stay within 14 % and 0.19 c0 (fluid), 21 % and 0.11 c_P (solid).
 
 use crate::geometry;
-use crate::{Block, JointKind, Scene};
+use crate::{Block, JointKind, RigidBody, Scene};
 use halfstep_sph::quantity::Quantity;
 
 /// Bounds of a phase.
@@ -70,6 +70,24 @@ fn worst_if_nan(x: f64) -> f64 {
     if x.is_nan() { f64::INFINITY } else { x }
 }
 
+/// Rigid bodies that turn at the start: index of the solid, what it says of the body, the box around its shapes, and
+/// the hinges about one of which it turns, else about its middle.
+pub(crate) fn turning(scene: &Scene) -> impl Iterator<Item = (usize, &RigidBody, Block, Vec<[f64; 3]>)> {
+    let rigid = scene.solids.iter().enumerate().filter_map(|(k, solid)| Some((k, solid.rigid()?)));
+    rigid.flat_map(move |(solid, keys)| {
+        let turns = keys.bodies.iter().filter(|body| body.angular_velocity != [0.0; 3]);
+        turns.filter_map(move |body| {
+            let own = scene.shapes.iter().filter(|s| s.solid == Some(solid) && s.body() == body.name);
+            let around = geometry::around(own.map(|s| geometry::bounding_box(s, scene)))?;
+            let hinges = keys.joints.iter().filter_map(|joint| match joint.kind {
+                JointKind::Hinge { at, .. } if joint.body == body.name => Some(at),
+                _ => None,
+            });
+            Some((solid, body, around, hinges.collect()))
+        })
+    })
+}
+
 /// U: the speed that a scene's flow is expected to reach, m/s, see above.
 pub fn flow_speed(scene: &Scene) -> f64 {
     let length = |v: &[f64; 3]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
@@ -82,21 +100,11 @@ pub fn flow_speed(scene: &Scene) -> f64 {
         let (mode, solid) = (shape.cantilever_mode?, scene.solids.get(shape.solid?)?);
         Some(solid.sound_speed() * mode.fraction.abs())
     });
-    let spins =
-        scene.solids.iter().enumerate().filter_map(|(solid, material)| Some((solid, material.rigid()?)));
-    let spins = spins.flat_map(|(solid, keys)| {
-        keys.bodies.iter().map(move |body| {
-            let own = scene.shapes.iter().filter(|s| s.solid == Some(solid) && s.body() == body.name);
-            // It turns about its middle, or about a hinge.
-            let hinges = keys.joints.iter().filter(move |joint| joint.body == body.name);
-            let hinges = hinges.filter_map(|joint| match joint.kind {
-                JointKind::Hinge { at, .. } => Some(Block { min: at, max: at }),
-                _ => None,
-            });
-            let across = geometry::around(own.map(|s| geometry::bounding_box(s, scene)).chain(hinges))
-                .map_or([0.0; 3], |b| std::array::from_fn(|d| b.max[d] - b.min[d]));
-            length(&body.angular_velocity) * length(&across)
-        })
+    let spins = turning(scene).map(|(_, body, around, hinges)| {
+        let hinges = hinges.into_iter().map(|at| Block { min: at, max: at });
+        let around = geometry::around(std::iter::once(around).chain(hinges));
+        let across = around.map_or([0.0; 3], |b| std::array::from_fn(|d| b.max[d] - b.min[d]));
+        length(&body.angular_velocity) * length(&across)
     });
     let swing = swings.chain(spins).fold(0.0, f64::max);
     // What stays behind a frame that moves is that fast in it.

@@ -1,11 +1,23 @@
 //! What must hold between solids and the rest of the scene.
 
 use super::check::{Check, PHASE_BLIND_BY};
-use super::document::Value;
+use super::document::{Node, Value};
 use super::*;
 
 /// How far from its place in the scene a motion may begin, in particle spacings.
 const START: f64 = 1e-3;
+
+/// Key of the section of the solid of that index.
+pub(super) fn solid_key(scene: &Scene, root: &Node, index: usize) -> String {
+    let listed = root.child("solid").is_some_and(|node| matches!(node.value, Value::Array(_)));
+    let name = scene.solids.get(index).map_or("", |s| s.name.as_str());
+    let first = scene.solids.iter().position(|s| s.name == name);
+    match (listed, first == Some(index) && !name.is_empty()) {
+        (false, _) => "solid".to_owned(),
+        (true, true) => format!("solid.{name}"),
+        (true, false) => format!("solid.{index}"),
+    }
+}
 
 impl Check<'_> {
     pub(super) fn solids(&self) {
@@ -221,14 +233,7 @@ impl Check<'_> {
 
     /// The key of the solid of that index: by index where its name is taken twice.
     pub(super) fn solid_key(&self, index: usize) -> String {
-        let listed = self.root.child("solid").is_some_and(|node| matches!(node.value, Value::Array(_)));
-        let name = self.scene.solids.get(index).map_or("", |s| s.name.as_str());
-        let first = self.scene.solids.iter().position(|s| s.name == name);
-        match (listed, first == Some(index) && !name.is_empty()) {
-            (false, _) => "solid".to_owned(),
-            (true, true) => format!("solid.{name}"),
-            (true, false) => format!("solid.{index}"),
-        }
+        solid_key(self.scene, self.root, index)
     }
 
     pub(super) fn model(&self, solid: usize) -> Option<SolidModelName> {

@@ -89,10 +89,7 @@ pub fn parse_with(
         resources::check_loads(&draft.scene, &root, &report);
     }
     if report.is_empty() {
-        resources::check_solids(&draft.scene, &root, &report);
-    }
-    if report.is_empty() {
-        resources::check_bodies(&draft.scene, &root, &report);
+        resources::check_particles(&draft.scene, &root, &report);
     }
     if report.is_empty() {
         check_lattice::check_lattice(&draft.scene, &root, &report);

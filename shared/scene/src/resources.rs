@@ -1,5 +1,6 @@
 //! What a scene asks of the machine, and what follows from its shapes: checked when everything else is right.
 
+use super::check_solid::solid_key;
 use super::document::Node;
 use super::error::Report;
 use super::support::free_shapes;
@@ -132,59 +133,53 @@ pub(super) fn check_loads(scene: &Scene, root: &Node, report: &Report) {
     }
 }
 
-/// Refuses a solid without particles, where there are several: earlier shapes may lie over all of its shapes.
-pub(super) fn check_solids(scene: &Scene, root: &Node, report: &Report) {
-    if scene.solids.len() < 2 {
+/// Refuses what has no particle since earlier shapes, or voids, lie over all of it: a solid, where there are several,
+/// and a body that a joint or a probe is about.
+pub(super) fn check_particles(scene: &Scene, root: &Node, report: &Report) {
+    let asked = bodies_asked_for(scene, root);
+    if scene.solids.len() < 2 && asked.is_empty() {
         return;
     }
-    let counts = dispatch!(scene.dimension, D => geometry::layout::<D>(scene).solid_counts(scene));
+    let counts = dispatch!(scene.dimension, D => geometry::solids::<D>(scene).shape_counts(scene));
     let Some(counts) = counts else { return };
-    for (k, solid) in scene.solids.iter().enumerate() {
-        if let (0, Some(shape)) = (counts[k], scene.shapes.iter().find(|shape| shape.solid == Some(k))) {
+    // None where there is no such shape.
+    let particles = |is_own: &dyn Fn(&Shape) -> bool| {
+        let own = scene.shapes.iter().zip(&counts).filter(|(shape, _)| is_own(shape));
+        own.map(|(_, count)| *count).reduce(|sum, count| sum + count)
+    };
+    for (k, solid) in scene.solids.iter().enumerate().filter(|_| scene.solids.len() > 1) {
+        let first = scene.shapes.iter().find(|shape| shape.solid == Some(k));
+        if let (Some(0), Some(shape)) = (particles(&|shape| shape.solid == Some(k)), first) {
             let key = format!("shape.{}", shape.name);
             let why = "shapes that come before it in the file lie there, and the first one keeps the place";
             let reason = format!("leaves the solid `{}` without a particle: {why}", solid.name);
             report.place(&key, root.origin_of(&key), reason);
         }
     }
+    for (solid, body, key) in asked {
+        if particles(&|shape| shape.solid == Some(solid) && shape.body() == body) == Some(0) {
+            let why = "shapes that come before it in the file, or voids, lie there";
+            let reason = format!("is of `{body}`, which has no particle: {why}");
+            report.place(&key, root.origin_of(&key), reason);
+        }
+    }
 }
 
-/// Refuses joints, and probes of bodies, whose body has no particle: earlier shapes or voids may lie over all of it.
-pub(super) fn check_bodies(scene: &Scene, root: &Node, report: &Report) {
+/// Bodies that joints and probes are about: index of the solid, name, and key of the joint or probe.
+fn bodies_asked_for<'s>(scene: &'s Scene, root: &Node) -> Vec<(usize, &'s str, String)> {
     let probes = scene.probes.iter().filter_map(|probe| match &probe.kind {
         ProbeKind::Body { body, .. } => Some((probe.solid?, body.as_str(), format!("probe.{}", probe.name))),
         _ => None,
     });
     let rigid = scene.solids.iter().enumerate().filter_map(|(k, solid)| Some((k, solid.rigid()?)));
     let joints = rigid.flat_map(|(k, keys)| {
-        let key = move |joint: &Joint| match scene.solids.len() {
-            1 => format!("solid.joints.{}", joint.name),
-            _ => format!("solid.{}.joints.{}", scene.solids[k].name, joint.name),
-        };
-        keys.joints
-            .iter()
-            .flat_map(move |joint| [&joint.body, &joint.with].map(|body| (k, body.as_str(), key(joint))))
+        let section = solid_key(scene, root, k);
+        keys.joints.iter().flat_map(move |joint| {
+            let key = format!("{section}.joints.{}", joint.name);
+            [&joint.body, &joint.with].map(|body| (k, body.as_str(), key.clone()))
+        })
     });
-    let asked: Vec<(usize, &str, String)> = probes.chain(joints).collect();
-    if asked.is_empty() {
-        return;
-    }
-    let own = |solid: usize, body: &str| {
-        let of = move |shape: &&Shape| shape.solid == Some(solid) && shape.body() == body;
-        scene.shapes.iter().any(|shape| of(&shape))
-    };
-    let counts = dispatch!(scene.dimension, D => geometry::solids::<D>(scene).shape_counts(scene));
-    let Some(counts) = counts else { return };
-    for (solid, body, key) in asked.into_iter().filter(|(solid, body, _)| own(*solid, body)) {
-        let of = scene.shapes.iter().zip(&counts);
-        let of = of.filter(|(shape, _)| shape.solid == Some(solid) && shape.body() == body);
-        if of.map(|(_, count)| count).sum::<u64>() == 0 {
-            let reason = format!(
-                "is of `{body}`, which has no particle: shapes that come before it in the file, or voids, lie there"
-            );
-            report.place(&key, root.origin_of(&key), reason);
-        }
-    }
+    probes.chain(joints).collect()
 }
 
 /// The speed that a scene's fluid may reach, m/s: the largest of that of a fall from its highest point to the lowest
@@ -225,24 +220,15 @@ fn speed_with(scene: &Scene, pushes: impl Fn(&Shape) -> bool) -> f64 {
 /// How fast the fastest corner of a rigid body that turns at the start goes, m/s: about a hinge, else about its middle.
 fn spins(scene: &Scene) -> f64 {
     let length = |v: &[f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
-    let mut fastest = 0.0_f64;
-    for (k, solid) in scene.solids.iter().enumerate() {
-        let Some(keys) = solid.rigid() else { continue };
-        for body in keys.bodies.iter().filter(|body| body.angular_velocity != [0.0; 3]) {
-            let own = || scene.shapes.iter().filter(|s| s.solid == Some(k) && s.body() == body.name);
-            let boxes = own().map(|shape| geometry::bounding_box(shape, scene));
-            let Some(Block { min, max }) = geometry::around(boxes) else { continue };
-            let hinge = keys.joints.iter().find_map(|joint| match joint.kind {
-                JointKind::Hinge { at, .. } if joint.body == body.name => Some(at),
-                _ => None,
-            });
-            let pivot = hinge.unwrap_or_else(|| std::array::from_fn(|d| 0.5 * (min[d] + max[d])));
-            let way = (0..scene.dimension).map(|d| (max[d] - pivot[d]).max(pivot[d] - min[d]).powi(2));
-            let goes = own().map(|shape| length(&shape.velocity)).fold(0.0, f64::max);
-            fastest = fastest.max(goes + length(&body.angular_velocity) * way.sum::<f64>().sqrt());
-        }
-    }
-    fastest
+    let fastest = bounds::turning(scene).map(|(solid, body, Block { min, max }, hinges)| {
+        let middle = || std::array::from_fn(|d| 0.5 * (min[d] + max[d]));
+        let pivot = hinges.first().copied().unwrap_or_else(middle);
+        let way = (0..scene.dimension).map(|d| (max[d] - pivot[d]).max(pivot[d] - min[d]).powi(2));
+        let own = scene.shapes.iter().filter(|s| s.solid == Some(solid) && s.body() == body.name);
+        let goes = own.map(|shape| length(&shape.velocity)).fold(0.0, f64::max);
+        goes + length(&body.angular_velocity) * way.sum::<f64>().sqrt()
+    });
+    fastest.fold(0.0, f64::max)
 }
 
 /// The sound speed that keeps a fluid weakly compressible: ten times the expected speed.

@@ -214,20 +214,23 @@ fn the_sound_speed_knows_what_turns() {
 /// The hull lies over all of the box that a joint and a probe are about.
 #[test]
 fn a_body_without_a_particle_has_no_joints_and_no_probes() {
-    let scene = |more: &str| {
+    let under = |heading: &str, more: &str| {
         let text = format!(
-            "resolution = 0.01\nend_time = 1.0\n[solid]\nmodel = \"rigid\"\ndensity = 800.0\n{more}\n[[shape]]\n\
+            "resolution = 0.01\nend_time = 1.0\n{heading}\nmodel = \"rigid\"\ndensity = 800.0\n{more}\n[[shape]]\n\
              name = \"hull\"\nphase = \"solid\"\nbox = {{ min = [0.0, 0.0], max = [0.3, 0.1] }}\n[[shape]]\n\
              name = \"box\"\nphase = \"solid\"\nbox = {{ min = [0.1, 0.02], max = [0.2, 0.08] }}\n"
         );
         parse(&text, Path::new("s.toml"), &[]).map_err(|errors| format!("{errors:?}"))
     };
+    let scene = |more: &str| under("[solid]", more);
     assert!(scene("").is_ok());
     let joint = "joints = [{ name = \"pin\", kind = \"hinge\", body = \"box\", at = [0.15, 0.05] }]";
     let said =
         "is of `box`, which has no particle: shapes that come before it in the file, or voids, lie there";
     let found = scene(joint).expect_err("no body");
     assert!(found.contains(said) && found.contains("solid.joints.pin"), "{found}");
+    let listed = under("[[solid]]\nname = \"boxes\"", joint).expect_err("no body");
+    assert!(listed.contains("solid.boxes.joints.pin"), "{listed}");
     let probe = "[[probe]]\nname = \"place\"\nkind = \"body-position\"\nbody = \"box\"";
     let found = scene(probe).expect_err("no body");
     assert!(found.contains(said) && found.contains("probe.place"), "{found}");

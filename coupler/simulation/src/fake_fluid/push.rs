@@ -35,8 +35,6 @@ pub(super) struct Pusher<'a> {
     scene: &'a Scene,
     trial: &'a Trial,
     pub(super) solid: ExternalSolid,
-    /// Its index among the scene's.
-    place: usize,
     /// Its first message beside what the scene has.
     pub(super) first: Option<FirstMessage>,
     continuity: Continuity,
@@ -68,7 +66,6 @@ impl<'a> Pusher<'a> {
             scene,
             trial,
             solid,
-            place,
             first: None,
             continuity: Continuity::new(scene, place, true),
             walls: WallContact::new(scene, place),
@@ -177,7 +174,7 @@ impl<'a> Pusher<'a> {
 
     fn begin(&mut self, records: &[StateRecord]) -> Result<(), RunError> {
         self.solid.begin(records);
-        self.first = self.solid.first_message(self.scene, self.place, records);
+        self.first = self.solid.first_message(self.scene, records);
         for remark in self.first.iter().flat_map(|first| first.remarks(self.scene.dimension)) {
             say::warn(format_args!("warning: {remark}"));
             self.remarks.push(remark);

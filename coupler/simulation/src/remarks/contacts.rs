@@ -25,18 +25,17 @@ struct Toucher<'a> {
     shape: &'a Shape,
     copy: Option<u32>,
     points: Vec<[f64; 2]>,
-    /// Corners of the box around these, m.
-    low: [f64; 2],
-    high: [f64; 2],
+    /// The box around these; `None` of a shape without an outline.
+    around: Option<Block>,
     surface: Surface,
 }
 
 impl Toucher<'_> {
-    /// It may lie in another one: a tank's walls reach to infinity.
-    fn meets(&self, other: &Self) -> bool {
+    /// It may lie in another one: a tank's walls have no outer face.
+    fn meets(&self, other: &Self, scene: &Scene) -> bool {
         let is_tank = |one: &Self| matches!(one.shape.geometry.unmoved(), Geometry::Tank { .. });
-        let apart = |d: usize| self.low[d] > other.high[d] || other.low[d] > self.high[d];
-        is_tank(self) || is_tank(other) || !(apart(0) || apart(1))
+        let boxes = self.around.as_ref().zip(other.around.as_ref());
+        is_tank(self) || is_tank(other) || boxes.is_some_and(|(own, its)| meet(own, its, scene))
     }
 
     /// How deep points of its outline are in another shape, m.
@@ -73,10 +72,9 @@ pub(super) fn overlaps<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &
                 let surface = Surface::new(&shape.geometry, copy);
                 let mut points = Vec::new();
                 surface.outline(scene.spacing(shape), &mut |_, [from, _]| points.push(from));
-                let low =
-                    [0, 1].map(|d| points.iter().map(|p: &[f64; 2]| p[d]).fold(f64::INFINITY, f64::min));
-                let high = [0, 1].map(|d| points.iter().map(|p| p[d]).fold(f64::NEG_INFINITY, f64::max));
-                Toucher { shape, copy, points, low, high, surface }
+                let place = |p: &[f64; 2]| [p[0], p[1], 0.0];
+                let around = geometry::around(points.iter().map(|p| Block { min: place(p), max: place(p) }));
+                Toucher { shape, copy, points, around, surface }
             })
         })
         .filter(is_there)
@@ -98,7 +96,7 @@ pub(super) fn overlaps<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &
         (None, None) => false,
     };
     for (k, a) in touchers.iter().enumerate() {
-        for b in touchers[k + 1..].iter().filter(|b| a.meets(b) && contact(a, b)) {
+        for b in touchers[k + 1..].iter().filter(|b| a.meets(b, scene) && contact(a, b)) {
             let depth = a.depth_in(b).max(b.depth_in(a));
             let by_outline = a.shape.solid != b.shape.solid
                 || scene.is_rigid(a.shape)

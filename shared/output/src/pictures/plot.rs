@@ -38,7 +38,7 @@ const GRID: RGBColor = RGBColor(225, 225, 225);
 pub(crate) const OVERSAMPLING: u32 = 2;
 /// Height of the heading, pixels.
 pub(crate) const HEAD: u32 = 48;
-/// More panels are not drawn: nobody reads them, and the picture grows by 1.5 MB of memory with each.
+/// More panels are not drawn: nobody reads them, and each takes 3 MB of memory.
 const MOST_PANELS: usize = 48;
 /// References with more points are lines without marks.
 const MOST_MARKS: usize = 80;

@@ -86,16 +86,19 @@ fn a_run_that_diverged_or_measured_nothing_still_has_a_plot() {
     assert!(!colors.contains_key(&rgb(CURVES[0])));
 }
 
+fn pressure(k: u32) -> halfstep_scene::Probe {
+    halfstep_scene::Probe {
+        name: format!("p{k}"),
+        kind: halfstep_scene::ProbeKind::Pressure { at: [0.0; 3], to: None, shape: None },
+        solid: None,
+    }
+}
+
 #[test]
 fn many_probes_share_a_picture_in_columns() {
     let dir = folder("plot-many");
     let mut scene = fixture::scene();
     scene.references.clear();
-    let pressure = |k| halfstep_scene::Probe {
-        name: format!("p{k}"),
-        kind: halfstep_scene::ProbeKind::Pressure { at: [0.0; 3], to: None, shape: None },
-        solid: None,
-    };
     scene.probes.extend((1..=4).map(pressure));
     let columns: Vec<String> = scene.probes.iter().flat_map(|probe| probe.columns(2)).collect();
     let mut log = ProbeLog::create(&dir.join("probes.csv"), &columns).unwrap();
@@ -114,13 +117,7 @@ fn the_first_48_of_many_panels_are_drawn() {
     let dir = folder("plot-thousands");
     let mut scene = fixture::scene();
     scene.references.clear();
-    scene.probes = (0..3000)
-        .map(|k| halfstep_scene::Probe {
-            name: format!("p{k}"),
-            kind: halfstep_scene::ProbeKind::Pressure { at: [0.0; 3], to: None, shape: None },
-            solid: None,
-        })
-        .collect();
+    scene.probes = (0..3000).map(pressure).collect();
     let columns: Vec<String> = scene.probes.iter().flat_map(|probe| probe.columns(2)).collect();
     let mut log = ProbeLog::create(&dir.join("probes.csv"), &columns).unwrap();
     for k in 0..3 {
