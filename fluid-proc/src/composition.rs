@@ -3,11 +3,14 @@
 //! share that does not ask for passes of its own ([`PairEffect::enter`]) takes part in the complete law, which asks for
 //! each effect whether it is there.
 
+use crate::equations::{Both, Equations};
 use crate::rates::{FluidPair, PairEffect, PairRates};
 use halfstep_sph::lane::{Arch, Lanes};
 
 /// A pass over whatever composition it is given.
 pub trait Pass<const D: usize> {
+    /// What it gives; shares that do not add to it are left out.
+    type Equations: Equations;
     /// Runs it.
     fn run<E: PairEffect<D>>(self, effects: E);
 }
@@ -49,11 +52,19 @@ impl<const D: usize> Shares<D> for () {
 impl<const D: usize, E: PairEffect<D>, R: Shares<D>> Shares<D> for (Option<E>, R) {
     fn compose<C: PairEffect<D>, A: PairEffect<D>, P: Pass<D>>(self, chosen: C, all: A, pass: P) {
         let (share, rest) = self;
+        if const { !adds_to::<E, P::Equations, D>() } {
+            return rest.compose(chosen, all, pass);
+        }
         match share {
             None => rest.compose(chosen, all, pass),
             Some(share) => share.enter(Entering { chosen, rest, all, pass }),
         }
     }
+}
+
+/// A share adds to what a pass gives.
+const fn adds_to<E: PairEffect<D>, Q: Equations, const D: usize>() -> bool {
+    E::MOMENTUM && Q::MOMENTUM || E::CONTINUITY && Q::CONTINUITY
 }
 
 /// A composition at the place of one effect of the list.
@@ -79,6 +90,7 @@ impl<const D: usize, C: PairEffect<D>, R: Shares<D>, A: PairEffect<D>, P: Pass<D
 struct Name<'a>(&'a mut Vec<&'static str>);
 
 impl<const D: usize> Pass<D> for Name<'_> {
+    type Equations = Both;
     fn run<E: PairEffect<D>>(self, _: E) {
         E::labels(self.0);
     }

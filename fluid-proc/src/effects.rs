@@ -6,12 +6,13 @@
 
 use crate::columns::PairParticles;
 use crate::composition::{NoShare, Shares};
+use crate::equations::Needed;
 use crate::ledger::Measuring;
 use crate::rates::PairEffect;
 use crate::walls::Walls;
 use halfstep_role::role::fastest;
 use halfstep_role::timeline;
-use halfstep_scene::{Decision, EnergyPart, Scene};
+use halfstep_scene::{Decision, EnergyPart, FluidIntegration, Scene};
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::Isa;
 use halfstep_sph::neighbours::ClusterList;
@@ -78,6 +79,10 @@ pub struct Neighbourhood<'a, K, const D: usize> {
     pub kernel: K,
     /// Instruction set of the passes.
     pub isa: Isa,
+    /// How the fluid goes from n to n + 1.
+    pub integration: FluidIntegration,
+    /// Ledgers or probes ask for shares of both equations at either stage.
+    pub measured: bool,
     /// Gravity, m/s².
     pub gravity: [f64; D],
     /// The fluid.
@@ -89,6 +94,13 @@ pub struct Neighbourhood<'a, K, const D: usize> {
     pub beside_solids: &'a [(u32, [[f64; D]; D])],
     /// The walls, with what they show, and the walls around the fluid.
     pub walls: Option<(&'a Walls<D>, &'a ClusterList)>,
+}
+
+impl<K, const D: usize> Neighbourhood<'_, K, D> {
+    /// The equations whose shares are asked for after the effects' own passes of a stage.
+    pub const fn needed(&self, stage: Stage) -> Needed {
+        if self.measured { Needed::Both } else { Needed::at(stage, self.integration) }
+    }
 }
 
 /// Pairs that a pass over a list evaluates.

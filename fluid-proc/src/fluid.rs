@@ -4,9 +4,9 @@ use crate::columns::{Columns, fit};
 use crate::composition::Shares;
 use crate::effects::non_negative_wall_pressure::NonNegativeWallPressure;
 use crate::effects::{self, Effects, FluidEffect, List};
+use crate::integration;
 use crate::interface::Coupling;
 use crate::ledger::FluidLedger;
-use crate::midpoint::{self, Conditions, Extremes};
 use crate::probes::{self, Gauge};
 use crate::rates::RateSum;
 use crate::riders::Riders;
@@ -20,7 +20,7 @@ use halfstep_role::role::{Costs, CoverageError, Peer, Role};
 use halfstep_role::timeline;
 use halfstep_scene::bounds::Bounds;
 use halfstep_scene::geometry;
-use halfstep_scene::{Gravity, KernelName, Phase, Scene};
+use halfstep_scene::{FluidIntegration, Gravity, KernelName, Phase, Scene};
 use halfstep_sph::lane::Isa;
 use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_sph::state_equation::StateEquation;
@@ -53,9 +53,12 @@ pub struct Fluid<const D: usize, X: FluidEffect<D> = ()> {
     /// Points of probes that go with solids.
     pub(crate) riders: Riders<D>,
 
-    bounds: Bounds,
+    pub(crate) bounds: Bounds,
     pub(crate) isa: Isa,
     limits: StepLimits,
+    pub(crate) integration: FluidIntegration,
+    /// Position Verlet: time by which the density is of before n, half of the step before, s.
+    pub(crate) density_lag: f64,
     pub(crate) effects: List<D, X>,
     /// Name of the composition that the rate pass runs.
     composition: String,
@@ -135,6 +138,8 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
                 bounds: Bounds::of_fluid(scene)?,
                 isa,
                 limits: StepLimits::new(scene),
+                integration: fluid.time_integration,
+                density_lag: 0.0,
                 composition: effects.pairs().composition(),
                 effects,
                 stage: Stage::First,
@@ -202,13 +207,6 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
             self.wall_list.build(x, &walls.shown.position, &walls.rows, reach);
             self.list_of_walls.build(&walls.shown.position, x, &self.rows, reach);
         }
-    }
-
-    /// What the next step depends on.
-    fn remember(&mut self, extremes: &Extremes) {
-        self.displacement = extremes.displacement.sqrt();
-        self.largest_speed = extremes.speed.sqrt();
-        self.largest_acceleration = extremes.acceleration.sqrt();
     }
 
     /// The particle that is farthest out of bounds, if any is.
@@ -298,20 +296,27 @@ impl<const D: usize, X: FluidEffect<D>> Role for Fluid<D, X> {
     fn own_sums(&mut self) {
         with_kernel!(self.kernel, self.smoothing_length, D, |kernel| {
             self.sums(kernel);
-            if self.stage == Stage::Second {
+            if self.stage == Stage::Second && self.integration == FluidIntegration::Midpoint {
                 self.measure_powers(kernel);
             }
         });
     }
 
     fn cross_sums(&mut self, own: &[StateRecord], peers: &[Peer]) -> Result<(), CoverageError> {
-        let Some(coupling) = &mut self.coupling else { return Ok(()) };
-        if self.stage == Stage::First {
-            self.riders.ride(peers);
+        let by_means = self.integration == FluidIntegration::Verlet;
+        if let Some(coupling) = &mut self.coupling {
+            if self.stage == Stage::First {
+                self.riders.ride(peers);
+            }
+            let ledger = self.ledger.as_mut().filter(|_| self.stage == Stage::Second && !by_means);
+            coupling.add_rates(&mut self.sums, own, peers, self.displacement, ledger)?;
+            self.pair_evaluations += coupling.pairs() as u64;
         }
-        let ledger = self.ledger.as_mut().filter(|_| self.stage == Stage::Second);
-        coupling.add_rates(&mut self.sums, own, peers, self.displacement, ledger)?;
-        self.pair_evaluations += coupling.pairs() as u64;
+        if self.stage == Stage::Second && by_means {
+            with_kernel!(self.kernel, self.smoothing_length, D, |kernel| {
+                self.measure_powers_by_means(kernel, own, peers);
+            });
+        }
         Ok(())
     }
 
@@ -326,13 +331,15 @@ impl<const D: usize, X: FluidEffect<D>> Role for Fluid<D, X> {
             self.measure_cross_viscosity(forces);
             if let Some(drift) = self.effects.drift() {
                 let _phase = timeline::phase("drift");
-                midpoint::shift(&mut self.columns, drift, half_step.dt);
+                integration::shift(&mut self.columns, drift, half_step.dt);
             }
         }
         self.stage = half_step.next().stage;
-        let conditions = Conditions::new(half_step, self.gravity, &self.state, &self.bounds);
-        let extremes = midpoint::advance(&mut self.columns, &self.sums, conditions);
-        self.remember(&extremes);
+        if let Some(own) = &mut self.ledger {
+            own.dt = half_step.dt;
+        }
+        let extremes = self.integrate(half_step);
+        self.remember(half_step.stage, &extremes);
         if half_step.stage == Stage::Second {
             self.close_ledger(half_step.dt);
         }

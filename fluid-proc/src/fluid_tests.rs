@@ -1,12 +1,13 @@
 //! The fluid as a role: walls, rest, time step.
 
 use crate::Fluid;
+use crate::rates::RateSum;
 use crate::time_step::StepLimits;
 use halfstep_role::role::Role;
 use halfstep_scene::{self as scene, Scene};
 use halfstep_sph::lane::Isa;
 use halfstep_sph::neighbours::PADDING;
-use halfstep_wire::half_step::HalfStep;
+use halfstep_wire::half_step::{HalfStep, Stage};
 use std::path::Path;
 
 pub(crate) fn tank(overrides: &[&str]) -> Scene {
@@ -121,6 +122,53 @@ fn still_water_stays_still() {
     }
     // Energy of the same water falling through a tenth of its depth: 20 kg/m * g * 0.01 m = 2 J/m.
     assert!(largest < 2e-3, "{largest}");
+}
+
+/// Position Verlet has of each stage one equation, and of that the midpoint rule's bits. The guard is left out: it
+/// knows how many stages stop a particle.
+#[test]
+fn a_stage_of_one_equation_has_its_bits() {
+    let sums = |integration: &str, diffusion: &str, stage: Stage| {
+        let integration = format!("fluid.time_integration=\"{integration}\"");
+        let diffusion = format!("fluid.density_diffusion=\"{diffusion}\"");
+        let moving = "shape.water.velocity_field={kind=\"standing-wave\",amplitude=0.01,origin=[0.0,0.0],half_wave=0.2,depth=0.1}";
+        let others =
+            ["effects.wall-guard=\"off\"", "effects.wall-separation=\"on\"", "fluid.viscosity=0.1", moving];
+        let scene = tank(&[&[integration.as_str(), diffusion.as_str()], &others[..]].concat());
+        let mut fluid = Fluid::<2>::new(&scene, Isa::detect()).unwrap();
+        fluid.stage = stage;
+        fluid.own_sums();
+        let rates = |sum: &RateSum<2>| (sum.acceleration.map(|a| a.0), sum.density_rate.0);
+        fluid.sums.iter().map(rates).unzip::<_, _, Vec<_>, Vec<_>>()
+    };
+    for diffusion in ["simple", "hydrostatic", "delta-sph"] {
+        let (accelerations, density_rates) = sums("midpoint", diffusion, Stage::First);
+        assert!(accelerations.iter().flatten().flatten().any(|a| *a != 0.0), "something moves");
+        let (none, found) = sums("verlet", diffusion, Stage::First);
+        assert!(none.iter().flatten().flatten().all(|a| *a == 0.0), "{diffusion}");
+        assert_eq!(found, density_rates, "{diffusion}");
+        let (found, none) = sums("verlet", diffusion, Stage::Second);
+        assert!(none.iter().flatten().all(|rate| *rate == 0.0), "{diffusion}");
+        assert_eq!(found, accelerations, "{diffusion}");
+    }
+}
+
+/// Forces on walls have shares of the momentum equation, which the first stage of position Verlet does not need.
+#[test]
+fn position_verlet_measures_the_viscous_force_on_walls() {
+    let loads = |integration: &str| {
+        let integration = format!("fluid.time_integration=\"{integration}\"");
+        let probe = "probe=[{name=\"push\",kind=\"force\",shape=\"tank\"}]";
+        let moving = "shape.water.velocity=[0.3,-0.2]";
+        let scene = tank(&[&integration, probe, moving, "fluid.viscosity=1.0", "effects.wall-guard=\"off\""]);
+        let mut fluid = Fluid::<2>::new(&scene, Isa::detect()).unwrap();
+        assert!(fluid.measures_loads());
+        fluid.own_sums();
+        fluid.wall_loads()
+    };
+    let [midpoint, verlet] = ["midpoint", "verlet"].map(loads);
+    assert!(midpoint.iter().flatten().any(|f| *f != 0.0));
+    assert_eq!(midpoint, verlet);
 }
 
 #[test]

@@ -228,6 +228,21 @@ impl<const D: usize> Coupling<D> {
         Ok(())
     }
 
+    /// Notes the powers of what the solids do to the fluid, by mean velocities over the step.
+    pub(crate) fn measure_push(&mut self, own: &[StateRecord], peers: &[Peer], ledger: &mut FluidLedger<D>) {
+        let mean = |(record, &slot): (&StateRecord, &u32)| StateRecord {
+            velocity: wide(ledger.mean_velocity(slot as usize)),
+            ..*record
+        };
+        let own: Vec<StateRecord> = own.iter().zip(&self.slots).map(mean).collect();
+        for (interface, peer) in self.interfaces.iter_mut().zip(peers) {
+            interface.update(&own, &peer.records, self.epoch);
+            interface.act_on_fluid(|record, acceleration, density_rate| {
+                ledger.push(&own[record], acceleration, density_rate);
+            });
+        }
+    }
+
     /// Adds what the coupler answers to the fluid's rates.
     pub(crate) fn add_answers(&mut self, sums: &mut [RateSum<D>], mass: f64, answers: &[ForceRecord]) {
         for (&slot, answer) in self.slots.iter().zip(answers) {

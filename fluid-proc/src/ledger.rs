@@ -4,20 +4,24 @@
 //! second sum is what it adds to the energy of compression, whose slope by the density is m p / rho². At walls v is
 //! relative to the wall; the force on the fluid times the wall's own velocity is the work of walls that move.
 //!
+//! Position Verlet evaluates forces at n + 1/2 with the velocity at n, but goes from n to n + 1 with the mean of both:
+//! there v is v_n + dt / 2 D v / Dt, f_i left out but in its own power, in the powers and in what continuity gives.
+//!
 //! Only scenes whose probes ask for energies pay for these passes, one for each share of a pair.
 
-use crate::columns::{PairParticles, Source, Vectors};
+use crate::columns::{PairParticles, Source, Vectors, each};
 use crate::effects::{Effects, FluidEffect};
 use crate::fluid::Fluid;
 use crate::momentum::pressure_and_continuity;
 use crate::rates::{FluidPair, PairEffect, PairRates, Target};
 use halfstep_role::ledger::Ledger;
+use halfstep_role::role::Peer;
 use halfstep_role::timeline;
-use halfstep_scene::{EnergyPart, Phase};
+use halfstep_scene::{EnergyPart, FluidIntegration, Phase};
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::{Arch, Isa, LANES, Lane, Lanes, components};
 use halfstep_sph::neighbours::{ClusterList, PADDING};
-use halfstep_sph::pair::{self, PairLaw, distance, pair_sum};
+use halfstep_sph::pair::{self, PairLaw, distance, dot, pair_sum};
 use halfstep_wire::half_step::Stage;
 use halfstep_wire::protocol::{ForceRecord, StateRecord};
 
@@ -28,6 +32,10 @@ pub(crate) struct FluidLedger<const D: usize> {
     /// At n + 1/2, by [`EnergyPart`], W (2D: W/m).
     powers: Vec<f64>,
     sums: Vec<Power>,
+    /// Length of the step, s.
+    pub(crate) dt: f64,
+    /// Position Verlet: mean velocity over the step of each slot, m/s; else empty.
+    middle: Vec<[f64; D]>,
 }
 
 /// Power of an effect on several particles, per mass, W/kg.
@@ -63,13 +71,16 @@ struct PowerLaw<'a, K, E, const D: usize> {
     effect: E,
     targets: &'a PairParticles<D>,
     sources: &'a PairParticles<D>,
+    /// Mean velocity of the targets over the step, m/s, where forces are not evaluated with it.
+    middle: Option<&'a [[f64; D]]>,
     /// Own velocity of walls, m/s; none between fluid particles.
     walls: Option<&'a Vectors<D>>,
 }
 
 impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for PowerLaw<'_, K, E, D> {
     const SINGLE: bool = true;
-    type Target<L: Lanes> = Target<E::Own<L>, L, D>;
+    /// With the velocity that the power is of, m/s.
+    type Target<L: Lanes> = (Target<E::Own<L>, L, D>, [L; D]);
     type Sum<L: Lanes> = Power<L>;
 
     #[inline(always)]
@@ -78,7 +89,12 @@ impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for PowerLaw<'_,
     }
     #[inline(always)]
     fn target<L: Lanes>(&self, slot: usize) -> Self::Target<L> {
-        Target::load(self.targets, slot, self.effect.own(slot))
+        let target = Target::load(self.targets, slot, self.effect.own(slot));
+        let velocity = match self.middle {
+            None => target.velocity,
+            Some(middle) => components(|d| each(middle, slot, |v| v[d])),
+        };
+        (target, velocity)
     }
     #[inline(always)]
     fn source_position(&self, j: usize) -> [f64; D] {
@@ -89,17 +105,32 @@ impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for PowerLaw<'_,
         self.sources.at::<L>(j)
     }
     #[inline(always)]
-    fn add<A: Arch, L: Lanes>(&self, i: &Self::Target<L>, j: usize, dx: [L; D], r2: L, sum: &mut Power<L>) {
+    fn add<A: Arch, L: Lanes>(
+        &self,
+        (i, velocity): &Self::Target<L>,
+        j: usize,
+        dx: [L; D],
+        r2: L,
+        sum: &mut Power<L>,
+    ) {
         let s = self.sources.beside::<L>(j);
         let f = self.kernel.gradient_over_r::<A, L>(distance(r2, self.kernel.smoothing_length()));
         let pair = i.with::<A>(&s, dx, r2);
         let mut rates = PairRates { bracket: L::ZERO, density: L::ZERO, vector: [L::ZERO; D] };
         self.effect.add::<A, L>(&i.own, j, &pair, &mut rates);
+        if let Some(middle) = self.middle {
+            let other = |d: usize| self.walls.map_or_else(|| L::splat(middle[j][d]), |_| s.velocity[d]);
+            let dv = components(|d| velocity[d] - other(d));
+            let pair = FluidPair { dv, approach: dot::<D, A, L>(dv, dx), ..pair };
+            let mut of_middle = PairRates { bracket: L::ZERO, density: L::ZERO, vector: [L::ZERO; D] };
+            self.effect.add::<A, L>(&i.own, j, &pair, &mut of_middle);
+            rates.density = of_middle.density;
+        }
         let mf = L::splat(self.sources.mass) * f;
         let a: [L; D] = components(|d| mf * (rates.bracket * dx[d] + rates.vector[d]));
         let wall = |d: usize| L::splat(self.walls.map_or(0.0, |walls| walls[d][j]));
         for d in 0..D {
-            sum.given += a[d] * (i.velocity[d] - wall(d));
+            sum.given += a[d] * (velocity[d] - wall(d));
             sum.walls += a[d] * wall(d);
         }
         sum.given += i.pressure_term * s.volume * f * rates.density;
@@ -113,6 +144,7 @@ pub struct Measuring<'a, K, const D: usize> {
     id: &'a [u32],
     fluid: &'a PairParticles<D>,
     sources: &'a PairParticles<D>,
+    middle: Option<&'a [[f64; D]]>,
     walls: Option<&'a Vectors<D>>,
     list: &'a ClusterList,
     sums: &'a mut Vec<Power>,
@@ -122,8 +154,8 @@ pub struct Measuring<'a, K, const D: usize> {
 impl<K: Kernel<D>, const D: usize> Measuring<'_, K, D> {
     /// Adds the power of a share to its part.
     pub(crate) fn add<E: PairEffect<D>>(&mut self, part: EnergyPart, effect: E) {
-        let Self { kernel, fluid, sources, walls, .. } = *self;
-        let law = PowerLaw { kernel, effect, targets: fluid, sources, walls };
+        let Self { kernel, fluid, sources, middle, walls, .. } = *self;
+        let law = PowerLaw { kernel, effect, targets: fluid, sources, middle, walls };
         self.sums.resize(self.list.fours(), Power::default());
         pair::pass(self.isa, &law, self.list, self.sums);
         let (mut given, mut moving) = (0.0, 0.0);
@@ -139,7 +171,13 @@ impl<K: Kernel<D>, const D: usize> Measuring<'_, K, D> {
 
 impl<const D: usize> FluidLedger<D> {
     pub(crate) fn new() -> Self {
-        Self { ledger: Ledger::new(Phase::Fluid), powers: vec![0.0; EnergyPart::ALL.len()], sums: Vec::new() }
+        let powers = vec![0.0; EnergyPart::ALL.len()];
+        Self { ledger: Ledger::new(Phase::Fluid), powers, sums: Vec::new(), dt: 0.0, middle: Vec::new() }
+    }
+
+    /// Mean velocity over the step of a slot, m/s.
+    pub(crate) fn mean_velocity(&self, slot: usize) -> [f64; D] {
+        self.middle[slot]
     }
 
     /// Adds what a solid's pressure does to a particle that published this record.
@@ -151,22 +189,57 @@ impl<const D: usize> FluidLedger<D> {
 }
 
 impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
+    /// Position Verlet: notes the powers at n + 1/2 by the mean velocity over the step, once all sums but f_i are
+    /// there.
+    pub(crate) fn measure_powers_by_means<K: Kernel<D>>(
+        &mut self,
+        kernel: K,
+        records: &[StateRecord],
+        peers: &[Peer],
+    ) {
+        let Some(own) = &mut self.ledger else { return };
+        let half = 0.5 * own.dt;
+        let mean = |(slot, particle): (usize, &Source<D>)| {
+            let sum = &self.sums[slot / LANES];
+            let a = |d: usize| self.gravity[d] + sum.acceleration[d].0[slot % LANES];
+            std::array::from_fn(|d| particle.velocity[d] + half * a(d))
+        };
+        own.middle.clear();
+        own.middle.extend(self.columns.now.sources.iter().enumerate().map(mean));
+        self.measure_powers(kernel);
+        if let (Some(own), Some(coupling)) = (&mut self.ledger, &mut self.coupling) {
+            coupling.measure_push(records, peers, own);
+        }
+    }
+
     /// Notes the powers of all shares at n + 1/2.
     pub(crate) fn measure_powers<K: Kernel<D>>(&mut self, kernel: K) {
-        let Some(FluidLedger { powers, sums, .. }) = &mut self.ledger else { return };
+        let Some(FluidLedger { powers, sums, middle, .. }) = &mut self.ledger else { return };
         let _phase = timeline::phase("energy ledger");
         powers.fill(0.0);
         let fluid = &self.columns.now;
+        let middle = (self.integration == FluidIntegration::Verlet).then_some(middle.as_slice());
         let (id, isa) = (self.columns.id.as_slice(), self.isa);
         let (list, walls) = (&self.fluid_list, None);
-        let mut among =
-            Measuring { kernel, isa, id, fluid, sources: fluid, walls, list, sums, powers: powers.as_mut() };
+        let mut among = Measuring {
+            kernel,
+            isa,
+            id,
+            fluid,
+            sources: fluid,
+            middle,
+            walls,
+            list,
+            sums,
+            powers: powers.as_mut(),
+        };
         among.add(EnergyPart::Continuity, Pressure);
         self.effects.measure_pairs(&mut among);
         self.effects.on_particles(&mut |name, of| {
-            let real = fluid.sources.iter().zip(id).filter(|(_, id)| **id != PADDING);
-            let power = |(p, _): (&Source<D>, _)| -> f64 {
-                of(&p.position, &p.velocity).iter().zip(&p.velocity).map(|(a, v)| a * v).sum()
+            let real = fluid.sources.iter().enumerate().filter(|(slot, _)| id[*slot] != PADDING);
+            let power = |(slot, p): (usize, &Source<D>)| -> f64 {
+                let velocity = middle.map_or(&p.velocity, |middle| &middle[slot]);
+                of(&p.position, &p.velocity).iter().zip(velocity).map(|(a, v)| a * v).sum()
             };
             powers[EnergyPart::of_effect(name) as usize] += fluid.mass * real.map(power).sum::<f64>();
         });
@@ -179,7 +252,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         let Some(walls) = &self.walls else { return };
         let (sources, list) = (&walls.shown, &self.wall_list);
         let walls = Some(&walls.own_velocity);
-        let mut at_walls = Measuring { kernel, isa, id, fluid, sources, walls, list, sums, powers };
+        let mut at_walls = Measuring { kernel, isa, id, fluid, sources, middle, walls, list, sums, powers };
         at_walls.add(EnergyPart::WallPressure, Pressure);
         self.effects.measure_walls(&mut at_walls);
     }
@@ -188,8 +261,16 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
     pub(crate) fn measure_cross_viscosity(&mut self, forces: &[ForceRecord]) {
         let (Some(own), Some(coupling)) = (&mut self.ledger, &self.coupling) else { return };
         let pushed = coupling.slots().iter().zip(forces).map(|(&slot, force)| {
-            let velocity = self.columns.now.sources[slot as usize].velocity;
-            (0..D).map(|d| velocity[d] * force.cross_viscosity[d]).sum::<f64>()
+            let slot = slot as usize;
+            let velocity = self.columns.now.sources[slot].velocity;
+            let f = &force.cross_viscosity;
+            // Means over the step have the others' acceleration A, dt / 2 A: f_i is booked with dt A + dt / 2 f_i, so
+            // that all powers together are those of the mean velocity.
+            let booked = |d: usize| match own.middle.get(slot) {
+                Some(middle) => 2.0 * middle[d] - velocity[d] + 0.5 * own.dt * f[d],
+                None => velocity[d],
+            };
+            (0..D).map(|d| booked(d) * f[d]).sum::<f64>()
         });
         own.powers[EnergyPart::CrossViscosity as usize] = self.columns.now.mass * pushed.sum::<f64>();
     }

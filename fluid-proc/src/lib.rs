@@ -19,9 +19,11 @@
 pub mod columns;
 pub mod composition;
 pub mod effects;
+pub mod equations;
 pub mod fluid;
 #[cfg(test)]
 mod fluid_tests;
+pub mod integration;
 pub mod interface;
 pub mod ledger;
 pub mod measure;
@@ -46,6 +48,7 @@ mod state;
 #[cfg(test)]
 mod term_tests;
 pub mod time_step;
+pub mod verlet;
 pub mod walls;
 
 pub use fluid::Fluid;

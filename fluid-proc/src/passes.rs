@@ -2,6 +2,7 @@
 
 use crate::composition::{Pass, Shares};
 use crate::effects::{Effects, FluidEffect, List, Neighbourhood, OnParticle, evaluations};
+use crate::equations::{Both, Continuity, Equations, Momentum, Needed};
 use crate::fluid::Fluid;
 use crate::rates::{PairEffect, RateLaw, RateSum};
 use crate::walls::{WallLaw, Walls};
@@ -11,6 +12,7 @@ use halfstep_scene::EffectName;
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::LANES;
 use halfstep_sph::pair;
+use halfstep_wire::half_step::Stage;
 
 impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
     /// All sums of a half-step over fluid and walls.
@@ -18,17 +20,20 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         self.columns.now.round_for(self.fluid_list.precision());
         self.extrapolate(kernel);
         let stage = self.stage;
+        let needed = Needed::at(stage, self.integration);
         self.pair_evaluations += self.among(kernel, |effects, around| effects.prepare(stage, around));
         let mut sums = std::mem::take(&mut self.sums);
         {
             let _phase = timeline::phase("pair pass");
-            self.rates(kernel, self.effects.pairs(), &mut sums);
+            self.rates(kernel, needed, self.effects.pairs(), &mut sums);
         }
-        self.wall_rates(kernel, &mut sums);
-        self.effects.on_particles(&mut |name, of| {
-            let _phase = timeline::phase(name);
-            self.add_on_particles(of, &mut sums);
-        });
+        self.wall_rates(kernel, needed, &mut sums);
+        if needed.momentum() {
+            self.effects.on_particles(&mut |name, of| {
+                let _phase = timeline::phase(name);
+                self.add_on_particles(of, &mut sums);
+            });
+        }
         self.sums = sums;
         self.pair_evaluations += evaluations(&self.fluid_list) + evaluations(&self.wall_list);
     }
@@ -41,9 +46,12 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
     ) -> T {
         let walls = self.walls.as_ref().map(|walls| (walls, &self.wall_list));
         let (fluid, list) = (&self.columns.now, &self.fluid_list);
-        let (isa, gravity) = (self.isa, self.gravity);
+        let (isa, integration, gravity) = (self.isa, self.integration, self.gravity);
+        let measured = self.ledger.is_some() || self.measures_loads();
         let beside_solids = self.coupling.as_ref().map_or(&[][..], |coupling| &coupling.gradients);
-        act(&mut self.effects, &Neighbourhood { kernel, isa, gravity, fluid, list, beside_solids, walls })
+        let around =
+            Neighbourhood { kernel, isa, integration, measured, gravity, fluid, list, beside_solids, walls };
+        act(&mut self.effects, &around)
     }
 
     /// Pressure and velocity that the walls show.
@@ -61,15 +69,30 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
     }
 
     /// The rate pass over the fluid.
-    fn rates<K: Kernel<D>>(&self, kernel: K, shares: impl Shares<D>, sums: &mut [RateSum<D>]) {
-        shares.run(OverFluid { kernel, fluid: self, sums });
+    fn rates<K: Kernel<D>>(
+        &self,
+        kernel: K,
+        needed: Needed,
+        shares: impl Shares<D>,
+        sums: &mut [RateSum<D>],
+    ) {
+        match needed {
+            Needed::Both => shares.run(OverFluid { kernel, equations: Both, fluid: self, sums }),
+            Needed::Momentum => shares.run(OverFluid { kernel, equations: Momentum, fluid: self, sums }),
+            Needed::Continuity => shares.run(OverFluid { kernel, equations: Continuity, fluid: self, sums }),
+        }
     }
 
     /// Adds the rates by the walls.
-    fn wall_rates<K: Kernel<D>>(&self, kernel: K, sums: &mut [RateSum<D>]) {
+    fn wall_rates<K: Kernel<D>>(&self, kernel: K, needed: Needed, sums: &mut [RateSum<D>]) {
         let Some(walls) = &self.walls else { return };
         let _phase = timeline::phase("walls: rates");
-        self.effects.at_walls().run(OverWalls { kernel, fluid: self, walls, sums });
+        let (shares, fluid) = (self.effects.at_walls(), self);
+        match needed {
+            Needed::Both => shares.run(OverWalls { kernel, equations: Both, fluid, walls, sums }),
+            Needed::Momentum => shares.run(OverWalls { kernel, equations: Momentum, fluid, walls, sums }),
+            Needed::Continuity => shares.run(OverWalls { kernel, equations: Continuity, fluid, walls, sums }),
+        }
     }
 
     /// Adds what an effect does to single particles.
@@ -83,12 +106,19 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
     pub(crate) fn costs<K: Kernel<D>>(&mut self, kernel: K) -> Costs {
         let mut costs = Costs::default();
         let mut sums = std::mem::take(&mut self.sums);
-        let walls = fastest(|| self.extrapolate(kernel)) + fastest(|| self.wall_rates(kernel, &mut sums));
-        let rates = fastest(|| self.rates(kernel, self.effects.pairs(), &mut sums));
+        // In the mean of both stages.
+        let stages = [Stage::First, Stage::Second].map(|stage| Needed::at(stage, self.integration));
+        let mean = |seconds: [f64; 2]| 0.5 * (seconds[0] + seconds[1]);
+        let at_walls = stages.map(|needed| fastest(|| self.wall_rates(kernel, needed, &mut sums)));
+        let walls = fastest(|| self.extrapolate(kernel)) + mean(at_walls);
+        let of_fluid =
+            stages.map(|needed| fastest(|| self.rates(kernel, needed, self.effects.pairs(), &mut sums)));
+        let rates = mean(of_fluid);
         let mut own_passes = Vec::new();
         self.among(kernel, |effects, around| effects.measure(around, &mut own_passes));
         self.effects.on_particles(&mut |name, of| {
-            own_passes.push((name, fastest(|| self.add_on_particles(of, &mut sums))));
+            let stages = stages.iter().filter(|needed| needed.momentum()).count() as f64;
+            own_passes.push((name, 0.5 * stages * fastest(|| self.add_on_particles(of, &mut sums))));
         });
         let placing = self.walls.as_mut().map_or(0.0, |walls| fastest(|| walls.place_again()));
         let total = walls + rates + own_passes.iter().map(|(_, own)| own).sum::<f64>();
@@ -96,7 +126,9 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         // It comes before the sums, once for each.
         costs.moving_walls = placing / total;
         for (name, own) in own_passes {
-            let without = fastest(|| self.rates(kernel, self.effects.pairs_without(name), &mut sums));
+            let without = mean(stages.map(|needed| {
+                fastest(|| self.rates(kernel, needed, self.effects.pairs_without(name), &mut sums))
+            }));
             // What a further effect takes is counted as the fluid's own.
             if let Some(place) = EffectName::ALL.iter().position(|effect| effect.name() == name) {
                 costs.effects[place] = ((rates - without).max(0.0) + own) / total;
@@ -107,31 +139,37 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
     }
 }
 
-struct OverFluid<'a, K, X: FluidEffect<D>, const D: usize> {
+struct OverFluid<'a, K, Q, X: FluidEffect<D>, const D: usize> {
     kernel: K,
+    equations: Q,
     fluid: &'a Fluid<D, X>,
     sums: &'a mut [RateSum<D>],
 }
 
-impl<K: Kernel<D>, X: FluidEffect<D>, const D: usize> Pass<D> for OverFluid<'_, K, X, D> {
+impl<K: Kernel<D>, Q: Equations, X: FluidEffect<D>, const D: usize> Pass<D> for OverFluid<'_, K, Q, X, D> {
+    type Equations = Q;
     fn run<E: PairEffect<D>>(self, effects: E) {
+        let Self { kernel, equations, .. } = self;
         let shown = &self.fluid.columns.now;
-        let law = RateLaw { kernel: self.kernel, effects, targets: shown, sources: shown };
+        let law = RateLaw { kernel, equations, effects, targets: shown, sources: shown };
         pair::pass(self.fluid.isa, &law, &self.fluid.fluid_list, self.sums);
     }
 }
 
-struct OverWalls<'a, K, X: FluidEffect<D>, const D: usize> {
+struct OverWalls<'a, K, Q, X: FluidEffect<D>, const D: usize> {
     kernel: K,
+    equations: Q,
     fluid: &'a Fluid<D, X>,
     walls: &'a Walls<D>,
     sums: &'a mut [RateSum<D>],
 }
 
-impl<K: Kernel<D>, X: FluidEffect<D>, const D: usize> Pass<D> for OverWalls<'_, K, X, D> {
+impl<K: Kernel<D>, Q: Equations, X: FluidEffect<D>, const D: usize> Pass<D> for OverWalls<'_, K, Q, X, D> {
+    type Equations = Q;
     fn run<E: PairEffect<D>>(self, effects: E) {
+        let Self { kernel, equations, .. } = self;
         let (targets, sources) = (&self.fluid.columns.now, &self.walls.shown);
-        let law = RateLaw { kernel: self.kernel, effects, targets, sources };
+        let law = RateLaw { kernel, equations, effects, targets, sources };
         pair::pass_adding(self.fluid.isa, &law, &self.fluid.wall_list, self.sums);
     }
 }

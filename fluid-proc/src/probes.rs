@@ -146,11 +146,15 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
             .unwrap_or(0.0)
     }
 
+    /// Probes ask for forces on walls.
+    pub(crate) fn measures_loads(&self) -> bool {
+        self.probes.iter().any(|p| matches!(p, Gauge::Force(_) | Gauge::Moment(..)))
+    }
+
     /// Appends the values of the fluid's probes.
     pub(crate) fn measure(&self, out: &mut Vec<f64>) {
         let half = 0.5 * self.resolution;
-        let loads = self.probes.iter().any(|p| matches!(p, Gauge::Force(_) | Gauge::Moment(..)));
-        let loads = if loads { self.wall_loads() } else { Vec::new() };
+        let loads = if self.measures_loads() { self.wall_loads() } else { Vec::new() };
         for probe in &self.probes {
             match probe {
                 Gauge::Pressure(points) => out.push(match points {

@@ -3,6 +3,7 @@
 
 use crate::columns::{Beside, PairParticles};
 use crate::composition::Composition;
+use crate::equations::Equations;
 use crate::momentum::pressure_and_continuity;
 use halfstep_sph::artificial_viscosity::damping;
 use halfstep_sph::kernel::Kernel;
@@ -59,6 +60,10 @@ pub trait PairEffect<const D: usize>: Copy + Send + Sync {
     type Own<L: Lanes>: Copy;
     /// The effect adds to [`PairRates::vector`].
     const VECTOR: bool = false;
+    /// The effect adds to the acceleration.
+    const MOMENTUM: bool = true;
+    /// The effect adds to the density's rate.
+    const CONTINUITY: bool = true;
     /// Loads the targets from `slot` on.
     fn own<L: Lanes>(&self, slot: usize) -> Self::Own<L>;
     /// Adds the share of source `j`.
@@ -80,6 +85,8 @@ pub trait PairEffect<const D: usize>: Copy + Send + Sync {
 
 impl<const D: usize> PairEffect<D> for () {
     type Own<L: Lanes> = ();
+    const MOMENTUM: bool = false;
+    const CONTINUITY: bool = false;
     #[inline(always)]
     fn own<L: Lanes>(&self, _: usize) {}
     #[inline(always)]
@@ -89,6 +96,8 @@ impl<const D: usize> PairEffect<D> for () {
 impl<const D: usize, E: PairEffect<D>, F: PairEffect<D>> PairEffect<D> for (E, F) {
     type Own<L: Lanes> = (E::Own<L>, F::Own<L>);
     const VECTOR: bool = E::VECTOR || F::VECTOR;
+    const MOMENTUM: bool = E::MOMENTUM || F::MOMENTUM;
+    const CONTINUITY: bool = E::CONTINUITY || F::CONTINUITY;
     #[inline(always)]
     fn own<L: Lanes>(&self, slot: usize) -> Self::Own<L> {
         (self.0.own(slot), self.1.own(slot))
@@ -114,6 +123,8 @@ impl<const D: usize, E: PairEffect<D>, F: PairEffect<D>> PairEffect<D> for (E, F
 impl<const D: usize, E: PairEffect<D>> PairEffect<D> for Option<E> {
     type Own<L: Lanes> = Option<E::Own<L>>;
     const VECTOR: bool = E::VECTOR;
+    const MOMENTUM: bool = E::MOMENTUM;
+    const CONTINUITY: bool = E::CONTINUITY;
     #[inline(always)]
     fn own<L: Lanes>(&self, slot: usize) -> Self::Own<L> {
         self.as_ref().map(|effect| effect.own(slot))
@@ -157,9 +168,11 @@ impl<const D: usize> RateSum<D> {
 }
 
 /// The law of the pass: targets and sources may be the same set, or fluid and walls.
-pub struct RateLaw<'a, K, E, const D: usize> {
+pub struct RateLaw<'a, K, E, Q, const D: usize> {
     /// Kernel.
     pub kernel: K,
+    /// What rates are wanted.
+    pub equations: Q,
     /// Effects beside pressure and continuity.
     pub effects: E,
     /// Particles whose rates are wanted.
@@ -208,7 +221,7 @@ impl<O, L: Lanes, const D: usize> Target<O, L, D> {
     }
 }
 
-impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for RateLaw<'_, K, E, D> {
+impl<K: Kernel<D>, E: PairEffect<D>, Q: Equations, const D: usize> PairLaw<D> for RateLaw<'_, K, E, Q, D> {
     const SINGLE: bool = true;
     type Target<L: Lanes> = Target<E::Own<L>, L, D>;
     type Sum<L: Lanes> = RateSum<D, L>;
@@ -245,14 +258,19 @@ impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for RateLaw<'_, 
         let pair = i.with::<A>(&s, dx, r2);
         let mut rates = pressure_and_continuity(&pair);
         self.effects.add::<A, L>(&i.own, j, &pair, &mut rates);
-        let mf = L::splat(self.sources.mass) * f;
-        let bracket = mf * rates.bracket;
-        for d in 0..D {
-            sum.acceleration[d] = A::mul_add(bracket, dx[d], sum.acceleration[d]);
-            if E::VECTOR {
-                sum.acceleration[d] = A::mul_add(mf, rates.vector[d], sum.acceleration[d]);
+        // What goes into the equation that is not wanted is not computed either.
+        if Q::MOMENTUM {
+            let mf = L::splat(self.sources.mass) * f;
+            let bracket = mf * rates.bracket;
+            for d in 0..D {
+                sum.acceleration[d] = A::mul_add(bracket, dx[d], sum.acceleration[d]);
+                if E::VECTOR {
+                    sum.acceleration[d] = A::mul_add(mf, rates.vector[d], sum.acceleration[d]);
+                }
             }
         }
-        sum.density_rate = A::mul_add(s.volume * f, rates.density, sum.density_rate);
+        if Q::CONTINUITY {
+            sum.density_rate = A::mul_add(s.volume * f, rates.density, sum.density_rate);
+        }
     }
 }

@@ -8,6 +8,7 @@ use crate::fluid::Fluid;
 use crate::interface::Coupling;
 use crate::rates::RateSum;
 use crate::walls::Walls;
+use halfstep_scene::FluidIntegration;
 use halfstep_sph::lane::LANES;
 use halfstep_sph::neighbours::PADDING;
 use halfstep_sph::state_equation::StateEquation;
@@ -21,6 +22,9 @@ impl<const D: usize, X: FluidEffect<D>> State for Fluid<D, X> {
         fields.real("displacement", &mut self.displacement)?;
         fields.real("largest_speed", &mut self.largest_speed)?;
         fields.real("largest_acceleration", &mut self.largest_acceleration)?;
+        if self.integration == FluidIntegration::Verlet {
+            fields.real("density_lag", &mut self.density_lag)?;
+        }
         // The sums of the state are evaluated again.
         fields.count("pair_evaluations", &mut self.evaluations_before)?;
         if let Some(walls) = &mut self.walls {

@@ -6,6 +6,7 @@ use crate::effects::artificial_viscosity::ArtificialViscosity;
 use crate::effects::density_diffusion::gradient::{GradientLaw, GradientSum};
 use crate::effects::density_diffusion::{DeltaSph, Hydrostatic, Simple, Strength};
 use crate::effects::viscosity::{self, StressTerm, VelocityGradient, ViscousStress};
+use crate::equations::Both;
 use crate::rates::{PairEffect, RateLaw, RateSum};
 use halfstep_scene::ArtificialViscosity as Coefficients;
 use halfstep_sph::kernel::{CubicSpline, Kernel};
@@ -64,8 +65,13 @@ fn cloud_of<const D: usize>(points: &[P<D>], mass: f64, precision: Precision) ->
 impl<const D: usize> Cloud<D> {
     /// Acceleration and density rate of each particle.
     fn rates<E: PairEffect<D>>(&self, effects: E) -> Vec<([f64; D], f64)> {
-        let law =
-            RateLaw { kernel: CubicSpline::<D>::new(H), effects, targets: &self.shown, sources: &self.shown };
+        let law = RateLaw {
+            equations: Both,
+            kernel: CubicSpline::<D>::new(H),
+            effects,
+            targets: &self.shown,
+            sources: &self.shown,
+        };
         let mut sums = vec![RateSum::default(); self.list.fours()];
         pair::pass(Isa::detect(), &law, &self.list, &mut sums);
         self.slot

@@ -2,6 +2,7 @@
 
 use halfstep_fluid::columns::PairParticles;
 use halfstep_fluid::composition::Pass;
+use halfstep_fluid::equations::Both;
 use halfstep_fluid::rates::{PairEffect, RateLaw, RateSum};
 use halfstep_sph::kernel::{CubicSpline, Kernel};
 use halfstep_sph::lane::{Isa, Precision};
@@ -72,10 +73,11 @@ impl Patch {
 pub struct RatePass<'a>(pub &'a Patch, pub &'a mut [RateSum<2>]);
 
 impl Pass<2> for RatePass<'_> {
+    type Equations = Both;
     fn run<E: PairEffect<2>>(self, effects: E) {
         let shown = &self.0.shown;
         let kernel = CubicSpline::<2>::new(SMOOTHING_LENGTH);
-        let law = RateLaw { kernel, effects, targets: shown, sources: shown };
+        let law = RateLaw { equations: Both, kernel, effects, targets: shown, sources: shown };
         pair::pass(self.0.isa, &law, &self.0.list, self.1);
     }
 }

@@ -66,6 +66,7 @@ mod tips;
 mod torture;
 mod tutorial;
 mod two_plates;
+mod verlet;
 mod water;
 mod waves;
 

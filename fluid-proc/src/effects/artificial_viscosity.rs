@@ -58,6 +58,7 @@ impl<const D: usize> FluidEffect<D> for ArtificialViscosity<D> {
 
 impl<const D: usize> PairEffect<D> for ArtificialViscosity<D> {
     type Own<L: Lanes> = ();
+    const CONTINUITY: bool = false;
     #[inline(always)]
     fn own<L: Lanes>(&self, _: usize) {}
 

@@ -129,7 +129,7 @@ impl<const D: usize> FluidEffect<D> for DensityDiffusion<D> {
     fn prepare<K: Kernel<D>>(&mut self, stage: Stage, around: &Neighbourhood<'_, K, D>) -> u64 {
         self.at_rest = around.gravity.map(|g| self.compliance * g);
         let stays = self.frozen && self.known && stage == Stage::Second;
-        if self.variant != Variant::DeltaSph || stays {
+        if self.variant != Variant::DeltaSph || stays || !around.needed(stage).continuity() {
             return 0;
         }
         self.known = true;
@@ -158,6 +158,7 @@ impl<const D: usize> FluidEffect<D> for DensityDiffusion<D> {
 
 impl<const D: usize> PairEffect<D> for Diffusion<'_, D> {
     type Own<L: Lanes> = [L; D];
+    const MOMENTUM: bool = false;
     #[inline(always)]
     fn own<L: Lanes>(&self, slot: usize) -> [L; D] {
         match self {
@@ -200,6 +201,7 @@ fn twice_difference<const D: usize, L: Lanes>(pair: &FluidPair<D, L>) -> L {
 
 impl<const D: usize> PairEffect<D> for Simple {
     type Own<L: Lanes> = ();
+    const MOMENTUM: bool = false;
     #[inline(always)]
     fn own<L: Lanes>(&self, _: usize) {}
     #[inline(always)]
@@ -213,6 +215,7 @@ impl<const D: usize> PairEffect<D> for Simple {
 
 impl<const D: usize> PairEffect<D> for Hydrostatic<D> {
     type Own<L: Lanes> = ();
+    const MOMENTUM: bool = false;
     #[inline(always)]
     fn own<L: Lanes>(&self, _: usize) {}
     #[inline(always)]
@@ -227,6 +230,7 @@ impl<const D: usize> PairEffect<D> for Hydrostatic<D> {
 
 impl<const D: usize> PairEffect<D> for DeltaSph<'_, D> {
     type Own<L: Lanes> = [L; D];
+    const MOMENTUM: bool = false;
     #[inline(always)]
     fn own<L: Lanes>(&self, slot: usize) -> [L; D] {
         components(|d| each(self.gradient, slot, |g| g[d]))

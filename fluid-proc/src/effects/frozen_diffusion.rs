@@ -5,7 +5,7 @@
 use super::density_diffusion::DensityDiffusion;
 use super::{FluidEffect, Listed};
 use crate::composition::NoShare;
-use halfstep_scene::{Decision, DensityDiffusion as Variant, Derived, EffectName, Scene};
+use halfstep_scene::{Decision, DensityDiffusion as Variant, Derived, EffectName, FluidIntegration, Scene};
 
 /// The effect.
 #[derive(Clone, Copy, Debug)]
@@ -23,6 +23,9 @@ impl<const D: usize> FluidEffect<D> for FrozenDiffusion<D> {
     type AtWall<'a> = NoShare;
     fn decide(scene: &Scene) -> Decision {
         let derived = match &scene.fluid {
+            Some(fluid) if fluid.time_integration == FluidIntegration::Verlet => {
+                Derived::Impossible("position Verlet needs the rate of the density once a step".into())
+            }
             Some(fluid)
                 if fluid.density_diffusion == Variant::DeltaSph
                     && DensityDiffusion::<D>::decide(scene).on =>

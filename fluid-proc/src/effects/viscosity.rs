@@ -150,7 +150,10 @@ impl<const D: usize> FluidEffect<D> for Viscosity<D> {
     fn resize(&mut self, slots: usize, _: Option<&Walls<D>>) {
         fit(&mut self.stress.0, slots, [[0.0; D]; D]);
     }
-    fn prepare<K: Kernel<D>>(&mut self, _: Stage, around: &Neighbourhood<'_, K, D>) -> u64 {
+    fn prepare<K: Kernel<D>>(&mut self, stage: Stage, around: &Neighbourhood<'_, K, D>) -> u64 {
+        if !around.needed(stage).momentum() {
+            return 0;
+        }
         let (kernel, fluid, viscosity) = (around.kernel, around.fluid, self.viscosity);
         let law = GradientLaw { kernel, targets: fluid, sources: fluid };
         let finish = |slot, sum: &VelocityGradient<D>| sum.stress(viscosity, fluid.densities(slot));
@@ -189,6 +192,7 @@ pub struct ViscousStress<'a, const D: usize>(pub &'a StressTerm<D>);
 
 impl<const D: usize> PairEffect<D> for ViscousStress<'_, D> {
     type Own<L: Lanes> = [[L; D]; D];
+    const CONTINUITY: bool = false;
     const VECTOR: bool = true;
     #[inline(always)]
     fn own<L: Lanes>(&self, slot: usize) -> Self::Own<L> {
@@ -219,6 +223,7 @@ pub struct ViscosityAtWall<'a, const D: usize>(pub &'a StressTerm<D>);
 
 impl<const D: usize> PairEffect<D> for ViscosityAtWall<'_, D> {
     type Own<L: Lanes> = [[L; D]; D];
+    const CONTINUITY: bool = false;
     const VECTOR: bool = true;
     #[inline(always)]
     fn own<L: Lanes>(&self, slot: usize) -> Self::Own<L> {

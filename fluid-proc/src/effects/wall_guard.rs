@@ -15,11 +15,16 @@
 //! whose partner keeps its velocity approaches after the step 1 / (1 + k dt) times as fast as before: as by the
 //! implicit Euler rule, whatever k. A wall that mirrors doubles the rate: 1 - 2 k dt / ((1 + k dt) (1 + k dt / 2)) of
 //! the approach is left.
+//!
+//! Position Verlet has accelerations at one stage only, of the velocity at n: divided by 1 + k dt they leave
+//! 1 / (1 + k dt) of the approach there, too, and (1 - k dt) / (1 + k dt) beside a wall that mirrors, never more than
+//! there was.
 
 use super::artificial_viscosity::ArtificialViscosity;
 use super::{FluidEffect, Listed, Neighbourhood};
 use crate::columns::fit;
 use crate::composition::{Composition, NoShare};
+use crate::equations::Needed;
 use crate::rates::{FluidPair, PairEffect, PairRates};
 use crate::walls::Walls;
 use halfstep_scene::{Decision, Derived, EffectName, Phase, Scene};
@@ -43,7 +48,7 @@ pub struct WallGuard<const D: usize> {
     fade: Fade,
     /// cfl h² A V of the guard, with the Courant limit's dt = cfl h / c0: times |F| it is k dt.
     rate: f64,
-    /// k dt at the first stage, k dt / 2 at the second one.
+    /// k dt at the first stage, and where one stage has all accelerations; else k dt / 2.
     divisor: f64,
     /// Distance of [`NEAR`], m.
     near: f64,
@@ -79,9 +84,12 @@ impl<const D: usize> Listed<D> for WallGuard<D> {
 
 impl<const D: usize> WallGuard<D> {
     /// Sets the divisor of a stage.
-    fn divide<K: Kernel<D>>(&mut self, stage: Stage, kernel: &K) {
+    fn divide<K: Kernel<D>>(&mut self, stage: Stage, needed: Needed, kernel: &K) {
         let slope = -kernel.gradient_over_r::<Unfused, Lane>(Lane::splat(self.near)).0[0];
-        let part = if stage == Stage::First { 1.0 } else { 0.5 };
+        let part = match (needed, stage) {
+            (Needed::Both, Stage::Second) => 0.5,
+            (Needed::Both, Stage::First) | (Needed::Momentum | Needed::Continuity, _) => 1.0,
+        };
         self.divisor = part * self.rate * slope;
     }
 }
@@ -111,7 +119,7 @@ impl<const D: usize> FluidEffect<D> for WallGuard<D> {
         }
     }
     fn prepare<K: Kernel<D>>(&mut self, stage: Stage, around: &Neighbourhood<'_, K, D>) -> u64 {
-        self.divide(stage, &around.kernel);
+        self.divide(stage, Needed::at(stage, around.integration), &around.kernel);
         0
     }
     fn at_wall(&self) -> Option<GuardedViscosity<'_>> {
@@ -145,6 +153,7 @@ pub struct GuardedViscosity<'a> {
 
 impl<const D: usize> PairEffect<D> for GuardedViscosity<'_> {
     type Own<L: Lanes> = ();
+    const CONTINUITY: bool = false;
     #[inline(always)]
     fn own<L: Lanes>(&self, _: usize) {}
 
@@ -234,10 +243,16 @@ mod tests {
         {
             let mut guard = guard();
             let dt = 0.4 * H / 20.0;
-            guard.divide(Stage::First, &kernel);
+            guard.divide(Stage::First, Needed::Both, &kernel);
             let half = 1.0 - 0.5 * dt * mirrored * rate(&guard, r);
-            guard.divide(Stage::Second, &kernel);
+            guard.divide(Stage::Second, Needed::Both, &kernel);
             let left = 1.0 - dt * mirrored * rate(&guard, r) * half;
+            assert!((left - expected).abs() < 1e-9, "{mirrored}: {left} {expected}");
+
+            // Position Verlet: one evaluation with the velocity at n.
+            guard.divide(Stage::Second, Needed::Momentum, &kernel);
+            let left = 1.0 - dt * mirrored * rate(&guard, r);
+            let expected = 1.0 - mirrored * k_dt / (1.0 + k_dt);
             assert!((left - expected).abs() < 1e-9, "{mirrored}: {left} {expected}");
         }
     }

@@ -45,8 +45,8 @@ impl<const D: usize> FluidEffect<D> for WallSeparation<D> {
     fn resize(&mut self, _: usize, walls: Option<&Walls<D>>) {
         fit(&mut self.excess, walls.map_or(0, Walls::slots), [0.0; D]);
     }
-    fn prepare<K: Kernel<D>>(&mut self, _: Stage, around: &Neighbourhood<'_, K, D>) -> u64 {
-        if let Some((walls, _)) = around.walls {
+    fn prepare<K: Kernel<D>>(&mut self, stage: Stage, around: &Neighbourhood<'_, K, D>) -> u64 {
+        if let Some((walls, _)) = around.walls.filter(|_| around.needed(stage).continuity()) {
             self.excess.par_iter_mut().with_min_len(TASK).enumerate().for_each(|(slot, excess)| {
                 *excess = walls.shown_to_leaving(slot).unwrap_or([0.0; D]);
             });
@@ -67,6 +67,7 @@ pub struct Separating<'a, const D: usize>(pub &'a [[f64; D]]);
 
 impl<const D: usize> PairEffect<D> for Separating<'_, D> {
     type Own<L: Lanes> = ();
+    const MOMENTUM: bool = false;
     #[inline(always)]
     fn own<L: Lanes>(&self, _: usize) {}
     #[inline(always)]

@@ -2,6 +2,7 @@
 //! is due; the time integration does not need it.
 
 use crate::effects::{Effects, FluidEffect};
+use crate::equations::Momentum;
 use crate::fluid::Fluid;
 use crate::rates::{RateLaw, RateSum};
 use halfstep_sph::kernel::Kernel;
@@ -21,7 +22,8 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         let Some(walls) = &self.walls else { return Vec::new() };
         let mut loads = vec![[0.0; D]; walls.slots()];
         let (fluid, mass) = (&self.columns.now, self.columns.now.mass);
-        let law = RateLaw { kernel, effects: self.effects.at_walls(), targets: fluid, sources: &walls.shown };
+        let (effects, equations) = (self.effects.at_walls(), Momentum);
+        let law = RateLaw { kernel, equations, effects, targets: fluid, sources: &walls.shown };
         for slot in (0..self.columns.slots()).step_by(LANES) {
             let target = law.target(slot);
             let real: [bool; LANES] = std::array::from_fn(|k| self.columns.id[slot + k] != PADDING);

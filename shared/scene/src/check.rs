@@ -33,6 +33,7 @@ impl Check<'_> {
         self.shape_names();
         self.sizes();
         self.precision();
+        self.time_integration();
         self.thin_plates();
         self.interface();
         self.times();
@@ -137,7 +138,18 @@ impl Check<'_> {
         coarse
     }
 
-    /// Every shape holds at least one particle.
+    /// With the phase-blind interface both phases are advanced by one rule.
+    fn time_integration(&self) {
+        let verlet =
+            self.scene.fluid.as_ref().is_some_and(|f| f.time_integration == FluidIntegration::Verlet);
+        if verlet && self.scene.interface.treatment == Treatment::PhaseBlind && !self.scene.solids.is_empty()
+        {
+            let reason =
+                "is \"verlet\", but with the phase-blind interface both phases go by the midpoint rule";
+            self.report.among(self.root, "fluid.time_integration", &PHASE_BLIND_BY, reason);
+        }
+    }
+
     /// Kernels of smaller particles leave the range of single precision.
     fn precision(&self) {
         let [finest, coarsest] = SINGLE;
@@ -151,6 +163,7 @@ impl Check<'_> {
         }
     }
 
+    /// Every shape holds at least one particle.
     fn sizes(&self) {
         if self.report.has_any(&["resolution", "dimension"]) || self.coarse() {
             return;

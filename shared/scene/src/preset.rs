@@ -28,6 +28,7 @@ pub(crate) struct Defaults {
     /// Where C is the far one, over the spacing.
     pub(crate) cross_viscosity_reach: f64,
     pub(crate) kernel: KernelName,
+    pub(crate) integration: FluidIntegration,
     pub(crate) lattice: Lattice,
     pub(crate) effects: &'static [(EffectName, Switch)],
 }
@@ -52,6 +53,7 @@ impl Defaults {
             cross_viscosity_far: 0.0,
             cross_viscosity_reach: Self::CROSS_VISCOSITY_REACH,
             kernel: KernelName::WendlandC2,
+            integration: FluidIntegration::Midpoint,
             lattice: Lattice::Centred,
             effects: &[],
         };
@@ -77,6 +79,7 @@ impl Defaults {
                 cross_viscosity_far: 1.0,
                 cross_viscosity_reach: Self::CROSS_VISCOSITY_REACH,
                 kernel: KernelName::CubicSpline,
+                integration: FluidIntegration::Midpoint,
                 lattice: Lattice::Nodal,
                 // Kayaki's scheme evaluates everything at both stages, the viscous stress however small, and the solid
                 // from the start.

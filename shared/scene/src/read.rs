@@ -40,6 +40,8 @@ pub(crate) const DIFFUSIONS: [(&str, DensityDiffusion); 4] = [
     ("hydrostatic", DensityDiffusion::Hydrostatic),
     ("none", DensityDiffusion::None),
 ];
+pub(crate) const INTEGRATIONS: [(&str, FluidIntegration); 2] =
+    [("midpoint", FluidIntegration::Midpoint), ("verlet", FluidIntegration::Verlet)];
 pub(crate) const TREATMENTS: [(&str, Treatment); 2] =
     [("moving-wall", Treatment::MovingWall), ("phase-blind", Treatment::PhaseBlind)];
 pub(crate) const KERNELS: [(&str, KernelName); 2] =
@@ -57,7 +59,10 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&s
     let defaults = Defaults::of(preset, dimension);
     let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let end_time = top.number("end_time", None);
-    let numerics = numerics(top.section("numerics"), dimension, &defaults);
+    let integration =
+        (top.section("fluid").choice("time_integration", Some(defaults.integration), &INTEGRATIONS))
+            .unwrap_or(defaults.integration);
+    let numerics = numerics(top.section("numerics"), dimension, &defaults, integration.courant_number());
     let interface_section = top.section("interface");
     let treatment = interface_section
         .choice("treatment", Some(defaults.treatment), &TREATMENTS)
@@ -87,7 +92,7 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&s
     };
     let (fluid, sound_speed_auto) = match top.section("fluid") {
         section if section.is_present() => {
-            let (fluid, auto) = fluid(section, &defaults);
+            let (fluid, auto) = fluid(section, &defaults, integration);
             (Some(fluid), auto)
         }
         _ => (None, false),
@@ -177,7 +182,7 @@ fn dimension(top: &Section<'_>) -> usize {
     }
 }
 
-fn fluid(section: Section<'_>, defaults: &Defaults) -> (Fluid, bool) {
+fn fluid(section: Section<'_>, defaults: &Defaults, time_integration: FluidIntegration) -> (Fluid, bool) {
     let sound_speed = section.number_or_auto("sound_speed", None);
     let fluid = Fluid {
         density: section.number("density", None),
@@ -190,8 +195,11 @@ fn fluid(section: Section<'_>, defaults: &Defaults) -> (Fluid, bool) {
         density_diffusion_coefficient: section
             .number("density_diffusion_coefficient", Some(defaults.density_diffusion_coefficient)),
         background_pressure: section.number("background_pressure", Some(0.0)),
+        time_integration,
         beach: beach(section.section("beach")),
     };
+    // Read before, with the Courant number.
+    section.node("time_integration");
     section.finish();
     (fluid, sound_speed.is_none())
 }
@@ -284,12 +292,12 @@ fn effects(
     (effects, own_effects)
 }
 
-fn numerics(section: Section<'_>, dimension: usize, defaults: &Defaults) -> Numerics {
+fn numerics(section: Section<'_>, dimension: usize, defaults: &Defaults, courant_number: f64) -> Numerics {
     let threads = section.section("threads");
     let numerics = Numerics {
         kernel: section.choice("kernel", Some(defaults.kernel), &KERNELS).unwrap_or(defaults.kernel),
         precision: section.choice("precision", Some(Precision::Double), &PRECISIONS).unwrap_or_default(),
-        cfl: section.number("cfl", Some(0.4)),
+        cfl: section.number("cfl", Some(courant_number)),
         solid_cfl: section.number("solid_cfl", Some(0.6)),
         max_sub_steps: section.integer("max_sub_steps", 200),
         interface_capacity: section.optional_integer("interface_capacity"),

@@ -8,6 +8,7 @@ pub(crate) mod raw;
 use halfstep_fluid::composition::{Pass, Shares};
 use halfstep_fluid::effects::artificial_viscosity::ArtificialViscosity;
 use halfstep_fluid::effects::density_diffusion::{Diffusion, Simple, Strength};
+use halfstep_fluid::equations::Both;
 use halfstep_fluid::rates::{PairEffect, RateLaw, RateSum};
 use halfstep_role::awake::Awake;
 use halfstep_role::role::Role;
@@ -183,9 +184,16 @@ impl Patch {
 }
 
 impl Pass<2> for &mut Patch {
+    type Equations = Both;
     fn run<E: PairEffect<2>>(self, effects: E) {
         let shown = &self.sorted.shown;
-        let law = RateLaw { kernel: WendlandC2::<2>::new(H), effects, targets: shown, sources: shown };
+        let law = RateLaw {
+            equations: Both,
+            kernel: WendlandC2::<2>::new(H),
+            effects,
+            targets: shown,
+            sources: shown,
+        };
         pair::pass(self.sorted.isa, &law, &self.sorted.list, &mut self.sums);
     }
 }

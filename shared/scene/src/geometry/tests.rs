@@ -25,6 +25,7 @@ pub(in crate::geometry) fn scene(shapes: Vec<Shape>) -> Scene {
             density_diffusion: DensityDiffusion::DeltaSph,
             density_diffusion_coefficient: 0.1,
             background_pressure: 0.0,
+            time_integration: FluidIntegration::Midpoint,
             beach: None,
         }),
         solids: vec![Solid {

@@ -93,6 +93,8 @@ static FLUID: Table = Table::new(
         )
         .unit("Pa")
         .default("0.0"),
+        Key::words("time_integration", || words(&read::INTEGRATIONS), "How it goes from n to n + 1.")
+            .default("\"midpoint\""),
         Key::new("beach", Kind::Table(&BEACH), "Where waves are absorbed."),
     ],
 );
@@ -196,7 +198,7 @@ static NUMERICS: Table = Table::new(
                 .why("a sound wave must not cross more than a smoothing length a step"),
             "Courant number of the fluid.",
         )
-        .default("0.4"),
+        .default("0.4; `fluid.time_integration` \"verlet\" 0.6"),
         Key::number(
             "solid_cfl",
             Range::positive().up_to(1.1).why("dt c_P / dx beyond 1.1 is unstable"),
