@@ -30,6 +30,9 @@ pub trait Shares<const D: usize>: PairEffect<D> {
     /// law.
     fn compose<C: PairEffect<D>, A: PairEffect<D>, P: Pass<D>>(self, chosen: C, all: A, pass: P);
 
+    /// Some share is there.
+    fn any(&self) -> bool;
+
     /// Runs the pass that is compiled for the shares that are there, or the complete law.
     fn run(self, pass: impl Pass<D>) {
         self.compose((), self, pass);
@@ -47,6 +50,9 @@ impl<const D: usize> Shares<D> for () {
     fn compose<C: PairEffect<D>, A: PairEffect<D>, P: Pass<D>>(self, chosen: C, _: A, pass: P) {
         pass.run(chosen);
     }
+    fn any(&self) -> bool {
+        false
+    }
 }
 
 impl<const D: usize, E: PairEffect<D>, R: Shares<D>> Shares<D> for (Option<E>, R) {
@@ -59,6 +65,9 @@ impl<const D: usize, E: PairEffect<D>, R: Shares<D>> Shares<D> for (Option<E>, R
             None => rest.compose(chosen, all, pass),
             Some(share) => share.enter(Entering { chosen, rest, all, pass }),
         }
+    }
+    fn any(&self) -> bool {
+        self.0.is_some() || self.1.any()
     }
 }
 

@@ -49,6 +49,11 @@ pub trait FluidEffect<const D: usize>: Send + Sync + Sized + 'static {
     fn at_wall(&self) -> Option<Self::AtWall<'_>> {
         None
     }
+    /// Position Verlet: the effect's share of a pair of a fluid and a wall particle that is evaluated after all others,
+    /// with the velocity to which those lead.
+    fn at_wall_predicted(&self) -> Option<Self::AtWall<'_>> {
+        None
+    }
     /// The effect acts on single particles ([`Self::on_particle`]).
     const ON_PARTICLES: bool = false;
     /// Acceleration that the effect gives a particle at a position, m, with a velocity, m/s; m/s².
@@ -131,6 +136,8 @@ pub trait Effects<const D: usize>: Send + Sync {
     }
     /// The shares of a pair of a fluid and a wall particle.
     fn at_walls(&self) -> Self::AtWalls<'_>;
+    /// The shares of a pair of a fluid and a wall particle at predicted velocities.
+    fn at_walls_predicted(&self) -> Self::AtWalls<'_>;
     /// See [`FluidEffect::drift`]; of the first effect that has one.
     fn drift(&self) -> Option<&[[f64; D]]>;
     /// Adds name and seconds of the own pass, in the mean of both stages, of each effect with a share of a pair of
@@ -158,6 +165,7 @@ impl<const D: usize> Effects<D> for () {
     }
     fn pairs_without(&self, _: &str) {}
     fn at_walls(&self) {}
+    fn at_walls_predicted(&self) {}
     fn on_particles(&self, _: &mut dyn FnMut(&'static str, OnParticle<'_, D>)) {}
     fn drift(&self) -> Option<&[[f64; D]]> {
         None
@@ -200,6 +208,9 @@ impl<const D: usize, E: FluidEffect<D>, R: Effects<D>> Effects<D> for (Option<E>
     fn at_walls(&self) -> Self::AtWalls<'_> {
         (self.0.as_ref().and_then(E::at_wall), self.1.at_walls())
     }
+    fn at_walls_predicted(&self) -> Self::AtWalls<'_> {
+        (self.0.as_ref().and_then(E::at_wall_predicted), self.1.at_walls_predicted())
+    }
     fn drift(&self) -> Option<&[[f64; D]]> {
         self.0.as_ref().and_then(E::drift).or_else(|| self.1.drift())
     }
@@ -226,6 +237,9 @@ impl<const D: usize, E: FluidEffect<D>, R: Effects<D>> Effects<D> for (Option<E>
     fn measure_walls<K: Kernel<D>>(&self, measuring: &mut Measuring<'_, K, D>) {
         if let Some(share) = self.0.as_ref().and_then(E::at_wall) {
             measuring.add(EnergyPart::of_effect(E::NAME), share);
+        }
+        if let Some(share) = self.0.as_ref().and_then(E::at_wall_predicted) {
+            measuring.add_predicted(EnergyPart::of_effect(E::NAME), share);
         }
         self.1.measure_walls(measuring);
     }

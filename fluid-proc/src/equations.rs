@@ -55,6 +55,14 @@ impl Needed {
         }
     }
 
+    /// What the stages of a step need, each once.
+    pub const fn in_a_step(integration: FluidIntegration) -> &'static [Self] {
+        match integration {
+            FluidIntegration::Midpoint => &[Self::Both],
+            FluidIntegration::Verlet => &[Self::Continuity, Self::Momentum],
+        }
+    }
+
     /// Accelerations are needed.
     pub const fn momentum(self) -> bool {
         !matches!(self, Self::Continuity)

@@ -59,6 +59,8 @@ pub struct Fluid<const D: usize, X: FluidEffect<D> = ()> {
     pub(crate) integration: FluidIntegration,
     /// Position Verlet: time by which the density is of before n, half of the step before, s.
     pub(crate) density_lag: f64,
+    /// Length of the step under way, from its first stage on, s.
+    pub(crate) dt: f64,
     pub(crate) effects: List<D, X>,
     /// Name of the composition that the rate pass runs.
     composition: String,
@@ -71,6 +73,8 @@ pub struct Fluid<const D: usize, X: FluidEffect<D> = ()> {
     pub(crate) wall_list: ClusterList,
     pub(crate) list_of_walls: ClusterList,
     pub(crate) sums: Vec<RateSum<D>>,
+    /// Position Verlet: velocities at n + 1 to which the sums lead, m/s, where effects ask for them.
+    pub(crate) predicted: Vec<[f64; D]>,
     pub(crate) displacement: f64,
     pub(crate) largest_speed: f64,
     pub(crate) largest_acceleration: f64,
@@ -137,9 +141,10 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
 
                 bounds: Bounds::of_fluid(scene)?,
                 isa,
-                limits: StepLimits::new(scene),
+                limits: StepLimits::new::<D>(scene),
                 integration: fluid.time_integration,
                 density_lag: 0.0,
+                dt: 0.0,
                 composition: effects.pairs().composition(),
                 effects,
                 stage: Stage::First,
@@ -148,6 +153,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
                 wall_list: list(),
                 list_of_walls: list(),
                 sums: Vec::new(),
+                predicted: Vec::new(),
                 displacement: 0.0,
                 largest_speed: 0.0,
                 largest_acceleration: 0.0,
@@ -207,6 +213,11 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
             self.wall_list.build(x, &walls.shown.position, &walls.rows, reach);
             self.list_of_walls.build(&walls.shown.position, x, &self.rows, reach);
         }
+    }
+
+    /// Position Verlet without solids: the rates at predicted velocities are among the fluid's own sums.
+    pub(crate) fn predicts_alone(&self) -> bool {
+        self.integration == FluidIntegration::Verlet && self.coupling.is_none()
     }
 
     /// The particle that is farthest out of bounds, if any is.
@@ -299,6 +310,9 @@ impl<const D: usize, X: FluidEffect<D>> Role for Fluid<D, X> {
             if self.stage == Stage::Second && self.integration == FluidIntegration::Midpoint {
                 self.measure_powers(kernel);
             }
+            if self.stage == Stage::Second && self.predicts_alone() {
+                self.predicted_rates(kernel);
+            }
         });
     }
 
@@ -314,6 +328,9 @@ impl<const D: usize, X: FluidEffect<D>> Role for Fluid<D, X> {
         }
         if self.stage == Stage::Second && by_means {
             with_kernel!(self.kernel, self.smoothing_length, D, |kernel| {
+                if !self.predicts_alone() {
+                    self.predicted_rates(kernel);
+                }
                 self.measure_powers_by_means(kernel, own, peers);
             });
         }
@@ -335,9 +352,7 @@ impl<const D: usize, X: FluidEffect<D>> Role for Fluid<D, X> {
             }
         }
         self.stage = half_step.next().stage;
-        if let Some(own) = &mut self.ledger {
-            own.dt = half_step.dt;
-        }
+        self.dt = half_step.dt;
         let extremes = self.integrate(half_step);
         self.remember(half_step.stage, &extremes);
         if half_step.stage == Stage::Second {

@@ -131,7 +131,8 @@ fn a_stage_of_one_equation_has_its_bits() {
     let sums = |integration: &str, diffusion: &str, stage: Stage| {
         let integration = format!("fluid.time_integration=\"{integration}\"");
         let diffusion = format!("fluid.density_diffusion=\"{diffusion}\"");
-        let moving = "shape.water.velocity_field={kind=\"standing-wave\",amplitude=0.01,origin=[0.0,0.0],half_wave=0.2,depth=0.1}";
+        let moving = "shape.water.velocity_field={kind=\"standing-wave\",amplitude=0.01,origin=[0.0,0.0],\
+                      half_wave=0.2,depth=0.1}";
         let others =
             ["effects.wall-guard=\"off\"", "effects.wall-separation=\"on\"", "fluid.viscosity=0.1", moving];
         let scene = tank(&[&[integration.as_str(), diffusion.as_str()], &others[..]].concat());
@@ -174,12 +175,17 @@ fn position_verlet_measures_the_viscous_force_on_walls() {
 #[test]
 fn time_step_limits_by_hand() {
     // h = 0.02, c0 = 20: 0.4 * 0.02 / (20 + 5); acceleration 1e6: 0.25 sqrt(0.02 / 1e6).
-    let limits = StepLimits::new(&tank(&[]));
+    let limits = StepLimits::new::<2>(&tank(&[]));
     assert!((limits.time_step(5.0, 0.0) - 0.4 * 0.02 / 25.0).abs() < 1e-15);
     assert!((limits.time_step(0.0, 1e6) - 0.25 * (0.02_f64 / 1e6).sqrt()).abs() < 1e-15);
     // Honey: 0.125 h² rho / mu = 0.125 * 4e-4 * 1000 / 1000.
-    let viscous = StepLimits::new(&tank(&["fluid.viscosity=1000.0"]));
+    let viscous = StepLimits::new::<2>(&tank(&["fluid.viscosity=1000.0"]));
     assert!((viscous.time_step(0.0, 0.0) - 0.125 * 4e-4).abs() < 1e-12);
+    // What damps: 1.4 h / (A c0) with A = 7; 0.25 h / (delta c0) with delta = 1, and h / c0 = 1 ms.
+    let damped = StepLimits::new::<2>(&tank(&["fluid.artificial_viscosity={linear=7.0,quadratic=0.0}"]));
+    assert!((damped.time_step(0.0, 0.0) - 2e-4).abs() < 1e-15);
+    let diffusing = StepLimits::new::<2>(&tank(&["fluid.density_diffusion_coefficient=1.0"]));
+    assert!((diffusing.time_step(0.0, 0.0) - 2.5e-4).abs() < 1e-15);
 }
 
 #[test]

@@ -5,7 +5,8 @@
 //! relative to the wall; the force on the fluid times the wall's own velocity is the work of walls that move.
 //!
 //! Position Verlet evaluates forces at n + 1/2 with the velocity at n, but goes from n to n + 1 with the mean of both:
-//! there v is v_n + dt / 2 D v / Dt, f_i left out but in its own power, in the powers and in what continuity gives.
+//! there v is v_n + dt / 2 D v / Dt, f_i left out but in its own power, in the powers and in what continuity gives, and
+//! walls show continuity what they show beside such fluid.
 //!
 //! Only scenes whose probes ask for energies pay for these passes, one for each share of a pair.
 
@@ -14,10 +15,11 @@ use crate::effects::{Effects, FluidEffect};
 use crate::fluid::Fluid;
 use crate::momentum::pressure_and_continuity;
 use crate::rates::{FluidPair, PairEffect, PairRates, Target};
+use crate::walls::WallLaw;
 use halfstep_role::ledger::Ledger;
 use halfstep_role::role::Peer;
 use halfstep_role::timeline;
-use halfstep_scene::{EnergyPart, FluidIntegration, Phase};
+use halfstep_scene::{EnergyPart, Phase};
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::{Arch, Isa, LANES, Lane, Lanes, components};
 use halfstep_sph::neighbours::{ClusterList, PADDING};
@@ -32,10 +34,10 @@ pub(crate) struct FluidLedger<const D: usize> {
     /// At n + 1/2, by [`EnergyPart`], W (2D: W/m).
     powers: Vec<f64>,
     sums: Vec<Power>,
-    /// Length of the step, s.
-    pub(crate) dt: f64,
     /// Position Verlet: mean velocity over the step of each slot, m/s; else empty.
     middle: Vec<[f64; D]>,
+    /// What each slot of the walls shows beside these, m/s.
+    shown: Vec<[f64; D]>,
 }
 
 /// Power of an effect on several particles, per mass, W/kg.
@@ -71,8 +73,10 @@ struct PowerLaw<'a, K, E, const D: usize> {
     effect: E,
     targets: &'a PairParticles<D>,
     sources: &'a PairParticles<D>,
-    /// Mean velocity of the targets over the step, m/s, where forces are not evaluated with it.
-    middle: Option<&'a [[f64; D]]>,
+    /// Mean velocities of the targets and of the sources over the step, m/s, where forces are not evaluated with them.
+    middle: Option<[&'a [[f64; D]]; 2]>,
+    /// Predicted velocity of the targets, m/s, where forces are evaluated with it.
+    predicted: Option<&'a [[f64; D]]>,
     /// Own velocity of walls, m/s; none between fluid particles.
     walls: Option<&'a Vectors<D>>,
 }
@@ -92,7 +96,11 @@ impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for PowerLaw<'_,
         let target = Target::load(self.targets, slot, self.effect.own(slot));
         let velocity = match self.middle {
             None => target.velocity,
-            Some(middle) => components(|d| each(middle, slot, |v| v[d])),
+            Some([middle, _]) => components(|d| each(middle, slot, |v| v[d])),
+        };
+        let target = match self.predicted {
+            None => target,
+            Some(predicted) => target.moving(predicted, slot),
         };
         (target, velocity)
     }
@@ -118,9 +126,8 @@ impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for PowerLaw<'_,
         let pair = i.with::<A>(&s, dx, r2);
         let mut rates = PairRates { bracket: L::ZERO, density: L::ZERO, vector: [L::ZERO; D] };
         self.effect.add::<A, L>(&i.own, j, &pair, &mut rates);
-        if let Some(middle) = self.middle {
-            let other = |d: usize| self.walls.map_or_else(|| L::splat(middle[j][d]), |_| s.velocity[d]);
-            let dv = components(|d| velocity[d] - other(d));
+        if let Some([_, sources]) = self.middle {
+            let dv = components(|d| velocity[d] - L::splat(sources[j][d]));
             let pair = FluidPair { dv, approach: dot::<D, A, L>(dv, dx), ..pair };
             let mut of_middle = PairRates { bracket: L::ZERO, density: L::ZERO, vector: [L::ZERO; D] };
             self.effect.add::<A, L>(&i.own, j, &pair, &mut of_middle);
@@ -144,7 +151,8 @@ pub struct Measuring<'a, K, const D: usize> {
     id: &'a [u32],
     fluid: &'a PairParticles<D>,
     sources: &'a PairParticles<D>,
-    middle: Option<&'a [[f64; D]]>,
+    middle: Option<[&'a [[f64; D]]; 2]>,
+    predicted: &'a [[f64; D]],
     walls: Option<&'a Vectors<D>>,
     list: &'a ClusterList,
     sums: &'a mut Vec<Power>,
@@ -154,8 +162,17 @@ pub struct Measuring<'a, K, const D: usize> {
 impl<K: Kernel<D>, const D: usize> Measuring<'_, K, D> {
     /// Adds the power of a share to its part.
     pub(crate) fn add<E: PairEffect<D>>(&mut self, part: EnergyPart, effect: E) {
+        self.add_at(part, effect, None);
+    }
+
+    /// The same of a share at predicted velocities.
+    pub(crate) fn add_predicted<E: PairEffect<D>>(&mut self, part: EnergyPart, effect: E) {
+        self.add_at(part, effect, Some(self.predicted));
+    }
+
+    fn add_at<E: PairEffect<D>>(&mut self, part: EnergyPart, effect: E, predicted: Option<&[[f64; D]]>) {
         let Self { kernel, fluid, sources, middle, walls, .. } = *self;
-        let law = PowerLaw { kernel, effect, targets: fluid, sources, middle, walls };
+        let law = PowerLaw { kernel, effect, targets: fluid, sources, middle, predicted, walls };
         self.sums.resize(self.list.fours(), Power::default());
         pair::pass(self.isa, &law, self.list, self.sums);
         let (mut given, mut moving) = (0.0, 0.0);
@@ -172,7 +189,13 @@ impl<K: Kernel<D>, const D: usize> Measuring<'_, K, D> {
 impl<const D: usize> FluidLedger<D> {
     pub(crate) fn new() -> Self {
         let powers = vec![0.0; EnergyPart::ALL.len()];
-        Self { ledger: Ledger::new(Phase::Fluid), powers, sums: Vec::new(), dt: 0.0, middle: Vec::new() }
+        Self {
+            ledger: Ledger::new(Phase::Fluid),
+            powers,
+            sums: Vec::new(),
+            middle: Vec::new(),
+            shown: Vec::new(),
+        }
     }
 
     /// Mean velocity over the step of a slot, m/s.
@@ -189,8 +212,8 @@ impl<const D: usize> FluidLedger<D> {
 }
 
 impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
-    /// Position Verlet: notes the powers at n + 1/2 by the mean velocity over the step, once all sums but f_i are
-    /// there.
+    /// Position Verlet: notes the powers at n + 1/2 by the mean velocity over the step, once all sums are there but
+    /// those that answer the interface.
     pub(crate) fn measure_powers_by_means<K: Kernel<D>>(
         &mut self,
         kernel: K,
@@ -198,7 +221,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         peers: &[Peer],
     ) {
         let Some(own) = &mut self.ledger else { return };
-        let half = 0.5 * own.dt;
+        let half = 0.5 * self.dt;
         let mean = |(slot, particle): (usize, &Source<D>)| {
             let sum = &self.sums[slot / LANES];
             let a = |d: usize| self.gravity[d] + sum.acceleration[d].0[slot % LANES];
@@ -206,21 +229,39 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         };
         own.middle.clear();
         own.middle.extend(self.columns.now.sources.iter().enumerate().map(mean));
+        let middle = std::mem::take(&mut own.middle);
+        let shown = self.shown_by_walls(kernel, &middle);
+        if let Some(own) = &mut self.ledger {
+            (own.middle, own.shown) = (middle, shown);
+        }
         self.measure_powers(kernel);
         if let (Some(own), Some(coupling)) = (&mut self.ledger, &mut self.coupling) {
             coupling.measure_push(records, peers, own);
         }
     }
 
+    /// Velocities, m/s, that walls show beside fluid with these.
+    fn shown_by_walls<K: Kernel<D>>(&self, kernel: K, velocities: &[[f64; D]]) -> Vec<[f64; D]> {
+        let Some(walls) = &self.walls else { return Vec::new() };
+        let mut fluid = self.columns.now.clone();
+        fluid.sources.iter_mut().zip(velocities).for_each(|(source, v)| source.velocity = *v);
+        fluid.round_for(self.fluid_list.precision());
+        let law = WallLaw::new(kernel, self.gravity, walls, &fluid);
+        let mut shown = vec![[[0.0; D]; LANES]; self.list_of_walls.fours()];
+        let show = |slot, sum: &_| walls.shows(slot, sum, &self.state).map(|source| source.velocity);
+        pair::pass_into(self.isa, &law, &self.list_of_walls, show, &mut shown);
+        shown.as_flattened().to_vec()
+    }
+
     /// Notes the powers of all shares at n + 1/2.
     pub(crate) fn measure_powers<K: Kernel<D>>(&mut self, kernel: K) {
-        let Some(FluidLedger { powers, sums, middle, .. }) = &mut self.ledger else { return };
+        let Some(FluidLedger { powers, sums, middle, shown, .. }) = &mut self.ledger else { return };
         let _phase = timeline::phase("energy ledger");
         powers.fill(0.0);
         let fluid = &self.columns.now;
-        let middle = (self.integration == FluidIntegration::Verlet).then_some(middle.as_slice());
+        let middle = (!middle.is_empty()).then_some([middle.as_slice(); 2]);
         let (id, isa) = (self.columns.id.as_slice(), self.isa);
-        let (list, walls) = (&self.fluid_list, None);
+        let (list, walls, predicted) = (&self.fluid_list, None, self.predicted.as_slice());
         let mut among = Measuring {
             kernel,
             isa,
@@ -228,6 +269,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
             fluid,
             sources: fluid,
             middle,
+            predicted,
             walls,
             list,
             sums,
@@ -238,7 +280,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         self.effects.on_particles(&mut |name, of| {
             let real = fluid.sources.iter().enumerate().filter(|(slot, _)| id[*slot] != PADDING);
             let power = |(slot, p): (usize, &Source<D>)| -> f64 {
-                let velocity = middle.map_or(&p.velocity, |middle| &middle[slot]);
+                let velocity = middle.map_or(&p.velocity, |[middle, _]| &middle[slot]);
                 of(&p.position, &p.velocity).iter().zip(velocity).map(|(a, v)| a * v).sum()
             };
             powers[EnergyPart::of_effect(name) as usize] += fluid.mass * real.map(power).sum::<f64>();
@@ -251,8 +293,10 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         }
         let Some(walls) = &self.walls else { return };
         let (sources, list) = (&walls.shown, &self.wall_list);
+        let middle = middle.map(|[middle, _]| [middle, shown.as_slice()]);
         let walls = Some(&walls.own_velocity);
-        let mut at_walls = Measuring { kernel, isa, id, fluid, sources, middle, walls, list, sums, powers };
+        let mut at_walls =
+            Measuring { kernel, isa, id, fluid, sources, middle, predicted, walls, list, sums, powers };
         at_walls.add(EnergyPart::WallPressure, Pressure);
         self.effects.measure_walls(&mut at_walls);
     }
@@ -267,7 +311,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
             // Means over the step have the others' acceleration A, dt / 2 A: f_i is booked with dt A + dt / 2 f_i, so
             // that all powers together are those of the mean velocity.
             let booked = |d: usize| match own.middle.get(slot) {
-                Some(middle) => 2.0 * middle[d] - velocity[d] + 0.5 * own.dt * f[d],
+                Some(middle) => 2.0 * middle[d] - velocity[d] + 0.5 * self.dt * f[d],
                 None => velocity[d],
             };
             (0..D).map(|d| booked(d) * f[d]).sum::<f64>()

@@ -34,6 +34,8 @@ pub mod momentum;
 mod motion_tests;
 mod passes;
 #[cfg(test)]
+mod prediction_tests;
+#[cfg(test)]
 mod probe_tests;
 mod probes;
 pub mod rates;

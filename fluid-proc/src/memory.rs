@@ -60,6 +60,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
                 .iter()
                 .sum::<usize>()
             + of(&self.sums)
+            + of(&self.predicted)
             + self.effects.bytes()
     }
 }

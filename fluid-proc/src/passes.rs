@@ -1,10 +1,11 @@
 //! The passes over neighbours of a half-step, and what each effect takes of their time.
 
+use crate::columns::fit;
 use crate::composition::{Pass, Shares};
 use crate::effects::{Effects, FluidEffect, List, Neighbourhood, OnParticle, evaluations};
 use crate::equations::{Both, Continuity, Equations, Momentum, Needed};
 use crate::fluid::Fluid;
-use crate::rates::{PairEffect, RateLaw, RateSum};
+use crate::rates::{PairEffect, PredictedLaw, RateLaw, RateSum};
 use crate::walls::{WallLaw, Walls};
 use halfstep_role::role::{Costs, fastest};
 use halfstep_role::timeline;
@@ -12,7 +13,7 @@ use halfstep_scene::EffectName;
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::LANES;
 use halfstep_sph::pair;
-use halfstep_wire::half_step::Stage;
+use rayon::prelude::*;
 
 impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
     /// All sums of a half-step over fluid and walls.
@@ -23,19 +24,24 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         let needed = Needed::at(stage, self.integration);
         self.pair_evaluations += self.among(kernel, |effects, around| effects.prepare(stage, around));
         let mut sums = std::mem::take(&mut self.sums);
+        self.all_rates(kernel, needed, &mut sums);
+        self.sums = sums;
+        self.pair_evaluations += evaluations(&self.fluid_list) + evaluations(&self.wall_list);
+    }
+
+    /// The rates by fluid, walls and effects on single particles.
+    pub(crate) fn all_rates<K: Kernel<D>>(&self, kernel: K, needed: Needed, sums: &mut [RateSum<D>]) {
         {
             let _phase = timeline::phase("pair pass");
-            self.rates(kernel, needed, self.effects.pairs(), &mut sums);
+            self.rates(kernel, needed, self.effects.pairs(), sums);
         }
-        self.wall_rates(kernel, needed, &mut sums);
+        self.wall_rates(kernel, needed, sums);
         if needed.momentum() {
             self.effects.on_particles(&mut |name, of| {
                 let _phase = timeline::phase(name);
-                self.add_on_particles(of, &mut sums);
+                self.add_on_particles(of, sums);
             });
         }
-        self.sums = sums;
-        self.pair_evaluations += evaluations(&self.fluid_list) + evaluations(&self.wall_list);
     }
 
     /// The effects, with what their own passes see.
@@ -59,7 +65,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         let Some(walls) = &mut self.walls else { return };
         let _phase = timeline::phase("walls: extrapolation");
         let mut sources = std::mem::take(&mut walls.shown.sources);
-        let law = WallLaw::new(kernel, self.gravity, walls, &self.columns);
+        let law = WallLaw::new(kernel, self.gravity, walls, &self.columns.now);
         let (fours, _) = sources.as_chunks_mut();
         let show = |slot, sum: &_| walls.shows(slot, sum, &self.state);
         pair::pass_into(self.isa, &law, &self.list_of_walls, show, fours);
@@ -95,6 +101,55 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         }
     }
 
+    /// Position Verlet: adds the rates by walls at predicted velocities, once all sums are there but those that answer
+    /// the interface.
+    pub(crate) fn predicted_rates<K: Kernel<D>>(&mut self, kernel: K) {
+        if !self.effects.at_walls_predicted().any() {
+            return;
+        }
+        let _phase = timeline::phase("walls: predicted rates");
+        let mut predicted = std::mem::take(&mut self.predicted);
+        self.predict(self.dt, &self.sums, &mut predicted);
+        let mut sums = std::mem::take(&mut self.sums);
+        self.predicted_wall_rates(kernel, &predicted, &mut sums);
+        self.pair_evaluations += evaluations(&self.wall_list);
+        (self.sums, self.predicted) = (sums, predicted);
+    }
+
+    /// The velocities at n + 1, m/s, by accelerations, over a step of this length, s.
+    pub(crate) fn predict(&self, dt: f64, sums: &[RateSum<D>], velocities: &mut Vec<[f64; D]>) {
+        fit(velocities, self.columns.slots(), [0.0; D]);
+        velocities.par_iter_mut().with_min_len(TASK).enumerate().for_each(|(slot, velocity)| {
+            let (sum, now) = (&sums[slot / LANES], &self.columns.now.sources[slot]);
+            *velocity = std::array::from_fn(|d| {
+                now.velocity[d] + dt * (self.gravity[d] + sum.acceleration[d].0[slot % LANES])
+            });
+        });
+    }
+
+    /// Adds the rates by walls at predicted velocities, m/s.
+    fn predicted_wall_rates<K: Kernel<D>>(
+        &self,
+        kernel: K,
+        velocities: &[[f64; D]],
+        sums: &mut [RateSum<D>],
+    ) {
+        let Some(law) = self.predicted_law(kernel, velocities) else { return };
+        pair::pass_adding(self.isa, &law, &self.wall_list, sums);
+    }
+
+    /// What walls with shares at predicted velocities do.
+    pub(crate) fn predicted_law<'a, K: Kernel<D>>(
+        &'a self,
+        kernel: K,
+        velocities: &'a [[f64; D]],
+    ) -> Option<PredictedLaw<'a, K, AtWalls<'a, D, X>, D>> {
+        let effects = self.effects.at_walls_predicted();
+        let walls = self.walls.as_ref().filter(|_| effects.any())?;
+        let (targets, sources) = (&self.columns.now, &walls.shown);
+        Some(PredictedLaw { kernel, effects, targets, velocities, sources })
+    }
+
     /// Adds what an effect does to single particles.
     fn add_on_particles(&self, of: OnParticle<'_, D>, sums: &mut [RateSum<D>]) {
         for (slot, particle) in self.columns.now.sources.iter().enumerate() {
@@ -102,23 +157,40 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         }
     }
 
+    /// Seconds of the rates at predicted velocities in the mean over both stages, where they are the fluid's own.
+    fn cost_of_prediction<K: Kernel<D>>(&mut self, kernel: K, sums: &mut [RateSum<D>]) -> f64 {
+        if !self.predicts_alone() || !self.effects.at_walls_predicted().any() {
+            return 0.0;
+        }
+        let mut velocities = std::mem::take(&mut self.predicted);
+        let seconds = fastest(|| {
+            self.predict(0.0, sums, &mut velocities);
+            self.predicted_wall_rates(kernel, &velocities, sums);
+        });
+        self.predicted = velocities;
+        0.5 * seconds
+    }
+
     /// Parts of the sums' time, each effect's measured by leaving it out.
     pub(crate) fn costs<K: Kernel<D>>(&mut self, kernel: K) -> Costs {
         let mut costs = Costs::default();
         let mut sums = std::mem::take(&mut self.sums);
-        // In the mean of both stages.
-        let stages = [Stage::First, Stage::Second].map(|stage| Needed::at(stage, self.integration));
-        let mean = |seconds: [f64; 2]| 0.5 * (seconds[0] + seconds[1]);
-        let at_walls = stages.map(|needed| fastest(|| self.wall_rates(kernel, needed, &mut sums)));
-        let walls = fastest(|| self.extrapolate(kernel)) + mean(at_walls);
-        let of_fluid =
-            stages.map(|needed| fastest(|| self.rates(kernel, needed, self.effects.pairs(), &mut sums)));
-        let rates = mean(of_fluid);
+        // In the mean over a step; of stages that are alike once.
+        let stages = Needed::in_a_step(self.integration);
+        let number = stages.len() as f64;
+        let mean = |seconds: &mut dyn FnMut(Needed) -> f64| {
+            stages.iter().map(|&needed| seconds(needed)).sum::<f64>() / number
+        };
+        let at_walls = mean(&mut |needed| fastest(|| self.wall_rates(kernel, needed, &mut sums)));
+        let walls =
+            fastest(|| self.extrapolate(kernel)) + at_walls + self.cost_of_prediction(kernel, &mut sums);
+        let rates =
+            mean(&mut |needed| fastest(|| self.rates(kernel, needed, self.effects.pairs(), &mut sums)));
         let mut own_passes = Vec::new();
         self.among(kernel, |effects, around| effects.measure(around, &mut own_passes));
         self.effects.on_particles(&mut |name, of| {
-            let stages = stages.iter().filter(|needed| needed.momentum()).count() as f64;
-            own_passes.push((name, 0.5 * stages * fastest(|| self.add_on_particles(of, &mut sums))));
+            let part = stages.iter().filter(|needed| needed.momentum()).count() as f64 / number;
+            own_passes.push((name, part * fastest(|| self.add_on_particles(of, &mut sums))));
         });
         let placing = self.walls.as_mut().map_or(0.0, |walls| fastest(|| walls.place_again()));
         let total = walls + rates + own_passes.iter().map(|(_, own)| own).sum::<f64>();
@@ -126,9 +198,9 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         // It comes before the sums, once for each.
         costs.moving_walls = placing / total;
         for (name, own) in own_passes {
-            let without = mean(stages.map(|needed| {
+            let without = mean(&mut |needed| {
                 fastest(|| self.rates(kernel, needed, self.effects.pairs_without(name), &mut sums))
-            }));
+            });
             // What a further effect takes is counted as the fluid's own.
             if let Some(place) = EffectName::ALL.iter().position(|effect| effect.name() == name) {
                 costs.effects[place] = ((rates - without).max(0.0) + own) / total;
@@ -138,6 +210,12 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         costs
     }
 }
+
+/// Particles that one task predicts the velocities of, at least.
+const TASK: usize = 1024;
+
+/// The fluid's shares of a pair of a fluid and a wall particle.
+type AtWalls<'a, const D: usize, X> = <List<D, X> as Effects<D>>::AtWalls<'a>;
 
 struct OverFluid<'a, K, Q, X: FluidEffect<D>, const D: usize> {
     kernel: K,

@@ -1,7 +1,7 @@
 //! The one pass that gives acceleration and density rate: pressure, continuity and whatever effects the scene calls
 //! for.
 
-use crate::columns::{Beside, PairParticles};
+use crate::columns::{Beside, PairParticles, each};
 use crate::composition::Composition;
 use crate::equations::Equations;
 use crate::momentum::pressure_and_continuity;
@@ -52,6 +52,20 @@ pub struct PairRates<const D: usize, L = Lane> {
     pub density: L,
     /// Vector part of the acceleration; left out where no effect has one.
     pub vector: [L; D],
+}
+
+impl<L: Lanes, const D: usize> PairRates<D, L> {
+    /// Adds what the pair's effects `E` accelerate; `mf` is m_j F.
+    #[inline(always)]
+    fn add_accelerations<A: Arch, E: PairEffect<D>>(&self, mf: L, dx: [L; D], accelerations: &mut [L; D]) {
+        let bracket = mf * self.bracket;
+        for d in 0..D {
+            accelerations[d] = A::mul_add(bracket, dx[d], accelerations[d]);
+            if E::VECTOR {
+                accelerations[d] = A::mul_add(mf, self.vector[d], accelerations[d]);
+            }
+        }
+    }
 }
 
 /// An effect in the pair pass. An absent effect is `()`; several are nested pairs.
@@ -203,6 +217,12 @@ impl<O, L: Lanes, const D: usize> Target<O, L, D> {
         }
     }
 
+    /// The targets with other velocities, m/s, by slots.
+    #[inline(always)]
+    pub(crate) fn moving(self, velocity: &[[f64; D]], slot: usize) -> Self {
+        Self { velocity: components(|d| each(velocity, slot, |v| v[d])), ..self }
+    }
+
     /// The targets with one neighbour.
     #[inline(always)]
     pub(crate) fn with<A: Arch>(&self, s: &Beside<D, L>, dx: [L; D], r2: L) -> FluidPair<D, L> {
@@ -261,16 +281,63 @@ impl<K: Kernel<D>, E: PairEffect<D>, Q: Equations, const D: usize> PairLaw<D> fo
         // What goes into the equation that is not wanted is not computed either.
         if Q::MOMENTUM {
             let mf = L::splat(self.sources.mass) * f;
-            let bracket = mf * rates.bracket;
-            for d in 0..D {
-                sum.acceleration[d] = A::mul_add(bracket, dx[d], sum.acceleration[d]);
-                if E::VECTOR {
-                    sum.acceleration[d] = A::mul_add(mf, rates.vector[d], sum.acceleration[d]);
-                }
-            }
+            rates.add_accelerations::<A, E>(mf, dx, &mut sum.acceleration);
         }
         if Q::CONTINUITY {
             sum.density_rate = A::mul_add(s.volume * f, rates.density, sum.density_rate);
         }
+    }
+}
+
+/// The accelerations that effects give at predicted velocities, without pressure.
+pub struct PredictedLaw<'a, K, E, const D: usize> {
+    /// Kernel.
+    pub kernel: K,
+    /// The effects.
+    pub effects: E,
+    /// Particles whose accelerations are wanted.
+    pub targets: &'a PairParticles<D>,
+    /// Their predicted velocities, m/s.
+    pub velocities: &'a [[f64; D]],
+    /// Neighbours of the targets.
+    pub sources: &'a PairParticles<D>,
+}
+
+impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for PredictedLaw<'_, K, E, D> {
+    const SINGLE: bool = true;
+    type Target<L: Lanes> = Target<E::Own<L>, L, D>;
+    type Sum<L: Lanes> = RateSum<D, L>;
+
+    #[inline(always)]
+    fn target_positions(&self) -> &[Vec<f64>; D] {
+        &self.targets.position
+    }
+    #[inline(always)]
+    fn target<L: Lanes>(&self, slot: usize) -> Self::Target<L> {
+        Target::load(self.targets, slot, self.effects.own(slot)).moving(self.velocities, slot)
+    }
+    #[inline(always)]
+    fn source_position(&self, j: usize) -> [f64; D] {
+        self.sources.sources[j].position
+    }
+    #[inline(always)]
+    fn source_numbers<L: Lanes>(&self, j: usize) -> [L::Number; D] {
+        self.sources.at::<L>(j)
+    }
+    #[inline(always)]
+    fn add<A: Arch, L: Lanes>(
+        &self,
+        i: &Self::Target<L>,
+        j: usize,
+        dx: [L; D],
+        r2: L,
+        sum: &mut RateSum<D, L>,
+    ) {
+        let s = self.sources.beside::<L>(j);
+        let f = self.kernel.gradient_over_r::<A, L>(distance(r2, self.kernel.smoothing_length()));
+        let pair = i.with::<A>(&s, dx, r2);
+        let mut rates = PairRates { bracket: L::ZERO, density: L::ZERO, vector: [L::ZERO; D] };
+        self.effects.add::<A, L>(&i.own, j, &pair, &mut rates);
+        rates.add_accelerations::<A, E>(L::splat(self.sources.mass) * f, dx, &mut sum.acceleration);
     }
 }

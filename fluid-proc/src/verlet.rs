@@ -4,7 +4,7 @@
 //!
 //! A sound wave moves velocity by pressure and density by velocity, one after the other: nothing amplifies it up to
 //! omega dt = 2, and each stage evaluates one of both equations. What damps is evaluated with v_n and so by Euler's
-//! rule.
+//! rule; the wall guard, after all else, with the velocity to which that leads.
 
 use crate::columns::Source;
 use crate::integration::{Moment, Rule};

@@ -10,7 +10,7 @@
 mod load;
 pub mod moving;
 
-use crate::columns::{Columns, PairParticles, Source, Vectors, fit, vectors};
+use crate::columns::{PairParticles, Source, Vectors, fit, vectors};
 use halfstep_scene::Motion;
 use halfstep_scene::geometry::WallPoint;
 use halfstep_sph::columns::bounds;
@@ -214,9 +214,8 @@ pub struct WallLaw<'a, K, const D: usize> {
 
 impl<'a, K: Kernel<D>, const D: usize> WallLaw<'a, K, D> {
     /// From the fluid to the walls.
-    pub fn new(kernel: K, gravity: [f64; D], walls: &'a Walls<D>, fluid: &'a Columns<D>) -> Self {
-        let (targets, sources) = (&walls.shown.position, &fluid.now);
-        Self { kernel, gravity, targets, sources, moving: walls.moving.is_some() }
+    pub fn new(kernel: K, gravity: [f64; D], walls: &'a Walls<D>, sources: &'a PairParticles<D>) -> Self {
+        Self { kernel, gravity, targets: &walls.shown.position, sources, moving: walls.moving.is_some() }
     }
 }
 

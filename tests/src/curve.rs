@@ -47,6 +47,11 @@ impl Curve {
         v0 + (v1 - v0) * (time - t0) / (t1 - t0)
     }
 
+    /// Largest distance from another curve at the rows of this one.
+    pub fn farthest_from(&self, other: &Self) -> f64 {
+        self.times.iter().zip(&self.values).map(|(&t, v)| (v - other.at(t)).abs()).fold(0.0, f64::max)
+    }
+
     /// Time and value of the largest value.
     pub fn peak(&self) -> (f64, f64) {
         let best = (0..self.values.len()).max_by(|&a, &b| self.values[a].total_cmp(&self.values[b]));

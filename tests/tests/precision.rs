@@ -1,16 +1,11 @@
 //! Pairs in single precision: the same bits however a run is run, and answers that nobody can tell from those of pairs
 //! in double precision.
 
-use halfstep_tests::{Curve, RunBuilder, scene};
+use halfstep_tests::{RunBuilder, scene};
 
 /// A scene as it is, and with pairs in single precision.
 fn both(run: impl Fn() -> RunBuilder) -> [RunBuilder; 2] {
     ["double", "mixed"].map(|precision| run().set("numerics.precision", precision))
-}
-
-/// Largest distance of two curves at the rows of the first one.
-fn farthest(a: &Curve, b: &Curve) -> f64 {
-    a.times.iter().zip(&a.values).map(|(&t, y)| (y - b.at(t)).abs()).fold(0.0, f64::max)
 }
 
 fn gate() -> RunBuilder {
@@ -40,7 +35,7 @@ fn the_gates_tip_is_where_double_precision_has_it() {
         let run = run.in_process().run();
         run.curve("tip.x")
     });
-    let apart = farthest(&double, &mixed);
+    let apart = double.farthest_from(&mixed);
     println!("tips {apart:e} m apart, peak {:e} m", double.peak().1);
     assert!(double.peak().1 > 0.03, "it opens");
     assert!(apart > 0.0 && apart < 1e-5, "{apart:e} m");
@@ -64,7 +59,7 @@ fn a_standing_wave_is_that_of_double_precision() {
         let run = run.in_process().run();
         run.curve("middle.x")
     });
-    let apart = farthest(&double, &mixed);
+    let apart = double.farthest_from(&mixed);
     let swing = double.peak().1 - double.mean();
     println!("centres {apart:e} m apart, swing {swing:e} m");
     assert!(swing > 1e-3 && apart < 1e-3 * swing, "{apart:e} of {swing:e} m");

@@ -85,7 +85,8 @@ fn drops_impacts_and_corners_hold_with_the_preset_for_waves() {
     hold_with("preset=waves", ["droplets", "impact"].map(family));
 }
 
-/// Cases by position Verlet, but for what the page says of thin water at walls: into a corner it gets by 0.15 dx.
+/// Cases by position Verlet, but for one in which water gets into a corner by 0.013 dx, and may by 0: as far as by the
+/// midpoint rule in most of the runs of the ensemble below, which holds that.
 fn by_verlet(mut family: Family) -> Family {
     family.case.retain(|case| case.name != "into a corner");
     family
@@ -105,7 +106,7 @@ fn the_hard_cases_by_position_verlet() {
 #[test]
 #[ignore = "minutes: all cases in mixed precision"]
 fn the_hard_cases_in_mixed_precision() {
-    hold_with("numerics.precision=mixed", families().into_iter().map(|(_, family)| family));
+    hold_with("numerics.precision=mixed", families().into_iter().map(|(_, family)| by_verlet(family)));
 }
 
 #[test]
@@ -166,6 +167,30 @@ fn room_of_the_courant_number() {
     if only.is_empty() && more.is_none() {
         renew("courant", &courant_table(rooms));
     }
+}
+
+/// Largest energy that the water gains, over what it may have, with plates of many stiffnesses between two waters.
+fn growth_beside_plates(rule: &str, cfl: f64) -> f64 {
+    let file = repository().join("tests/stability/scenes/two-waters.toml");
+    let growths = (0..24).map(|k| {
+        let run = scene_at(&file).set("solid.youngs_modulus", 5e7 * 200_f64.powf(f64::from(k) / 23.0));
+        let run = run.set("fluid.time_integration", rule).set("numerics.cfl", cfl).until(0.12);
+        let growth = run.threads(1).in_process().run().report.audit.energy_growth;
+        growth.fluid.expect("a growth")
+    });
+    growths.fold(0.0, f64::max)
+}
+
+/// Of what grows beside thin plates the stiffness decides, in narrow bands: one case says little.
+#[test]
+#[ignore = "a minute: 72 runs"]
+fn plates_of_many_stiffnesses_between_two_waters() {
+    let [midpoint, verlet, longer] = [("midpoint", 0.4), ("verlet", 0.4), ("verlet", 0.6)]
+        .map(|(rule, cfl)| growth_beside_plates(rule, cfl));
+    println!("midpoint {midpoint:.1e}, position Verlet {verlet:.1e}, with longer steps {longer:.1e}");
+    assert!(midpoint < 1e-5 && verlet < 1e-4, "{midpoint:e} {verlet:e}");
+    // Why position Verlet's longer steps are not the default beside such a solid.
+    assert!(longer > 1e-3, "{longer:e}");
 }
 
 /// What is thrown at walls in each run of an ensemble.
@@ -265,11 +290,18 @@ const THROUGH: f64 = 1.5;
 #[test]
 fn films_keep_out_of_walls_at_nearly_all_velocities() {
     for ensemble in ENSEMBLES.iter().filter(|ensemble| ensemble.scene == "film") {
-        let (guarded, lost) = beyond_in_runs(ensemble, 11, &[]);
+        for rule in ["midpoint", "verlet"] {
+            let (guarded, lost) = beyond_in_runs(ensemble, 11, &[("fluid.time_integration", rule)]);
+            println!("{}, {rule}: {guarded:.2?}", ensemble.name);
+            assert!(
+                guarded[10] < THROUGH && lost == 0,
+                "{}, {rule}: {guarded:?}, {lost} lost",
+                ensemble.name
+            );
+            assert!(deep(&guarded) < 0.3 && guarded[5] < 0.1, "{}, {rule}: {guarded:?}", ensemble.name);
+        }
         let (free, _) = beyond_in_runs(ensemble, 11, &[("effects.wall-guard", "off")]);
-        println!("{}: {:.2?}; without guard {:.2?}", ensemble.name, guarded, free);
-        assert!(guarded[10] < THROUGH && lost == 0, "{}: {guarded:?}, {lost} lost", ensemble.name);
-        assert!(deep(&guarded) < 0.3 && guarded[5] < 0.1, "{}: {guarded:?}", ensemble.name);
+        println!("{}, without guard: {free:.2?}", ensemble.name);
         // Without the remedy half of the runs fail, and the median with them.
         assert!(deep(&free) > 0.5 && free[5] > 0.3, "{}: {free:?}", ensemble.name);
     }
@@ -303,9 +335,7 @@ fn films_and_spray_at_many_velocities() {
             );
             print!("{row}");
             page += &row;
-            if !["no guard", "position Verlet"].contains(&name)
-                && (farthest > THROUGH || part > 0.2 || median > 0.1 || lost > 0)
-            {
+            if name != "no guard" && (farthest > THROUGH || part > 0.2 || median > 0.1 || lost > 0) {
                 wrong.push(row);
             }
         }

@@ -16,18 +16,18 @@
 //! implicit Euler rule, whatever k. A wall that mirrors doubles the rate: 1 - 2 k dt / ((1 + k dt) (1 + k dt / 2)) of
 //! the approach is left.
 //!
-//! Position Verlet has accelerations at one stage only, of the velocity at n: divided by 1 + k dt they leave
-//! 1 / (1 + k dt) of the approach there, too, and (1 - k dt) / (1 + k dt) beside a wall that mirrors, never more than
-//! there was.
+//! Position Verlet has accelerations at one stage only. There the guard comes last, with the velocity v_n + dt a that
+//! all others lead to (but what answers the interface), divided by 1 + k dt: (v_n + dt a) / (1 + k dt) is left of an
+//! approach to a partner that keeps its velocity, as by the implicit Euler rule. With v_n alone, what pushes a particle
+//! into the wall went unopposed for a step.
 
 use super::artificial_viscosity::ArtificialViscosity;
 use super::{FluidEffect, Listed, Neighbourhood};
 use crate::columns::fit;
 use crate::composition::{Composition, NoShare};
-use crate::equations::Needed;
 use crate::rates::{FluidPair, PairEffect, PairRates};
 use crate::walls::Walls;
-use halfstep_scene::{Decision, Derived, EffectName, Phase, Scene};
+use halfstep_scene::{Decision, Derived, EffectName, FluidIntegration, Phase, Scene};
 use halfstep_sph::fade::Fade;
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::{Arch, Lane, Lanes, Unfused};
@@ -40,6 +40,9 @@ const STRENGTH: f64 = 32.0;
 const REACH: [f64; 2] = [0.6, 0.8];
 /// Distance over the spacing at which k takes the kernel's slope: hardly anything comes nearer.
 const NEAR: f64 = 0.25;
+/// The same by position Verlet, with one evaluation and longer steps: so near that nowhere more than the whole approach
+/// is taken, up to a Courant number of 1.
+const NEAR_BY_VERLET: f64 = 0.15;
 
 /// The effect.
 #[derive(Clone, Debug)]
@@ -50,7 +53,7 @@ pub struct WallGuard<const D: usize> {
     rate: f64,
     /// k dt at the first stage, and where one stage has all accelerations; else k dt / 2.
     divisor: f64,
-    /// Distance of [`NEAR`], m.
+    /// Distance at which k takes the kernel's slope, m.
     near: f64,
     /// A c0 far from walls, in corners and along no-slip walls, m/s.
     plain: f64,
@@ -59,6 +62,8 @@ pub struct WallGuard<const D: usize> {
     quadratic: f64,
     /// What each wall slot adds, m/s.
     added: Vec<f64>,
+    /// How the fluid goes from n to n + 1.
+    integration: FluidIntegration,
 }
 
 impl<const D: usize> Listed<D> for WallGuard<D> {
@@ -73,24 +78,41 @@ impl<const D: usize> Listed<D> for WallGuard<D> {
             fade: Fade::new(REACH[0] * dx, REACH[1] * dx),
             rate: scene.numerics.cfl * h * h * STRENGTH * dx.powi(D as i32),
             divisor: 0.0,
-            near: NEAR * dx,
+            near: dx
+                * match fluid.time_integration {
+                    FluidIntegration::Midpoint => NEAR,
+                    FluidIntegration::Verlet => NEAR_BY_VERLET,
+                },
             plain: plain * c0,
             guard: (STRENGTH - plain).max(0.0) * c0,
             quadratic: acts * fluid.artificial_viscosity.quadratic,
             added: Vec::new(),
+            integration: fluid.time_integration,
         })
     }
 }
 
 impl<const D: usize> WallGuard<D> {
     /// Sets the divisor of a stage.
-    fn divide<K: Kernel<D>>(&mut self, stage: Stage, needed: Needed, kernel: &K) {
+    fn divide<K: Kernel<D>>(&mut self, stage: Stage, kernel: &K) {
         let slope = -kernel.gradient_over_r::<Unfused, Lane>(Lane::splat(self.near)).0[0];
-        let part = match (needed, stage) {
-            (Needed::Both, Stage::Second) => 0.5,
-            (Needed::Both, Stage::First) | (Needed::Momentum | Needed::Continuity, _) => 1.0,
+        let part = match (self.integration, stage) {
+            (FluidIntegration::Midpoint, Stage::Second) => 0.5,
+            (FluidIntegration::Midpoint, Stage::First) | (FluidIntegration::Verlet, _) => 1.0,
         };
         self.divisor = part * self.rate * slope;
+    }
+
+    fn share(&self) -> GuardedViscosity<'_> {
+        let Self { smoothing_length, fade, divisor, plain, quadratic, added, .. } = self;
+        GuardedViscosity {
+            smoothing_length: *smoothing_length,
+            fade: *fade,
+            divisor: *divisor,
+            plain: *plain,
+            added,
+            quadratic: *quadratic,
+        }
     }
 }
 
@@ -119,19 +141,14 @@ impl<const D: usize> FluidEffect<D> for WallGuard<D> {
         }
     }
     fn prepare<K: Kernel<D>>(&mut self, stage: Stage, around: &Neighbourhood<'_, K, D>) -> u64 {
-        self.divide(stage, Needed::at(stage, around.integration), &around.kernel);
+        self.divide(stage, &around.kernel);
         0
     }
     fn at_wall(&self) -> Option<GuardedViscosity<'_>> {
-        let Self { smoothing_length, fade, divisor, plain, quadratic, added, .. } = self;
-        Some(GuardedViscosity {
-            smoothing_length: *smoothing_length,
-            fade: *fade,
-            divisor: *divisor,
-            plain: *plain,
-            added,
-            quadratic: *quadratic,
-        })
+        (self.integration == FluidIntegration::Midpoint).then(|| self.share())
+    }
+    fn at_wall_predicted(&self) -> Option<GuardedViscosity<'_>> {
+        (self.integration == FluidIntegration::Verlet).then(|| self.share())
     }
     fn bytes(&self) -> usize {
         self.added.capacity() * size_of::<f64>()
@@ -208,7 +225,7 @@ mod tests {
             pressure_term_j: zero,
         };
         let mut rates = PairRates { bracket: zero, density: zero, vector: [zero; 2] };
-        guard.at_wall().expect("it always acts").add::<Fused, Lane>(&(), 0, &pair, &mut rates);
+        guard.share().add::<Fused, Lane>(&(), 0, &pair, &mut rates);
         let f = CubicSpline::<2>::new(H).gradient_over_r::<Unfused, Lane>(Lane::splat(r)).0[0];
         RHO * DX * DX * f * rates.bracket.0[0] * r
     }
@@ -243,17 +260,38 @@ mod tests {
         {
             let mut guard = guard();
             let dt = 0.4 * H / 20.0;
-            guard.divide(Stage::First, Needed::Both, &kernel);
+            guard.divide(Stage::First, &kernel);
             let half = 1.0 - 0.5 * dt * mirrored * rate(&guard, r);
-            guard.divide(Stage::Second, Needed::Both, &kernel);
+            guard.divide(Stage::Second, &kernel);
             let left = 1.0 - dt * mirrored * rate(&guard, r) * half;
             assert!((left - expected).abs() < 1e-9, "{mirrored}: {left} {expected}");
+        }
+    }
 
-            // Position Verlet: one evaluation with the velocity at n.
-            guard.divide(Stage::Second, Needed::Momentum, &kernel);
-            let left = 1.0 - dt * mirrored * rate(&guard, r);
-            let expected = 1.0 - mirrored * k_dt / (1.0 + k_dt);
-            assert!((left - expected).abs() < 1e-9, "{mirrored}: {left} {expected}");
+    /// Position Verlet: of the approach that is predicted the implicit Euler rule's part is left beside a partner that
+    /// keeps its velocity, and nowhere less than none: a guard that turned it round could feed energy in.
+    #[test]
+    fn a_step_by_verlet_leaves_what_the_implicit_rule_leaves() {
+        let kernel = CubicSpline::<2>::new(H);
+        for cfl in [0.4, 0.6, 1.0] {
+            let mut guard = WallGuard::of(&tank(&[
+                "effects.artificial-viscosity=\"off\"",
+                "fluid.time_integration=\"verlet\"",
+                &format!("numerics.cfl={cfl}"),
+            ]))
+            .expect("a fluid");
+            guard.added = vec![guard.guard];
+            guard.divide(Stage::Second, &kernel);
+            let dt = cfl * H / 20.0;
+            let left = |r: f64| 1.0 - dt * rate(&guard, r * DX);
+            let expected = 1.0 / (1.0 + dt * undivided(NEAR_BY_VERLET * DX));
+            assert!(
+                (left(NEAR_BY_VERLET) - expected).abs() < 1e-9,
+                "{cfl}: {} {expected}",
+                left(NEAR_BY_VERLET)
+            );
+            let least = (1..80).map(|k| left(0.01 * f64::from(k))).fold(f64::INFINITY, f64::min);
+            assert!((0.0..expected).contains(&least), "{cfl}: {least} {expected}");
         }
     }
 }

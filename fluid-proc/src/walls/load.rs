@@ -1,8 +1,9 @@
 //! What the fluid does to walls: the reaction to what it gets from them. Measured where a probe asks for it and a row
 //! is due; the time integration does not need it.
 
+use crate::composition::Shares;
 use crate::effects::{Effects, FluidEffect};
-use crate::equations::Momentum;
+use crate::equations::{Momentum, Needed};
 use crate::fluid::Fluid;
 use crate::rates::{RateLaw, RateSum};
 use halfstep_sph::kernel::Kernel;
@@ -21,9 +22,34 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
     fn loads<K: Kernel<D>>(&self, kernel: K) -> Vec<[f64; D]> {
         let Some(walls) = &self.walls else { return Vec::new() };
         let mut loads = vec![[0.0; D]; walls.slots()];
-        let (fluid, mass) = (&self.columns.now, self.columns.now.mass);
+        let (targets, sources) = (&self.columns.now, &walls.shown);
         let (effects, equations) = (self.effects.at_walls(), Momentum);
-        let law = RateLaw { kernel, equations, effects, targets: fluid, sources: &walls.shown };
+        self.add_loads(&RateLaw { kernel, equations, effects, targets, sources }, &mut loads);
+        if self.effects.at_walls_predicted().any() {
+            let velocities = self.predicted_from_now(kernel);
+            if let Some(law) = self.predicted_law(kernel, &velocities) {
+                self.add_loads(&law, &mut loads);
+            }
+        }
+        loads
+    }
+
+    /// Velocities, m/s, to which the accelerations of this state lead in a step as long as the last one. What solids do
+    /// is not among them.
+    fn predicted_from_now<K: Kernel<D>>(&self, kernel: K) -> Vec<[f64; D]> {
+        let mut sums = vec![RateSum::default(); self.sums.len()];
+        self.all_rates(kernel, Needed::Momentum, &mut sums);
+        let mut velocities = Vec::new();
+        self.predict(2.0 * self.density_lag, &sums, &mut velocities);
+        velocities
+    }
+
+    /// Adds the reaction of a law between fluid and walls.
+    fn add_loads<W>(&self, law: &W, loads: &mut [[f64; D]])
+    where
+        W: PairLaw<D, Sum<Lane> = RateSum<D>>,
+    {
+        let (fluid, mass) = (&self.columns.now, self.columns.now.mass);
         for slot in (0..self.columns.slots()).step_by(LANES) {
             let target = law.target(slot);
             let real: [bool; LANES] = std::array::from_fn(|k| self.columns.id[slot + k] != PADDING);
@@ -40,6 +66,5 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
                 }
             }
         }
-        loads
     }
 }

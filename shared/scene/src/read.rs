@@ -62,12 +62,15 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&s
     let integration =
         (top.section("fluid").choice("time_integration", Some(defaults.integration), &INTEGRATIONS))
             .unwrap_or(defaults.integration);
-    let numerics = numerics(top.section("numerics"), dimension, &defaults, integration.courant_number());
+    let mut numerics = numerics(top.section("numerics"), dimension, &defaults);
     let interface_section = top.section("interface");
     let treatment = interface_section
         .choice("treatment", Some(defaults.treatment), &TREATMENTS)
         .unwrap_or(defaults.treatment);
     let solids = read_solid::solids(&top, defaults.with_treatment(treatment), &numerics);
+    if top.section("numerics").node("cfl").is_none() {
+        numerics.cfl = integration.courant_number(solids.iter().any(|solid| solid.rigid().is_none()));
+    }
     let names: Vec<&str> = solids.iter().map(|s| s.name.as_str()).collect();
     let tables = top.tables("shape");
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -292,12 +295,12 @@ fn effects(
     (effects, own_effects)
 }
 
-fn numerics(section: Section<'_>, dimension: usize, defaults: &Defaults, courant_number: f64) -> Numerics {
+fn numerics(section: Section<'_>, dimension: usize, defaults: &Defaults) -> Numerics {
     let threads = section.section("threads");
     let numerics = Numerics {
         kernel: section.choice("kernel", Some(defaults.kernel), &KERNELS).unwrap_or(defaults.kernel),
         precision: section.choice("precision", Some(Precision::Double), &PRECISIONS).unwrap_or_default(),
-        cfl: section.number("cfl", Some(courant_number)),
+        cfl: section.number("cfl", Some(FluidIntegration::Midpoint.courant_number(true))),
         solid_cfl: section.number("solid_cfl", Some(0.6)),
         max_sub_steps: section.integer("max_sub_steps", 200),
         interface_capacity: section.optional_integer("interface_capacity"),

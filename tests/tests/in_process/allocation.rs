@@ -147,6 +147,13 @@ fn fluid_between_moving_walls() {
 }
 
 #[test]
+fn position_verlet() {
+    let verlet = "fluid.time_integration=verlet";
+    assert_eq!(alone(&shipped("dam-break", &["resolution=0.0028575", verlet])), 0);
+    assert_eq!(coupled(&shipped("elastic-gate", &["resolution=0.0025", verlet])), 0);
+}
+
+#[test]
 fn viscous_fluid() {
     assert_eq!(alone(&shipped("taylor-green", &[])), 0);
     let overrides = ["resolution=0.002286", "fluid.viscosity=1", "effects.viscosity=on"];

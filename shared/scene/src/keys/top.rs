@@ -198,7 +198,7 @@ static NUMERICS: Table = Table::new(
                 .why("a sound wave must not cross more than a smoothing length a step"),
             "Courant number of the fluid.",
         )
-        .default("0.4; `fluid.time_integration` \"verlet\" 0.6"),
+        .default("0.4; `fluid.time_integration` \"verlet\" without a solid that strains 0.6"),
         Key::number(
             "solid_cfl",
             Range::positive().up_to(1.1).why("dt c_P / dx beyond 1.1 is unstable"),
