@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 const NUMERICAL: [&str; 8] =
     ["resolution", "smoothing_ratio", "time_step", "preset", "numerics", "effects", "output", "interface"];
 /// The same within `[fluid]`, a solid and a shape.
-const NUMERICAL_PARTS: [&str; 16] = [
+const NUMERICAL_PARTS: [&str; 17] = [
     "sound_speed",
     "artificial_viscosity",
     "artificial_stress",
@@ -22,6 +22,7 @@ const NUMERICAL_PARTS: [&str; 16] = [
     "background_pressure",
     "smoothing_ratio",
     "sub_steps",
+    "time_integration",
     "hourglass",
     "model",
     "threads",
@@ -315,6 +316,8 @@ mod tests {
             "resolution",
             "time_step",
             "numerics.cfl",
+            "fluid.time_integration",
+            "solid.time_integration",
             "effects.viscosity",
             "fluid.sound_speed",
             "fluid.artificial_viscosity.linear",

@@ -74,14 +74,24 @@ pub struct Without {
 }
 
 impl Case {
-    /// A run of the case at a resolution.
-    pub fn run(&self, resolution: f64, model: Option<&str>, long: bool, more: &[String]) -> RunBuilder {
+    fn file(&self) -> PathBuf {
         let folder = repository();
         let file = match self.scene.strip_prefix('@') {
             Some(name) => folder.join("scenes").join(name),
             None => folder.join("tests/stability/scenes").join(&self.scene),
         };
-        let mut run = scene_at(&file.with_extension("toml")).set("resolution", resolution);
+        file.with_extension("toml")
+    }
+
+    /// Its scene has a fluid.
+    pub fn has_fluid(&self) -> bool {
+        let text = std::fs::read_to_string(self.file()).expect("a scene");
+        text.lines().any(|line| line.starts_with("[fluid"))
+    }
+
+    /// A run of the case at a resolution.
+    pub fn run(&self, resolution: f64, model: Option<&str>, long: bool, more: &[String]) -> RunBuilder {
+        let mut run = scene_at(&self.file()).set("resolution", resolution);
         if let Some(model) = model {
             run = run.set("solid.model", model);
         }
