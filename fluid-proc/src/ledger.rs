@@ -124,12 +124,12 @@ impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for PowerLaw<'_,
         let s = self.sources.beside::<L>(j);
         let f = self.kernel.gradient_over_r::<A, L>(distance(r2, self.kernel.smoothing_length()));
         let pair = i.with::<A>(&s, dx, r2);
-        let mut rates = PairRates { bracket: L::ZERO, density: L::ZERO, vector: [L::ZERO; D] };
+        let mut rates = PairRates::ZERO;
         self.effect.add::<A, L>(&i.own, j, &pair, &mut rates);
         if let Some([_, sources]) = self.middle {
             let dv = components(|d| velocity[d] - L::splat(sources[j][d]));
             let pair = FluidPair { dv, approach: dot::<D, A, L>(dv, dx), ..pair };
-            let mut of_middle = PairRates { bracket: L::ZERO, density: L::ZERO, vector: [L::ZERO; D] };
+            let mut of_middle = PairRates::ZERO;
             self.effect.add::<A, L>(&i.own, j, &pair, &mut of_middle);
             rates.density = of_middle.density;
         }
@@ -220,16 +220,16 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         records: &[StateRecord],
         peers: &[Peer],
     ) {
-        let Some(own) = &mut self.ledger else { return };
+        if self.ledger.is_none() {
+            return;
+        }
         let half = 0.5 * self.dt;
         let mean = |(slot, particle): (usize, &Source<D>)| {
             let sum = &self.sums[slot / LANES];
             let a = |d: usize| self.gravity[d] + sum.acceleration[d].0[slot % LANES];
             std::array::from_fn(|d| particle.velocity[d] + half * a(d))
         };
-        own.middle.clear();
-        own.middle.extend(self.columns.now.sources.iter().enumerate().map(mean));
-        let middle = std::mem::take(&mut own.middle);
+        let middle: Vec<_> = self.columns.now.sources.iter().enumerate().map(mean).collect();
         let shown = self.shown_by_walls(kernel, &middle);
         if let Some(own) = &mut self.ledger {
             (own.middle, own.shown) = (middle, shown);

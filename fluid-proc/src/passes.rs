@@ -138,15 +138,14 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         pair::pass_adding(self.isa, &law, &self.wall_list, sums);
     }
 
-    /// What walls with shares at predicted velocities do.
+    /// What walls do by shares at predicted velocities.
     pub(crate) fn predicted_law<'a, K: Kernel<D>>(
         &'a self,
         kernel: K,
         velocities: &'a [[f64; D]],
     ) -> Option<PredictedLaw<'a, K, AtWalls<'a, D, X>, D>> {
         let effects = self.effects.at_walls_predicted();
-        let walls = self.walls.as_ref().filter(|_| effects.any())?;
-        let (targets, sources) = (&self.columns.now, &walls.shown);
+        let (targets, sources) = (&self.columns.now, &self.walls.as_ref()?.shown);
         Some(PredictedLaw { kernel, effects, targets, velocities, sources })
     }
 

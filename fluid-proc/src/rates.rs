@@ -55,6 +55,9 @@ pub struct PairRates<const D: usize, L = Lane> {
 }
 
 impl<L: Lanes, const D: usize> PairRates<D, L> {
+    /// Nothing yet.
+    pub(crate) const ZERO: Self = Self { bracket: L::ZERO, density: L::ZERO, vector: [L::ZERO; D] };
+
     /// Adds what the pair's effects `E` accelerate; `mf` is m_j F.
     #[inline(always)]
     fn add_accelerations<A: Arch, E: PairEffect<D>>(&self, mf: L, dx: [L; D], accelerations: &mut [L; D]) {
@@ -336,7 +339,7 @@ impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for PredictedLaw
         let s = self.sources.beside::<L>(j);
         let f = self.kernel.gradient_over_r::<A, L>(distance(r2, self.kernel.smoothing_length()));
         let pair = i.with::<A>(&s, dx, r2);
-        let mut rates = PairRates { bracket: L::ZERO, density: L::ZERO, vector: [L::ZERO; D] };
+        let mut rates = PairRates::ZERO;
         self.effects.add::<A, L>(&i.own, j, &pair, &mut rates);
         rates.add_accelerations::<A, E>(L::splat(self.sources.mass) * f, dx, &mut sum.acceleration);
     }

@@ -204,7 +204,11 @@ mod tests {
     const RHO: f64 = 1000.0;
 
     fn guard() -> WallGuard<2> {
-        let scene = tank(&["effects.artificial-viscosity=\"off\""]);
+        guard_with(&[])
+    }
+
+    fn guard_with(more: &[&str]) -> WallGuard<2> {
+        let scene = tank(&[&["effects.artificial-viscosity=\"off\""], more].concat());
         let mut guard = WallGuard::of(&scene).expect("a fluid");
         guard.added = vec![guard.guard];
         guard
@@ -224,7 +228,7 @@ mod tests {
             pressure_term_i: zero,
             pressure_term_j: zero,
         };
-        let mut rates = PairRates { bracket: zero, density: zero, vector: [zero; 2] };
+        let mut rates = PairRates::ZERO;
         guard.share().add::<Fused, Lane>(&(), 0, &pair, &mut rates);
         let f = CubicSpline::<2>::new(H).gradient_over_r::<Unfused, Lane>(Lane::splat(r)).0[0];
         RHO * DX * DX * f * rates.bracket.0[0] * r
@@ -274,13 +278,8 @@ mod tests {
     fn a_step_by_verlet_leaves_what_the_implicit_rule_leaves() {
         let kernel = CubicSpline::<2>::new(H);
         for cfl in [0.4, 0.6, 1.0] {
-            let mut guard = WallGuard::of(&tank(&[
-                "effects.artificial-viscosity=\"off\"",
-                "fluid.time_integration=\"verlet\"",
-                &format!("numerics.cfl={cfl}"),
-            ]))
-            .expect("a fluid");
-            guard.added = vec![guard.guard];
+            let number = format!("numerics.cfl={cfl}");
+            let mut guard = guard_with(&["fluid.time_integration=\"verlet\"", &number]);
             guard.divide(Stage::Second, &kernel);
             let dt = cfl * H / 20.0;
             let left = |r: f64| 1.0 - dt * rate(&guard, r * DX);
