@@ -38,6 +38,8 @@ impl<const D: usize> Walls<D> {
             + of_each(&self.own_velocity)
             + of_each(&self.normal)
             + of(&self.reverse_all)
+            + of(&self.depth)
+            + of(&self.at_edge)
             + self.moving.as_ref().map_or(0, Moving::bytes)
             + self.rows.bytes()
     }

@@ -3,9 +3,9 @@
 //! For wall particle w, sums over the fluid particles f around it with weights W_wf:
 //!   v~ = sum v_f W / sum W,   p_w = sum [ p_f + rho_f g . (x_w - x_f) ] W / sum W;
 //! the velocity shown to the fluid is 2 u_w - v~ along the normal and v~ (free slip) or 2 u_w - v~ (no slip) along the
-//! wall, u_w its own velocity; in a corner all components are reversed. The density shown is the equation of state's at
-//! p_w, the mass rho0 V. Without fluid around: p_w = 0, rho0, u_w. Of a wall that moves by prescription, g is less its
-//! own acceleration.
+//! wall, u_w its own velocity, without slip that of the surface; in a corner all components are reversed. The density
+//! shown is the equation of state's at p_w, the mass rho0 V. Without fluid around: p_w = 0, rho0, u_w. Of a wall that
+//! moves by prescription, g is less its own acceleration.
 
 mod load;
 pub mod moving;
@@ -34,6 +34,10 @@ pub struct Walls<const D: usize> {
     pub(crate) normal: Vectors<D>,
     /// 1 where all components are reversed (corner or no slip), else 0.
     pub(crate) reverse_all: Vec<f64>,
+    /// Depth below the surface where water sticks to it, m; else, in corners and behind edges infinite.
+    pub(crate) depth: Vec<f64>,
+    /// 1 behind edges and beside them, else 0.
+    pub(crate) at_edge: Vec<f64>,
     /// Order of the slots.
     pub rows: Rows<D>,
     pub(crate) moving: Option<Moving<D>>,
@@ -46,7 +50,7 @@ impl<const D: usize> Walls<D> {
     pub fn new(
         points: &[WallPoint<D>],
         state: &StateEquation,
-        volume: f64,
+        spacing: f64,
         height: f64,
         non_negative: bool,
         motions: &[Option<Motion>],
@@ -55,10 +59,12 @@ impl<const D: usize> Walls<D> {
         let n = points.len();
         let mut walls = Self {
             id: (0..n as u32).collect(),
-            shown: PairParticles::new(n, state.density * volume, state.density),
+            shown: PairParticles::new(n, state.density * spacing.powi(D as i32), state.density),
             own_velocity: vectors(n),
             normal: vectors(n),
             reverse_all: vec![0.0; n],
+            depth: vec![f64::INFINITY; n],
+            at_edge: points.iter().map(|p| f64::from(u8::from(p.at_edge))).collect(),
             rows: Rows::new(precision),
             moving: Moving::new(points, motions),
             height,
@@ -72,6 +78,9 @@ impl<const D: usize> Walls<D> {
             }
             let reversed = p.corner || !p.free_slip;
             walls.reverse_all[i] = f64::from(u8::from(reversed));
+            if !p.free_slip && !p.corner {
+                walls.depth[i] = p.depth;
+            }
         }
         walls.sort();
         (0..walls.slots()).for_each(|slot| walls.shown.sources[slot] = walls.alone(slot, state));
@@ -88,6 +97,8 @@ impl<const D: usize> Walls<D> {
             self.rows.permute(&mut self.normal[d]);
         }
         self.rows.permute(&mut self.reverse_all);
+        self.rows.permute(&mut self.depth);
+        self.rows.permute(&mut self.at_edge);
         if let Some(moving) = &mut self.moving {
             moving.permute(&mut self.rows);
         }
@@ -129,12 +140,18 @@ impl<const D: usize> Walls<D> {
         self.reverse_all[slot] > 0.0
     }
 
+    /// A slot lies within the kernel's support of an edge, round which water flows.
+    pub fn is_at_edge(&self, slot: usize) -> bool {
+        self.at_edge[slot] > 0.0
+    }
+
     /// By how much the velocity that a slot shows is another than that of the water around it, m/s; `None` unless that
     /// water leaves a wall that does not push.
     pub fn shown_to_leaving(&self, slot: usize) -> Option<[f64; D]> {
         let Source { velocity, pressure, .. } = self.shown.sources[slot];
         // The wall shows v~ reversed, relative to its own velocity: along the normal, or as a whole.
-        let relative: [f64; D] = std::array::from_fn(|d| velocity[d] - self.own_velocity[d][slot]);
+        let surface = self.surface_velocity(slot);
+        let relative: [f64; D] = std::array::from_fn(|d| velocity[d] - surface[d]);
         let along: f64 = (0..D).map(|d| relative[d] * self.normal[d][slot]).sum();
         let leaves = pressure <= 0.0 && along < 0.0;
         leaves.then(|| {
@@ -156,7 +173,7 @@ impl<const D: usize> Walls<D> {
     fn one_shows(&self, slot: usize, k: usize, sum: &WallSum<D>, state: &StateEquation) -> Source<D> {
         let Some(mut pressure) = sum.extrapolated.pressure(k) else { return self.alone(slot, state) };
         let weight = sum.extrapolated.weight(k);
-        let u: [f64; D] = std::array::from_fn(|d| self.own_velocity[d][slot]);
+        let u = self.surface_velocity(slot);
         let v: [f64; D] = std::array::from_fn(|d| sum.velocity[d].0[k] / weight);
         let mut along_normal = 0.0;
         for d in 0..D {
@@ -178,6 +195,15 @@ impl<const D: usize> Walls<D> {
             pressure = pressure.max(0.0);
         }
         Source::new(self.position(slot), velocity, state.density_at(pressure), pressure, self.shown.mass)
+    }
+
+    /// Velocity of the surface that a slot stands for, m/s: of a wall that turns another one than its own, which counts
+    /// where water sticks.
+    fn surface_velocity(&self, slot: usize) -> [f64; D] {
+        match &self.moving {
+            Some(moving) if self.depth[slot].is_finite() => moving.velocity_above(slot, self.depth[slot]),
+            _ => std::array::from_fn(|d| self.own_velocity[d][slot]),
+        }
     }
 
     /// What a wall particle shows without fluid around.

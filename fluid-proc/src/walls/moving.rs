@@ -139,6 +139,15 @@ impl<const D: usize> Moving<D> {
         self.placements[shape].position_of(point)
     }
 
+    /// Velocity of the surface above a slot, which is so deep, m; m/s.
+    pub(crate) fn velocity_above(&self, slot: usize, depth: f64) -> [f64; D] {
+        let now = &self.placements[self.shape[slot] as usize];
+        let above = std::array::from_fn(|d| self.initial[d][slot] + depth * self.normal[d][slot]);
+        let (v, belt): ([f64; D], [f64; D]) =
+            (now.velocity_of(above), now.direction_of(std::array::from_fn(|d| self.surface[d][slot])));
+        std::array::from_fn(|d| v[d] + belt[d])
+    }
+
     /// Acceleration of a slot, m/s².
     pub(crate) fn acceleration(&self, slot: usize) -> [f64; D] {
         self.placements[self.shape[slot] as usize].acceleration_of(self.initial(slot))

@@ -60,6 +60,7 @@ pub use region::{Regions, void_meets};
 pub use sections::{Section, left_by_voids, sections};
 pub use surface::Surface;
 pub use wall_surface::{WallCorner, WallSurface, wall_corners};
+use wall_surface::{find_edges, where_walls_meet};
 
 /// Relative tolerance of every comparison of lengths, in spacings.
 const TOLERANCE: f64 = 1e-9;
@@ -118,12 +119,23 @@ pub struct WallPoint<const D: usize> {
     pub velocity: [f64; D],
     /// Unit normal of the surface it stands for, out of the wall. In a corner: the diagonal.
     pub normal: [f64; D],
+    /// Below that surface, m; infinite behind an edge, round which water flows.
+    pub depth: f64,
+    /// It lies within the kernel's support of an edge.
+    pub at_edge: bool,
     /// Whether it stands for two or more surfaces: all components of a velocity are reversed.
     pub corner: bool,
     /// Free slip (true) or no slip (false).
     pub free_slip: bool,
     /// Index of its shape in [`Scene::shapes`].
     pub shape: u32,
+}
+
+impl<const D: usize> WallPoint<D> {
+    /// It stands for one surface: it lies neither in a corner nor behind an edge.
+    pub fn has_one_face(&self) -> bool {
+        !self.corner && self.depth.is_finite()
+    }
 }
 
 /// All particles of a scene: shapes in the file's order, in a shape z outermost and x innermost.
@@ -211,6 +223,8 @@ fn on_lattices<const D: usize>(scene: &Scene, phases: &[Phase]) -> Layout<D> {
         true => (0..scene.shapes.len()).map(|index| polygon::standing(scene, index)).collect(),
         false => Vec::new(),
     };
+    // Places of walls that are taken, with their shapes.
+    let mut shared = Vec::new();
     for &phase in phases {
         for (index, shape) in scene.shapes.iter().enumerate().filter(|(_, s)| s.phase == phase) {
             let spacing = Spacing::of(scene, shape);
@@ -221,7 +235,13 @@ fn on_lattices<const D: usize>(scene: &Scene, phases: &[Phase]) -> Layout<D> {
             if standing.is_some() {
                 kept.retain(|(p, _)| region.contains(&p.position, TOLERANCE * spacing.dx));
             }
-            kept.retain(|(p, _)| !region.is_void(&p.position) && occupied.is_free(&p.position, spacing.dx));
+            kept.retain(|(p, _)| !region.is_void(&p.position));
+            let free = |(p, _): &(points::Point<D>, u32)| occupied.is_free(&p.position, spacing.dx);
+            if phase == Phase::Wall {
+                let taken = kept.iter().filter(|point| !free(point));
+                shared.extend(taken.map(|(p, _)| (p.position, index as u32)));
+            }
+            kept.retain(free);
             occupied.add(region, spacing, phase, kept.iter().map(|(p, _)| p.position));
             let velocity = truncated(shape.velocity);
             match phase {
@@ -235,6 +255,8 @@ fn on_lattices<const D: usize>(scene: &Scene, phases: &[Phase]) -> Layout<D> {
                     position: p.position,
                     velocity,
                     normal: p.normal,
+                    depth: p.depth,
+                    at_edge: false,
                     corner: p.corner,
                     free_slip: shape.free_slip,
                     shape: index as u32,
@@ -256,6 +278,8 @@ fn on_lattices<const D: usize>(scene: &Scene, phases: &[Phase]) -> Layout<D> {
             }
         }
     }
+    where_walls_meet(scene, &mut layout.wall, &shared);
+    find_edges(scene, &mut layout.wall);
     layout
 }
 

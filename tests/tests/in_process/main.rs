@@ -3,6 +3,7 @@
 
 mod absent_effects;
 mod allocation;
+mod channel;
 mod coincident;
 mod divergence;
 mod measured;

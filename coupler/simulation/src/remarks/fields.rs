@@ -138,7 +138,8 @@ fn into_walls<const D: usize>(
     let own = layout.fluid.iter().filter(|p| p.shape as usize == index);
     own.for_each(|p| water.add(&p.position, p.position));
     let surface = if scene.numerics.lattice == Lattice::Nodal { 0.0 } else { 0.5 * scene.resolution };
-    let wet = layout.wall.iter().filter(|p| !p.corner && scene.shapes[p.shape as usize].motion.is_none());
+    let wet =
+        layout.wall.iter().filter(|p| p.has_one_face() && scene.shapes[p.shape as usize].motion.is_none());
     let wet = wet.filter(|p| water.around(&p.position).any(|x| super::near(x, &p.position, reach)));
     let into = wet.map(|p| {
         let at = [0, 1].map(|a| p.position[a] + surface * p.normal[a]);

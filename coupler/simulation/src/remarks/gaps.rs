@@ -114,7 +114,7 @@ fn gaps<const D: usize>(scene: &Scene, layout: &Layout<D>) -> BTreeMap<[usize; 2
         |shape: usize| matches!(scene.shapes[shape].geometry, Geometry::Box(_) | Geometry::Tank { .. });
     let rounded = |pair: &[usize; 2]| ROUNDED[usize::from(!pair.iter().all(|&shape| fitted(shape)))] * dx;
     let [mut all, mut leaning] = [const { BTreeMap::<[usize; 2], Gap<D>>::new() }; 2];
-    for p in layout.wall.iter().filter(|p| !p.corner) {
+    for p in layout.wall.iter().filter(|p| p.has_one_face()) {
         let shape = p.shape as usize;
         let before = |way: f64| -> [f64; D] { std::array::from_fn(|a| p.position[a] + way * p.normal[a]) };
         let own = faces.iter().find(|face| face.shape == shape);

@@ -20,7 +20,7 @@ pub(super) fn across<const D: usize>(scene: &Scene, layout: &Layout<D>, all: &mu
             (0..D).map(|a| shape.velocity[a] * p.normal[a]).sum::<f64>().abs() > ACROSS * speed
         };
         let mut faces = Cells::new(reach);
-        let own = layout.wall.iter().filter(|p| p.shape as usize == index && !p.corner);
+        let own = layout.wall.iter().filter(|p| p.shape as usize == index && p.has_one_face());
         own.filter(|p| across(p)).for_each(|p| faces.add(&p.position, p.position));
         let wet = layout
             .fluid
@@ -63,7 +63,7 @@ fn thin_places<const D: usize>(scene: &Scene, layout: &Layout<D>, walls: &Matter
     let inside = |x: &[f64; D]| regions.hold(x, -1e-6 * dx);
     let fill = |x: &[f64; D]| walls.fill(x) || inside(x);
     let mut all = Vec::new();
-    for p in layout.wall.iter().filter(|p| !p.corner) {
+    for p in layout.wall.iter().filter(|p| p.has_one_face()) {
         for side in [1.0, -1.0] {
             let behind = |way: f64| -> [f64; D] {
                 std::array::from_fn(|a| p.position[a] - side * way * dx * p.normal[a])

@@ -66,6 +66,8 @@ impl Spacing {
 pub(super) struct Point<const D: usize> {
     pub(super) position: [f64; D],
     pub(super) normal: [f64; D],
+    /// Below the surface that it stands for, m; infinite behind an edge.
+    pub(super) depth: f64,
     pub(super) corner: bool,
 }
 
@@ -112,6 +114,7 @@ fn copies<const D: usize>(moved: &Moved, spacing: Spacing) -> Vec<(Point<D>, u32
         let placed = first.iter().map(|point| Point {
             position: moved.place(copy, point.position),
             normal: moved.turned(point.normal),
+            depth: point.depth,
             corner: point.corner,
         });
         let limit = (0.5 - TOLERANCE) * spacing.dx;
@@ -164,9 +167,9 @@ fn in_box<const D: usize>(block: &Block, spacing: Spacing) -> Vec<Point<D>> {
     let mut points = Vec::new();
     each_index(cells.map(|n| spacing.range(n)), |k| {
         let place: [f64; D] = k.map(|k| spacing.place(k));
-        let (normal, corner) = nearest_face(&place, &cells);
+        let (normal, depth) = nearest_face(&place, &cells);
         let position = std::array::from_fn(|a| block.min[a] + place[a] * spacing.dx);
-        points.push(Point { position, normal, corner });
+        points.push(Point { position, normal, depth: depth * spacing.dx, corner: false });
     });
     points
 }
@@ -184,23 +187,29 @@ fn turned<const D: usize>(geometry: &Geometry, around: &Block, spacing: Spacing)
         let position = std::array::from_fn(|a| middle[a] + from[a]);
         // What lies on the surface is outside, as in a polygon.
         if region::contains(geometry, spacing, &position, -TOLERANCE * spacing.dx) {
-            points.push(Point { position, normal: [0.0; D], corner: false });
+            points.push(Point { position, normal: [0.0; D], depth: 0.0, corner: false });
         }
     });
     points
 }
 
-/// The outward normal of the face nearest to a place inside a box; a corner where faces of two axes are equally near.
-fn nearest_face<const D: usize>(place: &[f64; D], cells: &[i64; D]) -> ([f64; D], bool) {
+/// The outward normal of the face nearest to a place inside a box, with how near that is in spacings. Where faces of
+/// two axes are equally near, the diagonal, infinitely deep: water flows round such an edge, which is no corner that
+/// reverses all components of a velocity. Of an axis whose two faces are equally near the other one decides.
+fn nearest_face<const D: usize>(place: &[f64; D], cells: &[i64; D]) -> ([f64; D], f64) {
     // Places are multiples of 1/2: distances compare exactly.
     let depth: [f64; D] = std::array::from_fn(|a| place[a].min(cells[a] as f64 - place[a]));
     let least = depth.iter().copied().fold(f64::INFINITY, f64::min);
-    let direction = std::array::from_fn(|a| match depth[a] == least {
+    let nearest = |a: usize| depth[a] == least;
+    let between = |a: usize| place[a] == cells[a] as f64 - place[a];
+    let one_way = (0..D).any(|a| nearest(a) && !between(a));
+    let direction = std::array::from_fn(|a| match nearest(a) && !(one_way && between(a)) {
         true if place[a] <= cells[a] as f64 - place[a] => -1.0,
         true => 1.0,
         false => 0.0,
     });
-    normalised(direction)
+    let (normal, edge) = normalised(direction);
+    (normal, if edge { f64::INFINITY } else { least })
 }
 
 /// A unit vector, and whether more than one component was set.
@@ -225,8 +234,9 @@ fn in_ring<const D: usize>(center: &[f64; 3], inner: f64, outer: f64, spacing: S
             true => (from_center.map(|c| outward * c / radius), false),
             false => normalised([1.0; D]),
         };
+        let depth = if outward < 0.0 { radius - inner } else { outer - radius };
         let position = std::array::from_fn(|a| center[a] + from_center[a]);
-        points.push(Point { position, normal, corner });
+        points.push(Point { position, normal, depth, corner });
     });
     points
 }
@@ -254,8 +264,12 @@ fn around<const D: usize>(cavity: &Block, open: &[TankSide], spacing: Spacing) -
             return;
         }
         let (normal, corner) = normalised(direction);
+        let depth = (0..D).fold(0.0_f64, |depth, a| {
+            let place = spacing.place(k[a]);
+            depth.max(-place).max(place - cells[a] as f64)
+        });
         let position = std::array::from_fn(|a| cavity.min[a] + spacing.place(k[a]) * spacing.dx);
-        points.push(Point { position, normal, corner });
+        points.push(Point { position, normal, depth: depth * spacing.dx, corner });
     });
     points
 }

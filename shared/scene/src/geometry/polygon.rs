@@ -115,7 +115,7 @@ impl Polygon {
                 let at = place(spacing.place(i) * spacing.dx, spacing.place(j) * spacing.dx);
                 if edges.contains(&at, margin) {
                     let position = in_space(at);
-                    points.push(Point { position, normal: [0.0; D], corner: false });
+                    points.push(Point { position, normal: [0.0; D], depth: 0.0, corner: false });
                 }
             }
         }

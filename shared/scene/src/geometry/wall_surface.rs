@@ -6,9 +6,11 @@
 //! shape is taken by itself, without voids.
 
 mod corners;
+mod normals;
 mod regions;
 
 pub use corners::{WallCorner, wall_corners};
+pub(super) use normals::{find_edges, where_walls_meet};
 
 use super::{Surface, bounding_box};
 use crate::{Block, Motion, Scene};

@@ -36,6 +36,7 @@ pub(in crate::geometry) fn rows<const D: usize>(polygon: &Polygon, spacing: Spac
     let in_space = |p: Point<PLANE>| Point {
         position: in_space(p.position),
         normal: in_space(p.normal),
+        depth: p.depth,
         corner: p.corner,
     };
     kept.points.into_iter().map(in_space).collect()
@@ -135,12 +136,14 @@ fn row(edges: &Edges, chain: &Chain, depth: f64, spacing: Spacing, kept: &mut Ke
         if nearer || !edges.contains(&position, tolerance) {
             continue;
         }
-        let (normal, corner) = surface(edges, k, &position, end.then_some(i == 0), tolerance, !chain.closed);
-        kept.add(Point { position, normal, corner });
+        let (normal, depth, corner) =
+            surface(edges, k, &position, end.then_some(i == 0), tolerance, !chain.closed);
+        kept.add(Point { position, normal, depth, corner });
     }
 }
 
-/// The outward normal at a particle of a side's row, and whether it lies in a corner.
+/// The outward normal at a particle of a side's row, its depth, m, infinite behind an edge, and whether it lies in a
+/// corner.
 fn surface(
     edges: &Edges,
     k: usize,
@@ -148,7 +151,7 @@ fn surface(
     end: Option<bool>,
     tolerance: f64,
     has_corners: bool,
-) -> ([f64; 2], bool) {
+) -> ([f64; 2], f64, bool) {
     let edge = &edges.all[k];
     let [along, depth] = edge.coordinates(p);
     let beyond = match end {
@@ -157,7 +160,7 @@ fn surface(
         None if along > edge.length() - tolerance => Some(false),
         None => None,
     };
-    let Some(first) = beyond else { return (edge.normal(), false) };
+    let Some(first) = beyond else { return (edge.normal(), depth, false) };
     let [before, after] = if first { [edge.before, k] } else { [k, edge.after] };
     let (a, b) = (edges.all[before].normal(), edges.all[after].normal());
     let sharp = has_corners && dot(&a, &b) < SHARP;
@@ -169,7 +172,10 @@ fn surface(
         false => [corner[0] - p[0], corner[1] - p[1]],
     };
     let length = libm::hypot(out[0], out[1]);
-    (if length > 0.0 { out.map(|c| c / length) } else { edge.normal() }, sharp)
+    // Water flows round a corner that stands out.
+    let stands_out = sharp && a[0] * b[1] - a[1] * b[0] > 0.0;
+    let normal = if length > 0.0 { out.map(|c| c / length) } else { edge.normal() };
+    (normal, if stands_out { f64::INFINITY } else { depth }, sharp && !stands_out)
 }
 
 /// The particles so far.

@@ -39,6 +39,33 @@ impl<'s> Places<'s> {
         all
     }
 
+    /// The same, joined by halves: for many copies.
+    pub(super) fn union_of_many(scene: &'s Scene, members: &[usize]) -> Self {
+        let mut all = Self { scene, regions: Regions::new(), exact: BTreeMap::new() };
+        let mut parts = Vec::new();
+        for &index in members {
+            let shape: &Shape = &scene.shapes[index];
+            let spacing = Spacing::of(scene, shape);
+            let voids = voids_before(scene, index);
+            let voids: Vec<Regions> =
+                voids.iter().map(|void| all.on_grid(copies(&void.geometry, spacing))).collect();
+            for one in copies(&shape.geometry, spacing) {
+                let own = all.on_grid(vec![one]);
+                let without = |own: Regions, void: &Regions| combined(&own, void, OverlayRule::Difference);
+                parts.push(voids.iter().fold(own, without));
+            }
+        }
+        while parts.len() > 1 {
+            let join = |pair: &[Regions]| match pair {
+                [one, other] => combined(one, other, OverlayRule::Union),
+                _ => pair.concat(),
+            };
+            parts = parts.chunks(2).map(join).collect();
+        }
+        all.regions = parts.pop().unwrap_or_default();
+        all
+    }
+
     /// Without the solids that begin in them.
     pub(super) fn without_solids(mut self) -> Self {
         for (index, shape) in self.scene.shapes.iter().enumerate() {
