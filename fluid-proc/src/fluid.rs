@@ -113,7 +113,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         let non_negative = NonNegativeWallPressure::<D>::decide(scene).on;
         let walls = (!layout.wall.is_empty()).then(|| {
             let (reach, motions) = (2.0 * h + skin, motions(scene));
-            Walls::new(&layout.wall, &state, scene.resolution, reach, non_negative, &motions, precision)
+            Walls::new(&layout.wall, &state, volume, reach, non_negative, &motions, precision)
         });
         let effects = effects::of_scene(scene, more);
         let domain = geometry::domain(scene);

@@ -50,7 +50,7 @@ impl<const D: usize> Walls<D> {
     pub fn new(
         points: &[WallPoint<D>],
         state: &StateEquation,
-        spacing: f64,
+        volume: f64,
         height: f64,
         non_negative: bool,
         motions: &[Option<Motion>],
@@ -59,7 +59,7 @@ impl<const D: usize> Walls<D> {
         let n = points.len();
         let mut walls = Self {
             id: (0..n as u32).collect(),
-            shown: PairParticles::new(n, state.density * spacing.powi(D as i32), state.density),
+            shown: PairParticles::new(n, state.density * volume, state.density),
             own_velocity: vectors(n),
             normal: vectors(n),
             reverse_all: vec![0.0; n],

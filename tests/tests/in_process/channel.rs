@@ -1,13 +1,6 @@
 //! A channel without slip, driven by a force along it: a known limit of the viscous stress.
 
-use halfstep_fluid::Fluid;
-use halfstep_output::Frame;
-use halfstep_role::role::Role;
-use halfstep_scene as scene;
-use halfstep_sph::lane::Isa;
-use halfstep_tests::fluid_alone::go_on;
-use halfstep_wire::frame::FLUID;
-use std::path::Path;
+use halfstep_tests::fluid_alone::{mean_of, run_to};
 
 /// Mean velocity over Poiseuille's g H² / 12 nu = 0.25 m/s in the middle of a plug 1 m long, 0.1 m high, at 0.4 s,
 /// when the start is over but for 2 %.
@@ -21,19 +14,9 @@ fn flow(ratio: f64, dx: f64) -> f64 {
          [[shape]]\nname = \"lid\"\nphase = \"wall\"\nslip = \"none\"\n\
          box = {{ min = [-0.4, 0.1], max = [1.6, 0.15] }}\n"
     );
-    let scene = scene::parse(&text, Path::new("channel.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}"));
-    let mut fluid = Fluid::<2>::new(&scene, Isa::detect()).expect("a scene with fluid");
-    go_on(&mut fluid, 0.4, |_, _, _| {});
-    let mut frame = Frame::default();
-    fluid.fill_frame(0.4, &mut frame);
-    let oil =
-        || frame.points.iter().zip(&frame.velocity).zip(&frame.phase).filter(|(_, phase)| **phase == FLUID);
-    let count = oil().count() as f64;
-    let middle = oil().map(|((x, _), _)| f64::from(x[0])).sum::<f64>() / count;
-    let speeds =
-        oil().filter(|((x, _), _)| (f64::from(x[0]) - middle).abs() < 0.2).map(|((_, v), _)| f64::from(v[0]));
-    let speeds: Vec<f64> = speeds.collect();
-    speeds.iter().sum::<f64>() / speeds.len() as f64 / 0.25
+    let (_, frame) = run_to(&text, 0.4);
+    let middle = mean_of(&frame, |[x, _], _| Some(x));
+    mean_of(&frame, |[x, _], [u, _]| ((x - middle).abs() < 0.2).then_some(u / 0.25))
 }
 
 /// Odd and even rows part, since the stress is a gradient of a gradient that each sees every other row: docs/theory/

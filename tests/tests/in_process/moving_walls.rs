@@ -1,28 +1,12 @@
 //! Walls that move by prescription.
 
 use halfstep_fluid::Fluid;
-use halfstep_output::Frame;
 use halfstep_role::role::Role;
-use halfstep_scene as scene;
-use halfstep_sph::lane::Isa;
-use halfstep_tests::fluid_alone::go_on;
-use halfstep_wire::frame::FLUID;
-use std::path::Path;
+use halfstep_tests::fluid_alone::{mean_of, run_to};
 
 const TANK: &str = "resolution = 0.01\nend_time = 2.0\ngravity = [0.0, -9.81]\n[fluid]\ndensity = 1000.0\n\
     [[shape]]\nname = \"water\"\nphase = \"fluid\"\nbox = { min = [0.0, 0.0], max = [0.5, 0.2] }\n\
     pressure = \"hydrostatic\"\n";
-
-/// Runs to a time and returns the fluid with its last frame.
-fn run(text: &str, until: f64) -> (Fluid<2>, Frame) {
-    let scene = scene::parse(text, Path::new("moving.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}"));
-    let mut fluid = Fluid::<2>::new(&scene, Isa::detect()).unwrap();
-    let mut reached = 0.0;
-    go_on(&mut fluid, until, |_, _, t| reached = t);
-    let mut frame = Frame::default();
-    fluid.fill_frame(reached, &mut frame);
-    (fluid, frame)
-}
 
 #[test]
 fn a_piston_that_pushes_slowly_raises_the_water() {
@@ -30,7 +14,7 @@ fn a_piston_that_pushes_slowly_raises_the_water() {
     let piston = "[[shape]]\nname = \"piston\"\nphase = \"wall\"\nbox = { min = [-0.03, 0.0], max = [0.0, 0.4] }\n\
         motion = { velocity = [0.05, 0.0], end = 2.0 }\n[[shape]]\nname = \"tank\"\nphase = \"wall\"\n\
         tank = { min = [-0.1, 0.0], max = [0.5, 0.4], open = [\"left\", \"top\"] }\n";
-    let (fluid, frame) = run(&format!("{TANK}{piston}"), 2.0);
+    let (fluid, frame) = run_to(&format!("{TANK}{piston}"), 2.0);
     let water = || (0..1000).map(|k| frame.points[k].map(f64::from));
     let face = 0.1;
     let first = water().map(|x| x[0]).fold(f64::INFINITY, f64::min);
@@ -50,8 +34,8 @@ fn a_tank_that_moves_with_its_water_is_a_tank_at_rest() {
              tank = {{ min = [0.0, 0.0], max = [0.5, 0.3], open = [\"top\"] }}\n"
         )
     };
-    let (rest, _) = run(&tank("[0.0, 0.0]", ""), 0.3);
-    let (moving, frame) = run(&tank("[1.0, 0.0]", "motion = { velocity = [1.0, 0.0] }\n"), 0.3);
+    let (rest, _) = run_to(&tank("[0.0, 0.0]", ""), 0.3);
+    let (moving, frame) = run_to(&tank("[1.0, 0.0]", "motion = { velocity = [1.0, 0.0] }\n"), 0.3);
     let centroid = (0..1000).map(|k| f64::from(frame.points[k][0])).sum::<f64>() / 1000.0;
     // The water sloshes by no more than the standing tank's: a thousandth of a spacing.
     assert!((centroid - 0.55).abs() < 1e-5, "{centroid}");
@@ -76,18 +60,14 @@ fn couette(ratio: f64, dx: f64) -> f64 {
          ring = {{ center = [0.0, 0.0], inner = {outer}, outer = 0.4 }}\n"
     );
     // Of the slowest mode, (pi / 0.2 m)² mu / rho = 12 / s, is nothing left.
-    let (_, frame) = run(&text, 0.6);
+    let (_, frame) = run_to(&text, 0.6);
     // A r + B / r with the walls' speeds.
     let share = turn * inner * inner / (outer * outer - inner * inner);
     let exact = |r: f64| share * (outer * outer / r - r);
-    let fluid = frame.points.iter().zip(&frame.velocity).zip(&frame.phase);
-    let ratios = fluid.filter(|(_, phase)| **phase == FLUID).filter_map(|((x, v), _)| {
-        let [x, y, u, v] = [x[0], x[1], v[0], v[1]].map(f64::from);
+    mean_of(&frame, |[x, y], [u, v]| {
         let r = x.hypot(y);
         (r < 0.5 * (inner + outer)).then(|| (x * v - y * u) / r / exact(r))
-    });
-    let ratios: Vec<f64> = ratios.collect();
-    ratios.iter().sum::<f64>() / ratios.len() as f64
+    })
 }
 
 /// The walls reverse the fluid's velocity about that of their surface. About each particle's own, which is less in a

@@ -13,7 +13,7 @@ pub use corners::{WallCorner, wall_corners};
 pub(super) use normals::{find_edges, where_walls_meet};
 
 use super::{Surface, bounding_box};
-use crate::{Block, Motion, Scene};
+use crate::{Block, Motion, Scene, Shape};
 use regions::{Places, Regions};
 
 /// Edges shorter than this are none, in spacings.
@@ -65,10 +65,18 @@ enum End {
 
 /// Indices of the walls that solids may touch, those together that move alike.
 fn that_move_alike(scene: &Scene) -> Vec<Vec<usize>> {
+    grouped(scene, scene.walls_to_touch(), Shape::moves_like)
+}
+
+/// Indices of shapes, those together that are alike, in the order of the first of each.
+fn grouped<'s>(
+    scene: &Scene,
+    shapes: impl Iterator<Item = (usize, &'s Shape)>,
+    alike: impl Fn(&Shape, &Shape) -> bool,
+) -> Vec<Vec<usize>> {
     let mut all: Vec<Vec<usize>> = Vec::new();
-    for (index, wall) in scene.walls_to_touch() {
-        let alike = |members: &&mut Vec<usize>| wall.moves_like(&scene.shapes[members[0]]);
-        match all.iter_mut().find(alike) {
+    for (index, shape) in shapes {
+        match all.iter_mut().find(|members| alike(shape, &scene.shapes[members[0]])) {
             Some(members) => members.push(index),
             None => all.push(vec![index]),
         }

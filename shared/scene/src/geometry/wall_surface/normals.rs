@@ -6,11 +6,11 @@
 //! another tank's cavity lies before them.
 
 use super::regions::Places;
-use super::{SHORTEST, direction, distance_to, distinct, normal, turn_at};
+use super::{SHORTEST, direction, distance_to, distinct, grouped, normal, turn_at};
 use crate::geometry::points::{Spacing, sides};
+use crate::geometry::polygon::dot;
 use crate::geometry::{Cells, Moved, TOLERANCE, WallPoint};
 use crate::{Block, Geometry, Phase, Scene, Shape, TankSide};
-use rustc_hash::FxHashMap;
 use std::collections::BTreeSet;
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -55,36 +55,37 @@ pub(in crate::geometry) fn where_walls_meet<const D: usize>(
 /// Marks the wall particles within the kernel's support of an edge: of one that stands for a diagonal, and before which
 /// there is no wall.
 pub(in crate::geometry) fn find_edges<const D: usize>(scene: &Scene, walls: &mut [WallPoint<D>]) {
+    let diagonal = |point: &&WallPoint<D>| point.depth.is_infinite() && !point.corner;
+    let Some(first) = walls.iter().find(diagonal) else { return };
+    let reach = Spacing::of(scene, &scene.shapes[first.shape as usize]).thickness();
     let dx = scene.resolution;
-    let apart = |a: &[f64; D], b: &[f64; D]| (0..D).map(|d| (a[d] - b[d]).powi(2)).sum::<f64>();
     let mut all = Cells::new(dx);
     walls.iter().for_each(|point| all.add(&point.position, point.position));
     let stands_out = |point: &&WallPoint<D>| {
         let before = std::array::from_fn(|d| point.position[d] + BEFORE * dx * point.normal[d]);
-        let is_wall = |place: &[f64; D]| apart(place, &before) < (NEAR * dx).powi(2);
-        point.depth.is_infinite() && !point.corner && !all.around(&before).any(is_wall)
+        !all.around(&before).any(|place| is_near(place, &before, NEAR * dx))
     };
-    let edges: Vec<[f64; D]> = walls.iter().filter(stands_out).map(|point| point.position).collect();
-    let Some(first) = walls.first() else { return };
-    let reach = Spacing::of(scene, &scene.shapes[first.shape as usize]).thickness();
-    let mut near = Cells::new(reach);
-    edges.iter().for_each(|edge| near.add(edge, *edge));
+    let mut edges = Cells::new(reach);
+    walls
+        .iter()
+        .filter(diagonal)
+        .filter(stands_out)
+        .for_each(|point| edges.add(&point.position, point.position));
     for point in walls {
-        point.at_edge = near.around(&point.position).any(|edge| apart(edge, &point.position) < reach * reach);
+        point.at_edge = edges.around(&point.position).any(|edge| is_near(edge, &point.position, reach));
     }
+}
+
+/// Whether two places are closer than a distance, m.
+fn is_near<const D: usize>(a: &[f64; D], b: &[f64; D], distance: f64) -> bool {
+    (0..D).map(|d| (a[d] - b[d]).powi(2)).sum::<f64>() < distance * distance
 }
 
 /// Indices of walls that move and slip alike, several together.
 fn that_are_alike(scene: &Scene) -> Vec<Vec<usize>> {
-    let mut all: Vec<Vec<usize>> = Vec::new();
     let walls = scene.shapes.iter().enumerate().filter(|(_, shape)| shape.phase == Phase::Wall);
-    for (index, wall) in walls {
-        let alike = |other: &Shape| other.moves_like(wall) && other.free_slip == wall.free_slip;
-        match all.iter_mut().find(|members| alike(&scene.shapes[members[0]])) {
-            Some(members) => members.push(index),
-            None => all.push(vec![index]),
-        }
-    }
+    let alike = |one: &Shape, other: &Shape| one.moves_like(other) && one.free_slip == other.free_slip;
+    let mut all = grouped(scene, walls, alike);
     all.retain(|members| members.len() > 1);
     all
 }
@@ -104,9 +105,7 @@ fn that_meet<const D: usize>(
         cells.add(&place, (place, shape));
     }
     let meets = |point: &WallPoint<D>| {
-        let near = |other: &[f64; D]| {
-            (0..D).map(|d| (other[d] - point.position[d]).powi(2)).sum::<f64>() < reach * reach
-        };
+        let near = |at: &[f64; D]| is_near(at, &point.position, reach);
         cells.around(&point.position).any(|(at, shape)| *shape != point.shape && near(at))
     };
     own().filter(|(_, point)| meets(point)).map(|(index, _)| index).collect()
@@ -218,34 +217,29 @@ impl<'s> Tank<'s> {
 /// Edges by the cells that they pass.
 struct Edges {
     all: Vec<Edge>,
-    cells: FxHashMap<[i64; 2], Vec<u32>>,
-    size: f64,
+    /// Indices of edges, at places along them.
+    places: Cells<u32, 2>,
 }
 
 impl Edges {
+    /// For places that are no farther than twice `size`, m, from their nearest edge.
     fn new(all: Vec<Edge>, size: f64) -> Self {
-        let mut cells: FxHashMap<[i64; 2], Vec<u32>> = FxHashMap::default();
+        let mut places = Cells::new(2.0 * size);
         for (index, edge) in (0..).zip(&all) {
             let [from, to] = edge.ends;
             let (_, length) = direction(edge.ends);
             let parts = (2.0 * length / size).ceil().max(1.0) as usize;
             for k in 0..=parts {
                 let share = k as f64 / parts as f64;
-                let cell = [0, 1].map(|a| ((from[a] + share * (to[a] - from[a])) / size).floor() as i64);
-                let list = cells.entry(cell).or_default();
-                if list.last() != Some(&index) {
-                    list.push(index);
-                }
+                places.add(&[0, 1].map(|a| from[a] + share * (to[a] - from[a])), index);
             }
         }
-        Self { all, cells, size }
+        Self { all, places }
     }
 
     /// What the nearest edge makes of a place; of several that are equally near what lies between them.
     fn nearest(&self, at: [f64; 2], tolerance: f64) -> Option<Nearest> {
-        let [x, y] = at.map(|x| (x / self.size).floor() as i64);
-        let cells = (-2..=2).flat_map(|i| (-2..=2).map(move |j| [x + i, y + j]));
-        let near: BTreeSet<u32> = cells.filter_map(|cell| self.cells.get(&cell)).flatten().copied().collect();
+        let near: BTreeSet<u32> = self.places.around(&at).copied().collect();
         let near = || near.iter().map(|&k| &self.all[k as usize]);
         let least = near().map(|edge| distance_to(edge.ends, at).0).fold(f64::INFINITY, f64::min);
         let mut sum = [0.0; 2];
@@ -261,25 +255,21 @@ impl Edges {
                 1.0 => edge.into,
                 _ => None,
             };
-            corner |= beside.is_some_and(|other| dots(own, other) < SHARP);
+            corner |= beside.is_some_and(|other| dot(&own, &other) < SHARP);
             let out = beside.map_or(own, |other| unit([own[0] + other[0], own[1] + other[1]]).unwrap_or(own));
             let first = *first.get_or_insert(out);
-            alone &= dots(out, first) > SHARP;
+            alone &= dot(&out, &first) > SHARP;
             (0..2).for_each(|a| sum[a] += out[a]);
         }
         let first = first?;
         let between = unit(sum).unwrap_or(first);
         Some(Nearest {
             // One edge's normal is its own to the last digit.
-            normal: if alone && dots(first, between) > 1.0 - 1e-12 { first } else { between },
+            normal: if alone && dot(&first, &between) > 1.0 - 1e-12 { first } else { between },
             depth: if alone { least } else { f64::INFINITY },
             corner,
         })
     }
-}
-
-fn dots(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
 }
 
 /// A vector over its length; `None` where it has none.
@@ -287,3 +277,7 @@ fn unit(v: [f64; 2]) -> Option<[f64; 2]> {
     let (way, length) = direction([[0.0; 2], v]);
     (length > 1e-6).then_some(way)
 }
+
+#[cfg(test)]
+#[path = "normals_tests.rs"]
+mod tests;
