@@ -56,8 +56,8 @@ price_example() {
     write_list "$name" "$own --solid '$line' $*" "$own" --solid "OMP_NUM_THREADS=1 $python $PWD/$script" "$@"
 }
 
-all="oscillating-plate hydrostatic-tank taylor-green standing-wave dam-break hydrostatic-plate elastic-gate"
-all="$all breaking-wall wave-paddle solitary-wave-wall floating-box block-wall gate-lift rolling-tank"
+all="oscillating-plate hydrostatic-tank taylor-green lid-driven-cavity standing-wave dam-break hydrostatic-plate"
+all="$all elastic-gate breaking-wall wave-paddle solitary-wave-wall floating-box block-wall gate-lift rolling-tank"
 all="$all mujoco-box mujoco-flap mujoco-wave-flap pyelastica-stem"
 wanted=${*:-$all}
 price oscillating-plate --until 0.4 --set resolution=0.004 \
@@ -72,6 +72,9 @@ price taylor-green --vary resolution=0.025,0.04,0.05 --vary numerics.kernel=cubi
     --vary numerics.precision=mixed --vary fluid.time_integration=verlet \
     --vary smoothing_ratio=1.5,2.4 --vary effects.particle-shifting=off \
     --vary fluid.density_diffusion=delta-sph,none --vary numerics.cfl=0.2
+price lid-driven-cavity --vary resolution=0.0285714285714285714,0.04 \
+    --vary numerics.precision=mixed --vary fluid.time_integration=verlet --vary smoothing_ratio=1.5 \
+    --vary effects.no-slip-continuity=off --vary effects.particle-shifting=off --vary fluid.sound_speed=20
 price standing-wave --set resolution=0.025 --vary resolution=0.0357142857142857143,0.05 \
     --vary numerics.precision=mixed --vary fluid.time_integration=verlet \
     --vary numerics.kernel=cubic-spline \

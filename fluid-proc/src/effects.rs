@@ -94,9 +94,6 @@ pub struct Neighbourhood<'a, K, const D: usize> {
     pub fluid: &'a PairParticles<D>,
     /// The fluid around the fluid.
     pub list: &'a ClusterList,
-    /// Slots beside solids, with what those add to the velocity gradient dv_a / dx_b, 1/s; none where no viscous stress
-    /// crosses the interface.
-    pub beside_solids: &'a [(u32, [[f64; D]; D])],
     /// The walls, with what they show, and the walls around the fluid.
     pub walls: Option<(&'a Walls<D>, &'a ClusterList)>,
 }

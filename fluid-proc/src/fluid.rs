@@ -295,15 +295,6 @@ impl<const D: usize, X: FluidEffect<D>> Role for Fluid<D, X> {
         self.displacement
     }
 
-    fn sums_see_peers(&self) -> bool {
-        self.coupling.as_ref().is_some_and(Coupling::is_viscous)
-    }
-
-    fn see(&mut self, own: &[StateRecord], peers: &[Peer]) -> Result<(), CoverageError> {
-        let displacement = self.displacement;
-        self.coupling.as_mut().map_or(Ok(()), |coupling| coupling.see(own, peers, displacement))
-    }
-
     fn own_sums(&mut self) {
         with_kernel!(self.kernel, self.smoothing_length, D, |kernel| {
             self.sums(kernel);

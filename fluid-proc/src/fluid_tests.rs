@@ -186,6 +186,28 @@ fn time_step_limits_by_hand() {
     assert!((damped.time_step(0.0, 0.0) - 2e-4).abs() < 1e-15);
     let diffusing = StepLimits::new::<2>(&tank(&["fluid.density_diffusion_coefficient=1.0"]));
     assert!((diffusing.time_step(0.0, 0.0) - 2.5e-4).abs() < 1e-15);
+    // Honey and A = 7: 1 / (1 / 5e-5 + 1 / 2e-4).
+    let both = ["fluid.viscosity=1000.0", "fluid.artificial_viscosity={linear=7.0,quadratic=0.0}"];
+    assert!((StepLimits::new::<2>(&tank(&both)).time_step(0.0, 0.0) - 4e-5).abs() < 1e-15);
+}
+
+/// Viscous stress moves fluid and solid: h = 0.015 makes 0.125 h² rho / mu 28.125 µs, over 1 + 0.4 and over 2 + 0.4,
+/// whose inverses add to that of 0.4 h / c0 = 0.3 ms, of the light block over the root of 2.
+#[test]
+fn solids_that_viscous_stress_drags_shorten_the_step() {
+    for (density, limit) in [(1000.0, 28.125e-6 / 1.4), (500.0, 28.125e-6 / 2.4), (4000.0, 28.125e-6)] {
+        let text = format!(
+            "resolution = 0.01\nend_time = 1.0\ngravity = [0.0, 0.0]\n[fluid]\ndensity = 1000.0\nviscosity = 1000.0\n\
+             sound_speed = 20.0\n[solid]\nmodel = \"rigid\"\ndensity = {density}\n\
+             [[shape]]\nname = \"oil\"\nphase = \"fluid\"\nbox = {{ min = [0.0, 0.0], max = [0.2, 0.1] }}\n\
+             [[shape]]\nname = \"block\"\nphase = \"solid\"\nbox = {{ min = [0.2, 0.0], max = [0.3, 0.1] }}\n"
+        );
+        let scene = scene::parse(&text, Path::new("honey.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}"));
+        let found = StepLimits::new::<2>(&scene).time_step(0.0, 0.0);
+        let courant = 3e-4 / (1000.0_f64 / density).max(1.0).sqrt();
+        let right = 1.0 / (1.0 / courant + 1.0 / limit);
+        assert!((found / right - 1.0).abs() < 1e-12, "{density}: {found} {right}");
+    }
 }
 
 #[test]

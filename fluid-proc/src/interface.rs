@@ -27,10 +27,6 @@ pub struct Coupling<const D: usize> {
     sorted: [Vec<f64>; D],
     order: Vec<u32>,
     pub(crate) gap: f64,
-    /// Interfaces are those of this half-step's records.
-    seen: bool,
-    /// By slots, what solids add to the velocity gradient, 1/s; empty where no viscous stress crosses the interface.
-    pub(crate) gradients: Vec<(u32, [[f64; D]; D])>,
     /// Of all that solids did to the particles over whole steps.
     pub(crate) impulse: Balance,
     /// The forces of this half-step.
@@ -42,7 +38,7 @@ impl<const D: usize> Coupling<D> {
     pub fn new(parameters: Vec<Parameters<D>>) -> Option<Self> {
         let h = parameters.first()?.smoothing_length;
         Some(Self {
-            interfaces: parameters.into_iter().map(Interface::new).collect(),
+            interfaces: parameters.into_iter().map(Interface::without_viscous_stress).collect(),
             slots: Vec::new(),
             chosen_at: Vec::new(),
             epoch: 0,
@@ -52,8 +48,6 @@ impl<const D: usize> Coupling<D> {
             sorted: std::array::from_fn(|_| Vec::new()),
             order: Vec::new(),
             gap: f64::INFINITY,
-            seen: false,
-            gradients: Vec::new(),
             impulse: Balance::default(),
             forces: Balance::default(),
         })
@@ -95,7 +89,6 @@ impl<const D: usize> Coupling<D> {
     /// Chooses the particles within reach of the solids as last received, with a margin for what moves meanwhile.
     pub fn choose(&mut self, fluid: &Columns<D>, peers: &[Peer]) {
         self.epoch += 1;
-        self.gradients.clear();
         self.chosen_at.clear();
         self.chosen_at.extend(records(peers).map(|r| std::array::from_fn(|d| r.position[d])));
         self.order.clear();
@@ -160,41 +153,6 @@ impl<const D: usize> Coupling<D> {
         }
     }
 
-    /// Viscous stress crosses the interface: the fluid's own sums need the solids' states.
-    pub(crate) fn is_viscous(&self) -> bool {
-        self.interfaces.iter().any(|interface| interface.parameters.viscosity.is_some())
-    }
-
-    /// Takes over both sides' records of a half-step.
-    ///
-    /// # Errors
-    /// The set may lack a particle within reach of a solid.
-    pub(crate) fn see(
-        &mut self,
-        own: &[StateRecord],
-        peers: &[Peer],
-        fluid_displacement: f64,
-    ) -> Result<(), CoverageError> {
-        let solid = self.solid_displacement(peers);
-        if fluid_displacement + solid > self.skin {
-            let peer = self.farthest(peers);
-            return Err(CoverageError { fluid: fluid_displacement, solid, allowed: self.skin, peer });
-        }
-        if self.is_viscous() {
-            self.gradients.clear();
-            self.gradients.extend(self.slots.iter().map(|&slot| (slot, [[0.0; D]; D])));
-        }
-        for (interface, peer) in self.interfaces.iter_mut().zip(peers) {
-            interface.update(own, &peer.records, self.epoch);
-            interface.gradient_at_fluid(|record, more| {
-                let sum = self.gradients[record].1.as_flattened_mut();
-                sum.iter_mut().zip(more.as_flattened()).for_each(|(sum, more)| *sum += more);
-            });
-        }
-        self.seen = true;
-        Ok(())
-    }
-
     /// Adds what the solids do to the fluid's rates, in their order, and their powers to a ledger.
     ///
     /// # Errors
@@ -207,13 +165,15 @@ impl<const D: usize> Coupling<D> {
         fluid_displacement: f64,
         mut ledger: Option<&mut FluidLedger<D>>,
     ) -> Result<(), CoverageError> {
-        if !std::mem::take(&mut self.seen) {
-            self.see(own, peers, fluid_displacement)?;
-            self.seen = false;
+        let solid = self.solid_displacement(peers);
+        if fluid_displacement + solid > self.skin {
+            let peer = self.farthest(peers);
+            return Err(CoverageError { fluid: fluid_displacement, solid, allowed: self.skin, peer });
         }
         self.gap = f64::INFINITY;
         self.forces = Balance::default();
-        for interface in &mut self.interfaces {
+        for (interface, peer) in self.interfaces.iter_mut().zip(peers) {
+            interface.update(own, &peer.records, self.epoch);
             let (slots, forces) = (&self.slots, &mut self.forces);
             interface.act_on_fluid(|record, acceleration, density_rate| {
                 let slot = slots[record] as usize;

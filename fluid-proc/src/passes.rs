@@ -54,9 +54,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         let (fluid, list) = (&self.columns.now, &self.fluid_list);
         let (isa, integration, gravity) = (self.isa, self.integration, self.gravity);
         let measured = self.ledger.is_some() || self.measures_loads();
-        let beside_solids = self.coupling.as_ref().map_or(&[][..], |coupling| &coupling.gradients);
-        let around =
-            Neighbourhood { kernel, isa, integration, measured, gravity, fluid, list, beside_solids, walls };
+        let around = Neighbourhood { kernel, isa, integration, measured, gravity, fluid, list, walls };
         act(&mut self.effects, &around)
     }
 

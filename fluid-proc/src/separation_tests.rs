@@ -18,12 +18,17 @@ fn density_rates(velocity: [f64; 2], separation: &str) -> (f64, f64) {
          tank = {{ min = [0.0, 0.0], max = [0.4, 0.2], open = [\"top\"] }}\n",
         velocity[0], velocity[1]
     );
-    let scene = scene::parse(&text, Path::new("tank.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}"));
+    let rates = rates_of(&text).into_iter();
+    rates.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), rate| (low.min(rate), high.max(rate)))
+}
+
+/// The density rates of a scene's fluid at its start, kg/(m³ s).
+fn rates_of(text: &str) -> Vec<f64> {
+    let scene = scene::parse(text, Path::new("water.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}"));
     let mut fluid = Fluid::<2>::new(&scene, Isa::detect()).expect("a scene with fluid");
     fluid.own_sums();
     let real = (0..fluid.columns.slots()).filter(|&s| fluid.columns.id[s] != PADDING);
-    let rates = real.map(|s| fluid.sums[s / LANES].density_rate.0[s % LANES]);
-    rates.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), rate| (low.min(rate), high.max(rate)))
+    real.map(|s| fluid.sums[s / LANES].density_rate.0[s % LANES]).collect()
 }
 
 /// All water has the velocity v~ = v that walls then show continuity: no pair approaches or recedes.
@@ -46,4 +51,28 @@ fn water_that_arrives_is_compressed_as_without() {
         assert!(with.1 > 0.5 * 1000.0 * 0.3 / 0.01, "{velocity:?}: {with:?}");
         assert_eq!(with, density_rates(velocity, "off"), "{velocity:?}");
     }
+}
+
+/// Density rates, kg/(m³ s), of water without pressure that moves along a slope without slip as a whole, 0.3 m/s. The
+/// slope's rows are not the water's.
+fn rates_along_a_slope(continuity: &str) -> Vec<f64> {
+    let text = format!(
+        "resolution = 0.01\nend_time = 1.0\ngravity = [0.0, 0.0]\n[fluid]\ndensity = 1000.0\nsound_speed = 20.0\n\
+         [effects]\nno-slip-continuity = \"{continuity}\"\n\
+         [[shape]]\nname = \"water\"\nphase = \"fluid\"\nvelocity = [0.24, 0.18]\n\
+         polygon = [[0.0, 0.0], [0.16, 0.12], [0.112, 0.184], [-0.048, 0.064]]\n\
+         [[shape]]\nname = \"slope\"\nphase = \"wall\"\nslip = \"none\"\n\
+         polygon = [[-0.13, -0.16], [0.35, 0.2], [0.32, 0.24], [-0.16, -0.12]]\n"
+    );
+    rates_of(&text)
+}
+
+#[test]
+fn water_along_a_wall_without_slip_keeps_its_density() {
+    let largest = |rates: Vec<f64>| rates.into_iter().map(f64::abs).fold(0.0, f64::max);
+    let with = largest(rates_along_a_slope("auto"));
+    assert!(with < 1e-9, "{with}");
+    // 0.02 rho0 v / dx.
+    let without = largest(rates_along_a_slope("off"));
+    assert!(without > 0.02 * 1000.0 * 0.3 / 0.01, "{without}");
 }

@@ -34,6 +34,8 @@ pub struct Walls<const D: usize> {
     pub(crate) normal: Vectors<D>,
     /// 1 where all components are reversed (corner or no slip), else 0.
     pub(crate) reverse_all: Vec<f64>,
+    /// 1 where water sticks to it, but in corners, else 0.
+    pub(crate) sticky: Vec<f64>,
     /// Depth below the surface where water sticks to it, m; else, in corners and behind edges infinite.
     pub(crate) depth: Vec<f64>,
     /// 1 behind edges and beside them, else 0.
@@ -63,6 +65,7 @@ impl<const D: usize> Walls<D> {
             own_velocity: vectors(n),
             normal: vectors(n),
             reverse_all: vec![0.0; n],
+            sticky: vec![0.0; n],
             depth: vec![f64::INFINITY; n],
             at_edge: points.iter().map(|p| f64::from(u8::from(p.at_edge))).collect(),
             rows: Rows::new(precision),
@@ -79,7 +82,7 @@ impl<const D: usize> Walls<D> {
             let reversed = p.corner || !p.free_slip;
             walls.reverse_all[i] = f64::from(u8::from(reversed));
             if !p.free_slip && !p.corner {
-                walls.depth[i] = p.depth;
+                (walls.sticky[i], walls.depth[i]) = (1.0, p.depth);
             }
         }
         walls.sort();
@@ -97,6 +100,7 @@ impl<const D: usize> Walls<D> {
             self.rows.permute(&mut self.normal[d]);
         }
         self.rows.permute(&mut self.reverse_all);
+        self.rows.permute(&mut self.sticky);
         self.rows.permute(&mut self.depth);
         self.rows.permute(&mut self.at_edge);
         if let Some(moving) = &mut self.moving {
@@ -145,21 +149,44 @@ impl<const D: usize> Walls<D> {
         self.at_edge[slot] > 0.0
     }
 
-    /// By how much the velocity that a slot shows is another than that of the water around it, m/s; `None` unless that
-    /// water leaves a wall that does not push.
-    pub fn shown_to_leaving(&self, slot: usize) -> Option<[f64; D]> {
-        let Source { velocity, pressure, .. } = self.shown.sources[slot];
-        // The wall shows v~ reversed, relative to its own velocity: along the normal, or as a whole.
-        let surface = self.surface_velocity(slot);
+    /// By how much the velocity that a slot shows is another than that of a wall that lets slip, m/s; `None` where it
+    /// lets slip, and in corners, which reverse all in any case.
+    pub fn shown_beyond_slip(&self, slot: usize) -> Option<[f64; D]> {
+        self.sticks(slot).then(|| {
+            let (relative, along) = self.shown_relative(slot);
+            std::array::from_fn(|d| 2.0 * (relative[d] - along * self.normal[d][slot]))
+        })
+    }
+
+    /// The same of all slots, zero where there is none.
+    pub fn beyond_slip(&self, out: &mut [[f64; D]]) {
+        for (slot, excess) in out.iter_mut().enumerate() {
+            *excess = self.shown_beyond_slip(slot).unwrap_or([0.0; D]);
+        }
+    }
+
+    /// A slot stands for a surface along which water does not slip.
+    pub fn sticks(&self, slot: usize) -> bool {
+        self.sticky[slot] > 0.0
+    }
+
+    /// The velocity that a slot shows relative to its surface, and that along the normal, m/s.
+    fn shown_relative(&self, slot: usize) -> ([f64; D], f64) {
+        let (velocity, surface) = (self.shown.sources[slot].velocity, self.surface_velocity(slot));
         let relative: [f64; D] = std::array::from_fn(|d| velocity[d] - surface[d]);
-        let along: f64 = (0..D).map(|d| relative[d] * self.normal[d][slot]).sum();
-        let leaves = pressure <= 0.0 && along < 0.0;
+        (relative, (0..D).map(|d| relative[d] * self.normal[d][slot]).sum())
+    }
+
+    /// By how much the velocity that a slot shows is another than that of the water around it, m/s, `but_for_slip`
+    /// without what is [beyond slip](Self::shown_beyond_slip); `None` unless that water leaves a wall that does not
+    /// push.
+    pub fn shown_to_leaving(&self, slot: usize, but_for_slip: bool) -> Option<[f64; D]> {
+        // The wall shows v~ reversed, relative to its own velocity: along the normal, or as a whole.
+        let (relative, along) = self.shown_relative(slot);
+        let whole = self.reverses_all(slot) && !(but_for_slip && self.sticks(slot));
+        let leaves = self.shown.sources[slot].pressure <= 0.0 && along < 0.0;
         leaves.then(|| {
-            std::array::from_fn(|d| {
-                let reversed =
-                    if self.reverses_all(slot) { relative[d] } else { along * self.normal[d][slot] };
-                2.0 * reversed
-            })
+            std::array::from_fn(|d| 2.0 * if whole { relative[d] } else { along * self.normal[d][slot] })
         })
     }
 

@@ -35,7 +35,7 @@ fn row<'a>(explanation: &'a Value, name: &str) -> &'a Value {
 
 #[test]
 fn every_shipped_scene_is_explained_and_its_shares_are_the_whole() {
-    let coarse: [(&str, &[&str]); 22] = [
+    let coarse: [(&str, &[&str]); 23] = [
         ("block-wall", &[]),
         ("breaking-wall", &["resolution=0.004"]),
         ("colliding-rings", &["resolution=0.002"]),
@@ -49,6 +49,7 @@ fn every_shipped_scene_is_explained_and_its_shares_are_the_whole() {
         ("hydrostatic-plate", &["resolution=0.025"]),
         ("hydrostatic-tank", &[]),
         ("kalthoff-winkler", &["resolution=0.0025"]),
+        ("lid-driven-cavity", &["resolution=0.05"]),
         ("oscillating-plate", &["resolution=0.004"]),
         ("rolling-tank", &[]),
         ("solitary-wave-wall", &["resolution=0.02"]),
@@ -136,7 +137,7 @@ fn the_reason_is_the_key_or_the_fact() {
     let forced = effects("hydrostatic-tank", &["fluid.viscosity=0.1", "effects.viscosity=on"]);
     let viscosity = row(&forced, "viscosity");
     assert!(viscosity["on"] == true && viscosity["why"] == "effects.viscosity is \"on\"", "{viscosity}");
-    assert_eq!(viscosity["bytes_per_particle"], 32.0);
+    assert_eq!(row(&forced, "particle-shifting")["bytes_per_particle"], 40.0);
     assert_eq!(forced["composition"], "artificial viscosity, hydrostatic diffusion, viscosity");
     assert_eq!(row(&forced, "solid")["on"], false);
 

@@ -67,6 +67,7 @@ mod torture;
 mod tutorial;
 mod two_plates;
 mod verlet;
+mod viscous_flow;
 mod water;
 mod waves;
 

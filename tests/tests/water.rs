@@ -282,8 +282,8 @@ fn standing_wave(dx: f64, rule: &str) -> (f64, f64) {
 fn a_standing_wave_has_its_period() {
     for rule in ["midpoint", "verlet"] {
         let (period, decay) = standing_wave(0.025, rule);
-        within(&format!("standing wave at 25 mm, {rule}, period over theory"), period, 0.993..=0.997);
-        within("its decay over 2 k² nu", decay, 0.966..=0.986);
+        within(&format!("standing wave at 25 mm, {rule}, period over theory"), period, 0.995..=0.999);
+        within("its decay over 2 k² nu", decay, 1.054..=1.074);
     }
 }
 
@@ -291,8 +291,8 @@ fn a_standing_wave_has_its_period() {
 #[ignore = "long: make validate"]
 fn a_standing_wave_has_its_period_finer() {
     let (period, decay) = standing_wave(0.0125, "midpoint");
-    within("standing wave at 12.5 mm, period over theory", period, 0.994..=0.998);
-    within("its decay over 2 k² nu", decay, 0.995..=1.015);
+    within("standing wave at 12.5 mm, period over theory", period, 0.996..=1.0);
+    within("its decay over 2 k² nu", decay, 0.98..=1.0);
 }
 
 // ---- A paddle's waves ---------------------------------------------------------------------------------------------
@@ -329,14 +329,14 @@ fn vortex(dx: f64) -> f64 {
 
 #[test]
 fn a_vortex_decays_by_its_viscosity() {
-    within("vortex at 40 mm, energy over the exact one", vortex(0.04), 0.988..=0.998);
+    within("vortex at 40 mm, energy over the exact one", vortex(0.04), 0.932..=0.943);
 }
 
 #[test]
 #[ignore = "long: make validate"]
 fn a_vortex_decays_by_its_viscosity_finer() {
-    within("vortex at 20 mm, energy over the exact one", vortex(0.02), 0.997..=1.007);
-    within("vortex at 10 mm, energy over the exact one", vortex(0.01), 1.0..=1.01);
+    within("vortex at 20 mm, energy over the exact one", vortex(0.02), 0.952..=0.962);
+    within("vortex at 10 mm, energy over the exact one", vortex(0.01), 0.962..=0.972);
 }
 
 /// A is worth the viscosity A h c0 / 16: the decay of A = 1 less that of A = 0.5, in which walls and pressure cancel,

@@ -173,6 +173,7 @@ pub(crate) fn on<const D: usize>(scene: &Scene, layout: &Layout<D>, placed: &[Pl
     enclosed::in_walls(scene, layout, &mut all);
     settings::background_pressure(scene, layout, &mut all);
     water::expected_speed(scene, &mut all);
+    water::viscous_stress(scene, &mut all);
     water::wave_makers(scene, &mut all);
     makers::makers(scene, &mut all);
     makers::windows(scene, &mut all);

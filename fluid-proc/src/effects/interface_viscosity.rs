@@ -1,5 +1,4 @@
-//! Viscous stress between fluid and solid: part of the interface. The coupler evaluates the forces on both; the fluid
-//! adds what solids show to its velocity gradient.
+//! Viscous stress between fluid and solid: part of the interface. The coupler evaluates the forces on both.
 
 use super::{FluidEffect, Listed};
 use crate::composition::NoShare;

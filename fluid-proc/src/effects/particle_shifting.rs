@@ -72,7 +72,12 @@ impl<const D: usize> FluidEffect<D> for ParticleShifting<D> {
             Some(_) if scene.has_free_bodies() => {
                 Derived::On("a body that nothing holds rides on waves, which order keeps".into())
             }
-            Some(_) => Derived::Off("for kernels wider than h / dx = 1.75 and free bodies".into()),
+            Some(_) if halfstep_scene::viscosity(scene).on => {
+                Derived::On("viscosity is on, and would damp what disorder stirs up".into())
+            }
+            Some(_) => {
+                Derived::Off("for kernels wider than h / dx = 1.75, free bodies and viscous fluids".into())
+            }
         };
         Decision::new(scene, EffectName::ParticleShifting, derived)
     }

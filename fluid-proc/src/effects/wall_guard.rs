@@ -1,14 +1,15 @@
 //! Artificial viscosity between fluid and walls, and the wall guard.
 //!
 //! Between fluid and wall the same Pi_ij acts as between fluid particles (Kayaki's eq. 23), with the velocity that the
-//! wall shows. The guard raises its A to 32 between a free-slip wall and what is close to it: fully below 0.6 dx,
+//! wall shows. The guard raises its A to 32 between a wall and what is close to it: fully below 0.6 dx,
 //! fading to the scene's A at 0.8 dx. What the cross-phase f_i is between fluid and solid, it is here: without it
 //! single particles of a thin film sink into the wall by up to 1.7 dx before their pressure stops them.
 //!
 //! Its reach is its price. A wall shows the mean tangential velocity of the water within 2h, so a stream that stretches
 //! or thins along the wall approaches some of the wall's particles, and a guard over all of 2h brakes it: like a
-//! boundary layer. No-slip walls and corners reverse the whole velocity and keep the scene's A: a guard would be
-//! friction.
+//! boundary layer. Corners reverse the whole velocity and keep the scene's A: a guard would be friction. So would it be
+//! at walls without slip by what they show; there the guard sees the velocity that they would show with slip, as
+//! continuity does ([`super::no_slip_continuity`]), and is there where that effect is.
 //!
 //! So short a reach has to stop a particle within a few steps: at a rate k with k dt > 2, which the midpoint rule
 //! cannot take. The guard divides it by 1 + k dt at the first stage and by 1 + k dt / 2 at the second. Then a pair
@@ -22,6 +23,7 @@
 //! into the wall went unopposed for a step.
 
 use super::artificial_viscosity::ArtificialViscosity;
+use super::no_slip_continuity::NoSlipContinuity;
 use super::{FluidEffect, Listed, Neighbourhood};
 use crate::columns::fit;
 use crate::composition::{Composition, NoShare};
@@ -30,7 +32,8 @@ use crate::walls::Walls;
 use halfstep_scene::{Decision, Derived, EffectName, FluidIntegration, Phase, Scene};
 use halfstep_sph::fade::Fade;
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Arch, Lane, Lanes, Unfused};
+use halfstep_sph::lane::{Arch, Lane, Lanes, Unfused, components};
+use halfstep_sph::pair::dot;
 use halfstep_wire::half_step::Stage;
 
 /// A of the guard.
@@ -55,13 +58,17 @@ pub struct WallGuard<const D: usize> {
     divisor: f64,
     /// Distance at which k takes the kernel's slope, m.
     near: f64,
-    /// A c0 far from walls, in corners and along no-slip walls, m/s.
+    /// A c0 far from walls and in corners, m/s.
     plain: f64,
-    /// What a close free-slip wall adds to it, m/s.
+    /// What a close wall adds to it, m/s.
     guard: f64,
     quadratic: f64,
     /// What each wall slot adds, m/s.
     added: Vec<f64>,
+    /// Velocity that each slot of a wall without slip shows beyond that of one with slip, m/s; empty where none sticks.
+    beyond_slip: Vec<[f64; D]>,
+    /// There are walls without slip that are guarded.
+    sticky: bool,
     /// How the fluid goes from n to n + 1.
     integration: FluidIntegration,
 }
@@ -87,6 +94,8 @@ impl<const D: usize> Listed<D> for WallGuard<D> {
             guard: (STRENGTH - plain).max(0.0) * c0,
             quadratic: acts * fluid.artificial_viscosity.quadratic,
             added: Vec::new(),
+            beyond_slip: Vec::new(),
+            sticky: NoSlipContinuity::<D>::decide(scene).on,
             integration: fluid.time_integration,
         })
     }
@@ -103,14 +112,15 @@ impl<const D: usize> WallGuard<D> {
         self.divisor = part * self.rate * slope;
     }
 
-    fn share(&self) -> GuardedViscosity<'_> {
-        let Self { smoothing_length, fade, divisor, plain, quadratic, added, .. } = self;
+    fn share(&self) -> GuardedViscosity<'_, D> {
+        let Self { smoothing_length, fade, divisor, plain, quadratic, added, beyond_slip, .. } = self;
         GuardedViscosity {
             smoothing_length: *smoothing_length,
             fade: *fade,
             divisor: *divisor,
             plain: *plain,
             added,
+            beyond_slip,
             quadratic: *quadratic,
         }
     }
@@ -119,12 +129,13 @@ impl<const D: usize> WallGuard<D> {
 impl<const D: usize> FluidEffect<D> for WallGuard<D> {
     const NAME: &'static str = EffectName::WallGuard.name();
     type Pair<'a> = NoShare;
-    type AtWall<'a> = GuardedViscosity<'a>;
+    type AtWall<'a> = GuardedViscosity<'a, D>;
     fn decide(scene: &Scene) -> Decision {
+        let sticky = NoSlipContinuity::<D>::decide(scene).on;
         let derived = match &scene.fluid {
             None => Derived::Impossible("the scene has no fluid".into()),
-            Some(_) if !scene.shapes.iter().any(|s| s.phase == Phase::Wall && s.free_slip) => {
-                Derived::Impossible("no free-slip walls".into())
+            Some(_) if !scene.shapes.iter().any(|s| s.phase == Phase::Wall && (s.free_slip || sticky)) => {
+                Derived::Impossible("no walls that it could guard".into())
             }
             Some(fluid) if fluid.artificial_viscosity.linear >= STRENGTH => {
                 Derived::Impossible(format!("A is {STRENGTH} or more everywhere"))
@@ -137,27 +148,34 @@ impl<const D: usize> FluidEffect<D> for WallGuard<D> {
         let Some(walls) = walls else { return };
         fit(&mut self.added, walls.slots(), 0.0);
         for (slot, added) in self.added.iter_mut().enumerate() {
-            *added = if walls.reverses_all(slot) { 0.0 } else { self.guard };
+            let guarded = !walls.reverses_all(slot) || self.sticky && walls.sticks(slot);
+            *added = if guarded { self.guard } else { 0.0 };
+        }
+        if self.sticky {
+            fit(&mut self.beyond_slip, walls.slots(), [0.0; D]);
         }
     }
     fn prepare<K: Kernel<D>>(&mut self, stage: Stage, around: &Neighbourhood<'_, K, D>) -> u64 {
         self.divide(stage, &around.kernel);
+        if let Some((walls, _)) = around.walls {
+            walls.beyond_slip(&mut self.beyond_slip);
+        }
         0
     }
-    fn at_wall(&self) -> Option<GuardedViscosity<'_>> {
+    fn at_wall(&self) -> Option<GuardedViscosity<'_, D>> {
         (self.integration == FluidIntegration::Midpoint).then(|| self.share())
     }
-    fn at_wall_predicted(&self) -> Option<GuardedViscosity<'_>> {
+    fn at_wall_predicted(&self) -> Option<GuardedViscosity<'_, D>> {
         (self.integration == FluidIntegration::Verlet).then(|| self.share())
     }
     fn bytes(&self) -> usize {
-        self.added.capacity() * size_of::<f64>()
+        self.added.capacity() * size_of::<f64>() + self.beyond_slip.capacity() * size_of::<[f64; D]>()
     }
 }
 
 /// The share of a pair of a fluid and a wall particle.
 #[derive(Clone, Copy, Debug)]
-pub struct GuardedViscosity<'a> {
+pub struct GuardedViscosity<'a, const D: usize> {
     smoothing_length: f64,
     fade: Fade,
     divisor: f64,
@@ -165,10 +183,12 @@ pub struct GuardedViscosity<'a> {
     plain: f64,
     /// What each wall slot adds where it is close, m/s.
     added: &'a [f64],
+    /// What walls without slip show beyond those with slip, m/s.
+    beyond_slip: &'a [[f64; D]],
     quadratic: f64,
 }
 
-impl<const D: usize> PairEffect<D> for GuardedViscosity<'_> {
+impl<const D: usize> PairEffect<D> for GuardedViscosity<'_, D> {
     type Own<L: Lanes> = ();
     const CONTINUITY: bool = false;
     #[inline(always)]
@@ -180,8 +200,18 @@ impl<const D: usize> PairEffect<D> for GuardedViscosity<'_> {
         // k is that of Pi_ij: it falls with s = r² + 0.01 h².
         let s = pair.r2 + L::splat(0.01 * self.smoothing_length * self.smoothing_length);
         let damped = L::splat(self.added[j]) * near * s / (s + L::splat(self.divisor) * near * pair.r2);
-        let linear = damped + L::splat(self.plain);
-        rates.bracket = rates.bracket - pair.damping::<A>(self.smoothing_length, linear, self.quadratic);
+        let plain = L::splat(self.plain);
+        let h = self.smoothing_length;
+        match self.beyond_slip.get(j) {
+            Some(excess) if *excess != [0.0; D] => {
+                let excess = components(|d| L::splat(excess[d]));
+                let approach = pair.approach + dot::<D, A, L>(excess, pair.dx);
+                let with_slip = FluidPair { approach, ..*pair };
+                rates.bracket = rates.bracket
+                    - (pair.damping::<A>(h, plain, self.quadratic) + with_slip.damping::<A>(h, damped, 0.0));
+            }
+            _ => rates.bracket = rates.bracket - pair.damping::<A>(h, damped + plain, self.quadratic),
+        }
     }
     fn enter<C: Composition<D>>(self, composition: C) {
         composition.with(self);

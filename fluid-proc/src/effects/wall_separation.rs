@@ -10,6 +10,7 @@
 //! water that runs over an edge is stretched: its own tension would draw it into the wall behind the edge, by more than
 //! a spacing. Along a wall the pull is right: pushes alone would drive falling water off it.
 
+use super::no_slip_continuity::NoSlipContinuity;
 use super::{FluidEffect, Listed, Neighbourhood};
 use crate::columns::fit;
 use crate::composition::NoShare;
@@ -34,12 +35,15 @@ pub struct WallSeparation<const D: usize> {
     least: Vec<f64>,
     /// Walls do not pull.
     only_push: bool,
+    /// [`NoSlipContinuity`] takes what walls without slip show along them.
+    but_for_slip: bool,
 }
 
 impl<const D: usize> Listed<D> for WallSeparation<D> {
     fn of(scene: &Scene) -> Option<Self> {
         let only_push = halfstep_interface::non_negative_pressure(scene).on;
-        Some(Self { excess: Vec::new(), least: Vec::new(), only_push })
+        let but_for_slip = NoSlipContinuity::<D>::decide(scene).on;
+        Some(Self { excess: Vec::new(), least: Vec::new(), only_push, but_for_slip })
     }
 }
 
@@ -60,8 +64,9 @@ impl<const D: usize> FluidEffect<D> for WallSeparation<D> {
     }
     fn prepare<K: Kernel<D>>(&mut self, stage: Stage, around: &Neighbourhood<'_, K, D>) -> u64 {
         if let Some((walls, _)) = around.walls.filter(|_| around.needed(stage).continuity()) {
+            let but_for_slip = self.but_for_slip;
             self.excess.par_iter_mut().with_min_len(TASK).enumerate().for_each(|(slot, excess)| {
-                *excess = walls.shown_to_leaving(slot).unwrap_or([0.0; D]);
+                *excess = walls.shown_to_leaving(slot, but_for_slip).unwrap_or([0.0; D]);
             });
         }
         0

@@ -184,10 +184,15 @@ pub struct Interface<const D: usize> {
 }
 
 impl<const D: usize> Interface<D> {
+    /// The interface of somebody who does not ask for viscous stress, which the coupler evaluates.
+    pub fn without_viscous_stress(parameters: Parameters<D>) -> Self {
+        Self { viscous_stress: None, ..Self::new(parameters) }
+    }
+
     /// An interface without particles.
     pub fn new(parameters: Parameters<D>) -> Self {
         let list = ClusterList::new(parameters.isa);
-        let viscous_stress = parameters.viscosity.map(|mu| ViscousStress::new(mu, list.clone()));
+        let viscous_stress = ViscousStress::new(&parameters, &list);
         Self {
             parameters,
             fluid: InterfaceParticles::default(),
@@ -229,8 +234,10 @@ impl<const D: usize> Interface<D> {
             self.fluid.load(fluid);
             self.solid.load(solid);
         }
-        // The solid's own list, which its spin needs, holds pairs both of which move.
-        let pairs_of_solid = self.viscous_stress.is_some() && 2.0 * self.solid.displacement() > self.skin();
+        // The solid's own list, which its spin needs, holds pairs both of which move. All who keep the interface sort
+        // alike, to the same bits, also those who do not ask for viscous stress.
+        let pairs_of_solid =
+            self.parameters.viscosity.is_some() && 2.0 * self.solid.displacement() > self.skin();
         if !same || self.fluid.displacement() + self.solid.displacement() > self.skin() || pairs_of_solid {
             let height = self.height();
             self.fluid.sort(fluid, height);

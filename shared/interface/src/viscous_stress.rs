@@ -1,13 +1,12 @@
 //! Viscous stress between fluid and solid without slip, where the solid is the fluid's moving wall (pair force of
-//! Morris, Fox and Zhu 1997, eq. 22; shown velocity of Adami, Hu and Adams 2012, eqs. 22 and 23).
+//! [`halfstep_sph::viscosity`]; shown velocity of Adami, Hu and Adams 2012, eqs. 22 and 23).
 //!
 //! Velocities relative to the solid, with the rotation Omega_s beside its particle s ([`super::spin`]), are
 //!   w_fs = v_f - u_s - Omega_s (x_f - x_s),  w~_s = sum_f w_fs W_sf / sum_f W_sf,
 //! and s shows the fluid the velocity v_s = u_s - w~_s, its own where there is no fluid around. With grad W = F x_ij,
-//!   m_f a_f += sum_s 2 mu V_f V_s F (w_fs + w~_s),  V_f = m_f / rho_f,  V_s = m_s / rho_s as shown,
-//! the solid receives the opposite of each pair force, and the fluid's velocity gradient goes on into the solid:
-//!   (dv_a / dx_b)_f += sum_s V_s (v_s - v_f)_a F x_fs,b.
-//! The screen of a thin plate shows a velocity at each of its faces.
+//!   m_f a_f += sum_s V_f V_s (2 D mu / <r²>) F ((v_f - v_s) . x_fs) x_fs,  V_f = m_f / rho_f,  V_s = m_s / rho_s as
+//! shown. The solid receives the opposite of each pair force. Omega_s turns nothing along x_fs, so the force has no
+//! part of it. The screen of a thin plate shows a velocity at each of its faces.
 
 mod laws;
 
@@ -15,13 +14,14 @@ use super::faces::{AtFaces, FaceSum};
 use super::moving_wall::OneFace;
 use super::phase_blind::Vector;
 use super::spin::{MomentLaw, Spin};
-use super::{Interface, InterfaceParticles, SolidForce};
+use super::{Interface, InterfaceParticles, Parameters, SolidForce};
 use halfstep_scene::{Decision, Derived, EffectName, Scene, Treatment};
 use halfstep_sph::lane::LANES;
 use halfstep_sph::neighbours::ClusterList;
+use halfstep_sph::viscosity::strength;
 use halfstep_sph::{pair, with_kernel};
 use halfstep_wire::protocol::StateRecord;
-use laws::{Gradient, GradientLaw, OnFluid, OnSolid, Seen};
+use laws::{OnFluid, OnSolid, Seen};
 
 /// Whether fluid sticks to solids.
 pub fn interface_viscosity(scene: &Scene) -> Decision {
@@ -45,23 +45,23 @@ fn derive(scene: &Scene) -> Derived {
 /// What the effect keeps between passes; nothing that a run that goes on needs.
 #[derive(Clone, Debug)]
 pub(super) struct ViscousStress<const D: usize> {
-    /// mu, Pa s.
-    viscosity: f64,
+    /// 2 D mu / <r²>, Pa s / m².
+    strength: f64,
     spin: Spin<D>,
     /// v_s at each face by slot of the solid, m/s.
     shown: [[Vec<f64>; D]; 2],
     faces: Vec<[FaceSum<D>; 2]>,
-    gradients: Vec<Gradient<D>>,
     on_fluid: Vec<Vector<D>>,
     on_solid: Vec<SolidForce<D>>,
 }
 
 impl<const D: usize> ViscousStress<D> {
-    /// With a list that is as wide as the passes.
-    pub(super) fn new(viscosity: f64, list: ClusterList) -> Self {
+    /// With a list that is as wide as the passes; `None` where no viscous stress crosses the interface.
+    pub(super) fn new(parameters: &Parameters<D>, list: &ClusterList) -> Option<Self> {
+        let strength = strength::<D>(parameters.viscosity?, parameters.kernel, parameters.smoothing_length);
         let shown = std::array::from_fn(|_| std::array::from_fn(|_| Vec::new()));
-        let (faces, gradients, on_fluid, on_solid) = Default::default();
-        Self { viscosity, spin: Spin::new(list), shown, faces, gradients, on_fluid, on_solid }
+        let (faces, on_fluid, on_solid) = Default::default();
+        Some(Self { strength, spin: Spin::new(list.clone()), shown, faces, on_fluid, on_solid })
     }
 
     /// Lists the solid's neighbours among itself.
@@ -76,7 +76,7 @@ impl<const D: usize> ViscousStress<D> {
 
     fn seen<'a, F>(&'a self, interface: &'a Interface<D>, faces: F) -> Seen<'a, F, D> {
         let Interface { fluid, solid, .. } = interface;
-        Seen { fluid, solid, spin: &self.spin.columns, shown: &self.shown, faces, viscosity: self.viscosity }
+        Seen { fluid, solid, shown: &self.shown, faces, strength: self.strength }
     }
 }
 
@@ -133,23 +133,6 @@ impl<const D: usize> Interface<D> {
             }
         }
         stress.faces = faces;
-        self.viscous_stress = Some(stress);
-    }
-
-    /// What the solid adds to the fluid's velocity gradient where viscous stress crosses the interface:
-    /// `visit(record, gradient)`, dv_a / dx_b, 1/s.
-    pub fn gradient_at_fluid(&mut self, mut visit: impl FnMut(usize, [[f64; D]; D])) {
-        let Some(mut stress) = self.viscous_stress.take() else { return };
-        let (this, isa) = (&*self, self.parameters.isa);
-        let mut sums = std::mem::take(&mut stress.gradients);
-        sums.resize(this.fluid_list.fours(), Gradient::default());
-        with_faces!(this, stress, |kernel, seen| {
-            pair::pass(isa, &GradientLaw(kernel, seen), &this.fluid_list, &mut sums);
-        });
-        for (slot, record) in this.fluid.slots() {
-            visit(record, sums[slot / LANES].0.map(|row| row.map(|g| g.0[slot % LANES])));
-        }
-        stress.gradients = sums;
         self.viscous_stress = Some(stress);
     }
 

@@ -72,24 +72,16 @@ fn a_pair_is_what_the_formulas_say() {
     let solid = record(0, [0.0, 0.0], u, 2000.0, 0.5 * DX);
     let [[on_fluid], [on_solid]] = forces(&mut interface, &[fluid], &[solid]).map(|f| [f[0]]);
     // r = dx, s = 2/3: F = -5 c / h² (2/3)³, c = 7 / (4 pi h²). The one neighbour is the mean, so w~ = w = v - u, and a
-    // lone solid particle does not turn.
+    // lone solid particle does not turn: the solid shows 2 u - v. <r²> = 5 h² / 9 makes 4 mu / <r²> 7.2 mu / h².
     let slope = -5.0 * 7.0 / (4.0 * PI * H.powi(4)) * (2.0_f64 / 3.0).powi(3);
     let (volume_f, volume_s) = (DX * DX, 0.25 * DX * DX);
+    let place = [-0.6 * DX, 0.8 * DX];
+    let approach = 2.0 * ((v[0] - u[0]) * place[0] + (v[1] - u[1]) * place[1]);
     for d in 0..2 {
-        let expected = 2.0 * MU * volume_f * volume_s * slope * 2.0 * (v[d] - u[d]);
+        let expected = 7.2 * MU / (H * H) * volume_f * volume_s * slope * approach * place[d];
         assert!((on_fluid[d] / expected - 1.0).abs() < 1e-9, "{} {expected}", on_fluid[d]);
         assert!((on_solid[d] / expected + 1.0).abs() < 1e-9, "{} {expected}", on_solid[d]);
     }
-    // The solid shows 2 u - v.
-    let place = [-0.6 * DX, 0.8 * DX];
-    interface.gradient_at_fluid(|_, gradient| {
-        for a in 0..2 {
-            for b in 0..2 {
-                let expected = volume_s * 2.0 * (u[a] - v[a]) * slope * place[b];
-                assert!((gradient[a][b] / expected - 1.0).abs() < 1e-9, "{gradient:?}");
-            }
-        }
-    });
 }
 
 /// Water four rows deep on the left of an upright plate of six rows, which is at rest at x = 0 and beyond.
@@ -103,7 +95,7 @@ fn shear_drags_a_plate_by_its_stress() {
     let mut interface = interface(6, "");
     let fluid = beside(|[x, _]| [0.0, RATE * -x]);
     // What the lattice and the reversed mean velocity make of mu RATE; a finer plate has particles nearer to its face.
-    for (across, right) in [(1, 0.9788), (2, 1.0741)] {
+    for (across, right) in [(1, 0.9976), (2, 1.0990)] {
         let spacing = DX / across as f64;
         let solid = lattice([0.0, 0.0], [6 * across, 40 * across], spacing, 2000.0, |_| [0.0; 2]);
         let [on_fluid, on_solid] = forces(&mut interface, &fluid, &solid);
@@ -116,14 +108,6 @@ fn shear_drags_a_plate_by_its_stress() {
         let (all, reaction) = (sum(&on_fluid), sum(&on_solid));
         assert!((all[1] + reaction[1]).abs() < 1e-14 * reaction[1].abs() * 40.0, "{all:?} {reaction:?}");
     }
-    // Its gradient goes on into the plate: whole at the face, where without the plate half of it is missing.
-    interface.update(&fluid, &lattice([0.0, 0.0], [6, 40], DX, 2000.0, |_| [0.0; 2]), 2);
-    let mut added = vec![[[0.0; 2]; 2]; fluid.len()];
-    interface.gradient_at_fluid(|r, gradient| added[r] = gradient);
-    let (near, far) = (20 * 4 + 3, 20 * 4);
-    println!("added {:?}", added[near]);
-    assert!((-0.55 * RATE..-0.2 * RATE).contains(&added[near][1][0]), "{:?}", added[near]);
-    assert!(added[near][0][0].abs() < 1e-12 && added[far] == [[0.0; 2]; 2]);
 }
 
 #[test]
@@ -207,5 +191,4 @@ fn the_scene_decides() {
     silent.update(&beside(|_| [0.0, 1.0]), &lattice([0.0, 0.0], [6, 40], DX, 2000.0, |_| [0.0; 2]), 1);
     silent.drag_on_fluid(|_, _| panic!("no drag"));
     silent.drag_on_solid(|_, _| panic!("no drag"));
-    silent.gradient_at_fluid(|_, _| panic!("no gradient"));
 }

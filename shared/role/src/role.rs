@@ -62,8 +62,8 @@ pub fn fastest(mut work: impl FnMut()) -> f64 {
 
 /// Owner of the particles of a participant: of the fluid, or of one solid.
 ///
-/// One half-step is `publish`, `own_sums`, `cross_sums`, `advance`, in this order, with `see` before `own_sums` where
-/// those need the peers; the loop in [`crate::lockstep`] calls them.
+/// One half-step is `publish`, `own_sums`, `cross_sums`, `advance`, in this order; the loop in [`crate::lockstep`]
+/// calls them.
 pub trait Role: Send {
     /// Name of the participant.
     fn name(&self) -> Name;
@@ -80,17 +80,6 @@ pub trait Role: Send {
     fn publish(&mut self, peers: &[Peer], out: &mut Vec<StateRecord>) -> u64;
     /// Largest displacement of an own particle since the epoch began, m.
     fn displacement(&self) -> f64;
-    /// The sums over own particles need the peers' states of this half-step: then [`Role::see`] comes before them.
-    fn sums_see_peers(&self) -> bool {
-        false
-    }
-    /// Takes what the sums over own particles need from both sides' records of this half-step.
-    ///
-    /// # Errors
-    /// An own particle within reach of a peer was not published.
-    fn see(&mut self, _own: &[StateRecord], _peers: &[Peer]) -> Result<(), CoverageError> {
-        Ok(())
-    }
     /// Sums over own particles and walls.
     fn own_sums(&mut self);
     /// Sums across the interfaces, from both sides' records of this half-step.

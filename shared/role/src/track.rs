@@ -125,28 +125,6 @@ impl Track {
         self.compute += took;
     }
 
-    /// What the own sums need of the peers, where they need something.
-    pub(crate) fn see(
-        &mut self,
-        port: &mut dyn Port,
-        k: usize,
-        half_step: &HalfStep,
-    ) -> Result<(), RoleError> {
-        if !self.member.role.sums_see_peers() {
-            return Ok(());
-        }
-        if !self.have_peers {
-            self.receive_peers(port, k, &Expect::of(half_step))?;
-            self.have_peers = true;
-        }
-        let watch = Watch::start(Kind::Compute, "interface");
-        let result = self.member.role.see(&self.own, &self.peers);
-        let took = watch.stop();
-        self.cross += took;
-        self.compute += took;
-        result.map_err(|lost| self.fastest(port.peers(k), &lost, half_step).into())
-    }
-
     pub(crate) fn receive_peers(
         &mut self,
         port: &mut dyn Port,

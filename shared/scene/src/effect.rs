@@ -30,6 +30,8 @@ macro_rules! fluid_effects {
             ParticleShifting "particle-shifting" particle_shifting,
             /// Water that leaves a wall or a solid is not thinned out by the velocity that it shows.
             WallSeparation "wall-separation" wall_separation,
+            /// Continuity takes no part of the tangential velocity that walls without slip show.
+            NoSlipContinuity "no-slip-continuity" no_slip_continuity,
             /// Viscous stress between fluid and solid.
             InterfaceViscosity "interface-viscosity" interface_viscosity,
         }

@@ -1,6 +1,6 @@
 //! The parts of an energy ledger: what a participant holds, what it is given, and where energy is lost.
 
-use super::{Phase, ProbeKind, Scene};
+use super::{EffectName, Phase, ProbeKind, Scene};
 use serde::{Deserialize, Serialize};
 
 macro_rules! parts {
@@ -162,6 +162,10 @@ impl EnergyPart {
 
     /// What an effect of the fluid of this name gives.
     pub fn of_effect(name: &str) -> Self {
+        // It belongs to the work of the walls' pressure, which takes continuity's part with it.
+        if name == EffectName::NoSlipContinuity.name() {
+            return Self::WallPressure;
+        }
         FLUID.into_iter().find(|part| part.name() == name).unwrap_or(Self::FurtherEffect)
     }
 

@@ -84,7 +84,9 @@ pub use motion::{
 pub use parameters::{Doubtful, WholeAngle};
 pub use participant::Participant;
 pub use probe::{BodyQuantity, Probe, ProbeKind, Reference, Spot};
-pub use resources::{expected_speed, expected_speed_of_fluid, memory_available, memory_needed};
+pub use resources::{
+    auto_sound_speed, expected_speed, expected_speed_of_fluid, memory_available, memory_needed,
+};
 pub use schema::schema;
 pub use shape::{Block, CantileverMode, Geometry, Shape, TankSide, Traction, Void};
 pub use solid::{

@@ -89,6 +89,7 @@ impl Defaults {
                     (EffectName::SleepingSolid, Switch::Off),
                     (EffectName::ParticleShifting, Switch::Off),
                     (EffectName::WallSeparation, Switch::Off),
+                    (EffectName::NoSlipContinuity, Switch::Off),
                     (EffectName::WallGuard, Switch::Off),
                 ],
             },

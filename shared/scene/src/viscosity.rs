@@ -2,7 +2,7 @@
 
 use super::{Decision, Derived, EffectName, Fluid, Scene};
 
-/// Physical over artificial kinematic viscosity below which the physical one is left out: it costs a pass, and what the
+/// Physical over artificial kinematic viscosity below which the physical one is left out: it costs time, and what the
 /// artificial one does is not known better than that.
 const SMALLEST_SHARE: f64 = 0.05;
 

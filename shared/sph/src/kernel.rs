@@ -43,6 +43,8 @@ pub trait Kernel<const D: usize>: Copy + Send + Sync + 'static {
     fn gradient_over_r<A: Arch, L: Lanes>(&self, r: L) -> L;
     /// Smoothing length h, m.
     fn smoothing_length(&self) -> f64;
+    /// <r²>, the integral of r² W, m².
+    fn second_moment(&self) -> f64;
     /// W(r) of one distance.
     fn at(&self, r: f64) -> f64 {
         self.value::<crate::lane::Unfused, Lane>(Lane::splat(r)).0[0]
@@ -94,6 +96,10 @@ impl<const D: usize> Kernel<D> for CubicSpline<D> {
     fn smoothing_length(&self) -> f64 {
         self.h
     }
+
+    fn second_moment(&self) -> f64 {
+        (if D == 2 { 31.0 / 49.0 } else { 0.9 }) * self.h * self.h
+    }
 }
 
 /// Wendland C2 (Wendland 1995): W = c (1 - s/2)₊⁴ (2 s + 1), c = 7 / (4 pi h²) in two dimensions, 21 / (16 pi h³) in
@@ -133,22 +139,23 @@ impl<const D: usize> Kernel<D> for WendlandC2<D> {
     fn smoothing_length(&self) -> f64 {
         self.h
     }
+
+    fn second_moment(&self) -> f64 {
+        (if D == 2 { 5.0 / 9.0 } else { 0.8 }) * self.h * self.h
+    }
 }
 
 /// A kernel chosen by the scene, for the few evaluations outside the pair loop.
 pub fn value_at<const D: usize>(name: KernelName, h: f64, r: f64) -> f64 {
-    match name {
-        KernelName::CubicSpline => CubicSpline::<D>::new(h).at(r),
-        KernelName::WendlandC2 => WendlandC2::<D>::new(h).at(r),
-    }
+    with_kernel!(name, h, D, |kernel| kernel.at(r))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Integral of W over the plane or space by the midpoint rule along r.
-    fn integral<const D: usize, K: Kernel<D>>(kernel: K) -> f64 {
+    /// Integral of r^power W over the plane or space by the midpoint rule along r.
+    fn integral<const D: usize, K: Kernel<D>>(kernel: K, power: i32) -> f64 {
         let h = kernel.smoothing_length();
         let n = 20_000;
         let dr = 2.0 * h / n as f64;
@@ -156,7 +163,7 @@ mod tests {
             .map(|k| {
                 let r = (k as f64 + 0.5) * dr;
                 let shell = if D == 2 { 2.0 * PI * r } else { 4.0 * PI * r * r };
-                kernel.at(r) * shell * dr
+                kernel.at(r) * r.powi(power) * shell * dr
             })
             .sum()
     }
@@ -173,12 +180,17 @@ mod tests {
         assert_eq!(kernel.slope_at(2.5 * h), 0.0);
     }
 
+    fn integrates_to_one<const D: usize, K: Kernel<D>>(kernel: K) {
+        assert!((integral(kernel, 0) - 1.0).abs() < 1e-7);
+        assert!((integral(kernel, 2) / kernel.second_moment() - 1.0).abs() < 1e-7);
+    }
+
     #[test]
-    fn kernels_integrate_to_one() {
-        assert!((integral(CubicSpline::<2>::new(0.3)) - 1.0).abs() < 1e-7);
-        assert!((integral(CubicSpline::<3>::new(0.3)) - 1.0).abs() < 1e-7);
-        assert!((integral(WendlandC2::<2>::new(0.3)) - 1.0).abs() < 1e-7);
-        assert!((integral(WendlandC2::<3>::new(0.3)) - 1.0).abs() < 1e-7);
+    fn kernels_integrate_to_one_and_to_their_second_moment() {
+        integrates_to_one(CubicSpline::<2>::new(0.3));
+        integrates_to_one(CubicSpline::<3>::new(0.3));
+        integrates_to_one(WendlandC2::<2>::new(0.3));
+        integrates_to_one(WendlandC2::<3>::new(0.3));
     }
 
     #[test]

@@ -22,5 +22,6 @@ mod phase;
 pub mod quantity;
 pub mod state_equation;
 pub mod tensor;
+pub mod viscosity;
 
 pub use phase::Phase;

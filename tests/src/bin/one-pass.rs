@@ -5,7 +5,7 @@
 use halfstep_fluid::composition::{Pass, Shares};
 use halfstep_fluid::effects::artificial_viscosity::ArtificialViscosity;
 use halfstep_fluid::effects::density_diffusion::{DeltaSph, Diffusion, Simple, Strength};
-use halfstep_fluid::effects::viscosity::ViscousStress;
+use halfstep_fluid::effects::viscosity::Viscosity;
 use halfstep_fluid::rates::RateSum;
 use halfstep_scene::ArtificialViscosity as Coefficients;
 use halfstep_sph::lane::Isa;
@@ -35,7 +35,7 @@ fn main() -> ExitCode {
     let viscosity = ArtificialViscosity::new(Coefficients { linear: 0.1, quadratic: 0.0 }, 10.0, H);
     let simple = Simple(Strength(0.1));
     let full = DeltaSph { strength: Strength(0.1), gradient: &gradient };
-    let chosen = |diffusion| (Some(viscosity), (diffusion, (None::<ViscousStress<'_, 2>>, ())));
+    let chosen = |diffusion| (Some(viscosity), (diffusion, (None::<Viscosity<_>>, ())));
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match arguments[..] {
         ["artificial-viscosity", "chosen"] => chosen(None).run(pass),

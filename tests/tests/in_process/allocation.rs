@@ -109,9 +109,6 @@ fn coupled(scene: &Scene) -> u64 {
             if half_step.stage == Stage::First {
                 half_step = half_step.lasting(fluid.dt_limit().min(solid.dt_limit()));
             }
-            if fluid.sums_see_peers() {
-                fluid.see(&of_fluid[0].records, &of_solid).unwrap();
-            }
             fluid.own_sums();
             solid.own_sums();
             fluid.cross_sums(&of_fluid[0].records, &of_solid).unwrap();

@@ -1,4 +1,4 @@
-//! A channel without slip, driven by a force along it: a known limit of the viscous stress.
+//! A channel without slip, driven by a force along it.
 
 use halfstep_tests::fluid_alone::{mean_of, run_to};
 
@@ -19,13 +19,13 @@ fn flow(ratio: f64, dx: f64) -> f64 {
     mean_of(&frame, |[x, _], [u, _]| ((x - middle).abs() < 0.2).then_some(u / 0.25))
 }
 
-/// Odd and even rows part, since the stress is a gradient of a gradient that each sees every other row: docs/theory/
-/// viscosity.md. A remedy would bring these to 1.
+/// At 5 mm 0.993 and 0.999. A stress that is a gradient of a gradient, of which each sees every other row, has 1.3 to
+/// 1.8.
 #[test]
-fn a_channel_without_slip_flows_too_fast() {
-    for (ratio, right) in [(2.0, 1.29), (1.5, 1.42)] {
+fn a_channel_without_slip_has_poiseuilles_flow() {
+    for (ratio, right) in [(2.0, 1.016), (1.5, 1.013)] {
         let found = flow(ratio, 0.01);
         println!("h / dx = {ratio}: {found:.3}");
-        assert!((found - right).abs() < 0.08, "h / dx = {ratio}: {found}, not {right}");
+        assert!((found - right).abs() < 0.006, "h / dx = {ratio}: {found}, not {right}");
     }
 }

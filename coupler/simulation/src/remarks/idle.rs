@@ -2,7 +2,7 @@
 
 use super::shapes::length;
 use halfstep_scene::geometry::Layout;
-use halfstep_scene::{Phase, Scene, Switch, artificial_viscosity, expected_speed, viscosity};
+use halfstep_scene::{Phase, Scene, Switch, artificial_viscosity, auto_sound_speed, viscosity};
 
 /// Sound speed over that of `"auto"` from which on its price is remarked: impacts have up to two and a half times it.
 const FASTER: f64 = 3.0;
@@ -69,7 +69,7 @@ pub(super) fn belts(scene: &Scene, all: &mut Vec<String>) {
 /// A sound speed far above what the fluid's speed asks for.
 pub(super) fn sound_speed(scene: &Scene, all: &mut Vec<String>) {
     let Some(fluid) = &scene.fluid else { return };
-    let auto = 10.0 * expected_speed(scene);
+    let auto = auto_sound_speed(scene);
     let times = fluid.sound_speed / auto;
     if auto > 0.0 && times >= FASTER {
         all.push(format!(
@@ -77,7 +77,7 @@ pub(super) fn sound_speed(scene: &Scene, all: &mut Vec<String>) {
              times more steps, and its fluid is stiff enough for {} m/s without",
             length(fluid.sound_speed),
             length(auto),
-            length(expected_speed(scene))
+            length(0.1 * auto)
         ));
     }
 }

@@ -3,8 +3,12 @@
 use super::shapes::place;
 use halfstep_scene::geometry::{self, Cells, FluidPoint, Layout};
 use halfstep_scene::{Geometry, Motion, Phase, Scene, Shape, expected_speed_of_fluid as fastest};
+use halfstep_scene::{auto_sound_speed, expected_speed as scene_speed, viscosity};
 use std::collections::HashMap;
 
+/// Part of the sound speed that viscous stress asks for below which a scene is warned: there the stress is 0.006 of
+/// rho c0².
+const SOFTEST: f64 = 0.7;
 /// Mach number above which the density error, about its square, exceeds 3 %.
 const HIGHEST_MACH: f64 = 0.17;
 
@@ -228,6 +232,20 @@ pub(super) fn expected_speed(scene: &Scene, all: &mut Vec<String>) {
              fluid.sound_speed = {:.0} keeps it below 1 %",
             100.0 * mach * mach,
             (10.0 * fastest).ceil()
+        ));
+    }
+}
+
+/// Viscous stress that compresses the fluid: what walls and shapes that move press out of corners.
+pub(super) fn viscous_stress(scene: &Scene, all: &mut Vec<String>) {
+    let Some(fluid) = scene.fluid.as_ref().filter(|_| viscosity(scene).on) else { return };
+    let auto = auto_sound_speed(scene);
+    if auto > 10.0 * scene_speed(scene) && fluid.sound_speed < SOFTEST * auto {
+        all.push(format!(
+            "viscous stress between neighbouring rows compresses the fluid: fluid.sound_speed = {} m/s, and {:.1} keeps \
+             that below 0.3 %; fluid may be pressed out of corners",
+            fluid.sound_speed as f32,
+            auto
         ));
     }
 }

@@ -4,23 +4,18 @@ use crate::faces::{FaceSum, Faces, between};
 use crate::phase_blind::Vector;
 use crate::{InterfaceParticles, SolidForce};
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Arch, Lane, Lanes};
-use halfstep_sph::pair::{PairLaw, distance, pair_sum};
-
-/// dv_a / dx_b of several fluid particles, as far as solids add to it.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Gradient<const D: usize, L = Lane>(pub(super) [[L; D]; D]);
-pair_sum!(Gradient { D } { 0 });
+use halfstep_sph::lane::{Arch, Lanes};
+use halfstep_sph::pair::{PairLaw, distance, dot};
 
 /// What the laws see.
 #[derive(Clone, Copy)]
 pub(super) struct Seen<'a, F, const D: usize> {
     pub(super) fluid: &'a InterfaceParticles<D>,
     pub(super) solid: &'a InterfaceParticles<D>,
-    pub(super) spin: &'a [[Vec<f64>; D]; D],
     pub(super) shown: &'a [[Vec<f64>; D]; 2],
     pub(super) faces: F,
-    pub(super) viscosity: f64,
+    /// 2 D mu / <r²>, Pa s / m².
+    pub(super) strength: f64,
 }
 
 impl<F: Faces<D>, const D: usize> Seen<'_, F, D> {
@@ -33,62 +28,11 @@ impl<F: Faces<D>, const D: usize> Seen<'_, F, D> {
     }
 }
 
-/// Takes Omega x off a velocity; Omega by its components a < b.
-#[inline(always)]
-fn take_rotation<const D: usize, A: Arch, L: Lanes>(
-    velocity: &mut [L; D],
-    spin: impl Fn(usize, usize) -> L,
-    x: [L; D],
-) {
-    for a in 0..D {
-        for b in a + 1..D {
-            let omega = spin(a, b);
-            velocity[a] = A::mul_add(-omega, x[b], velocity[a]);
-            velocity[b] = A::mul_add(omega, x[a], velocity[b]);
-        }
-    }
-}
-
-/// The pass over the fluid that continues its velocity gradient.
-pub(super) struct GradientLaw<'a, K, F, const D: usize>(pub(super) K, pub(super) Seen<'a, F, D>);
-
-impl<K: Kernel<D>, F: Faces<D>, const D: usize> PairLaw<D> for GradientLaw<'_, K, F, D> {
-    /// Velocity.
-    type Target<L: Lanes> = [L; D];
-    type Sum<L: Lanes> = Gradient<D, L>;
-
-    #[inline(always)]
-    fn target_positions(&self) -> &[Vec<f64>; D] {
-        &self.1.fluid.position
-    }
-    #[inline(always)]
-    fn target<L: Lanes>(&self, slot: usize) -> [L; D] {
-        std::array::from_fn(|d| L::load(&self.1.fluid.velocity[d], slot))
-    }
-    #[inline(always)]
-    fn source_position(&self, j: usize) -> [f64; D] {
-        std::array::from_fn(|d| self.1.solid.position[d][j])
-    }
-    #[inline(always)]
-    fn add<A: Arch, L: Lanes>(&self, own: &[L; D], j: usize, dx: [L; D], r2: L, sum: &mut Gradient<D, L>) {
-        let Self(kernel, seen) = self;
-        let f = kernel.gradient_over_r::<A, L>(distance(r2, kernel.smoothing_length()));
-        let vf = L::splat(seen.solid.mass[j] / seen.solid.density[j]) * f;
-        let shown = seen.shown_at::<A, L>(j, dx);
-        for a in 0..D {
-            let row = vf * (shown[a] - own[a]);
-            for b in 0..D {
-                sum.0[a][b] = A::mul_add(row, dx[b], sum.0[a][b]);
-            }
-        }
-    }
-}
-
 /// Acceleration of the fluid.
 pub(super) struct OnFluid<'a, K, F, const D: usize>(pub(super) K, pub(super) Seen<'a, F, D>);
 
 impl<K: Kernel<D>, F: Faces<D>, const D: usize> PairLaw<D> for OnFluid<'_, K, F, D> {
-    /// Velocity; 2 mu / rho.
+    /// Velocity; 2 D mu / (<r²> rho).
     type Target<L: Lanes> = ([L; D], L);
     type Sum<L: Lanes> = Vector<D, L>;
 
@@ -99,7 +43,7 @@ impl<K: Kernel<D>, F: Faces<D>, const D: usize> PairLaw<D> for OnFluid<'_, K, F,
     #[inline(always)]
     fn target<L: Lanes>(&self, slot: usize) -> Self::Target<L> {
         let velocity = std::array::from_fn(|d| L::load(&self.1.fluid.velocity[d], slot));
-        (velocity, L::splat(2.0 * self.1.viscosity) / L::load(&self.1.fluid.density, slot))
+        (velocity, L::splat(self.1.strength) / L::load(&self.1.fluid.density, slot))
     }
     #[inline(always)]
     fn source_position(&self, j: usize) -> [f64; D] {
@@ -118,10 +62,9 @@ impl<K: Kernel<D>, F: Faces<D>, const D: usize> PairLaw<D> for OnFluid<'_, K, F,
         let f = kernel.gradient_over_r::<A, L>(distance(r2, kernel.smoothing_length()));
         let coefficient = L::splat(seen.solid.mass[j] / seen.solid.density[j]) * *factor * f;
         let shown = seen.shown_at::<A, L>(j, dx);
-        let mut slip = std::array::from_fn(|d| velocity[d] - shown[d]);
-        take_rotation::<D, A, L>(&mut slip, |a, b| L::splat(seen.spin[a][b][j]), dx);
+        let approach = dot::<D, A, L>(std::array::from_fn(|d| velocity[d] - shown[d]), dx);
         for d in 0..D {
-            sum.0[d] = A::mul_add(coefficient, slip[d], sum.0[d]);
+            sum.0[d] = A::mul_add(coefficient * approach, dx[d], sum.0[d]);
         }
     }
 }
@@ -130,9 +73,7 @@ impl<K: Kernel<D>, F: Faces<D>, const D: usize> PairLaw<D> for OnFluid<'_, K, F,
 #[derive(Clone, Copy)]
 pub(super) struct OfSolid<O, L, const D: usize> {
     shown: [[L; D]; 2],
-    /// Components a < b.
-    spin: [[L; D]; D],
-    /// 2 mu V.
+    /// 2 D mu V / <r²>.
     factor: L,
     own: O,
 }
@@ -151,11 +92,9 @@ impl<K: Kernel<D>, F: Faces<D>, const D: usize> PairLaw<D> for OnSolid<'_, K, F,
     #[inline(always)]
     fn target<L: Lanes>(&self, slot: usize) -> Self::Target<L> {
         let seen = &self.1;
-        let spin = |a: usize, b: usize| if a < b { L::load(&seen.spin[a][b], slot) } else { L::ZERO };
         OfSolid {
             shown: std::array::from_fn(|k| std::array::from_fn(|d| L::load(&seen.shown[k][d], slot))),
-            spin: std::array::from_fn(|a| std::array::from_fn(|b| spin(a, b))),
-            factor: L::splat(2.0 * seen.viscosity) * L::load(&seen.solid.mass, slot)
+            factor: L::splat(seen.strength) * L::load(&seen.solid.mass, slot)
                 / L::load(&seen.solid.density, slot),
             own: seen.faces.load(slot),
         }
@@ -175,14 +114,13 @@ impl<K: Kernel<D>, F: Faces<D>, const D: usize> PairLaw<D> for OnSolid<'_, K, F,
     ) {
         let Self(kernel, seen) = self;
         let f = kernel.gradient_over_r::<A, L>(distance(r2, kernel.smoothing_length()));
-        let coefficient = L::splat(-seen.fluid.mass[j] / seen.fluid.density[j]) * i.factor * f;
-        let to_fluid = dx.map(|x| -x);
-        let share = seen.faces.share_of::<A, L>(&i.own, to_fluid);
+        let coefficient = L::splat(seen.fluid.mass[j] / seen.fluid.density[j]) * i.factor * f;
+        let share = seen.faces.share_of::<A, L>(&i.own, dx.map(|x| -x));
         let shown = |d: usize| between::<A, L>(i.shown.map(|shown| shown[d]), share);
-        let mut slip = std::array::from_fn(|d| L::splat(seen.fluid.velocity[d][j]) - shown(d));
-        take_rotation::<D, A, L>(&mut slip, |a, b| i.spin[a][b], to_fluid);
+        let velocity = std::array::from_fn(|d| shown(d) - L::splat(seen.fluid.velocity[d][j]));
+        let approach = dot::<D, A, L>(velocity, dx);
         for d in 0..D {
-            sum.0[d] = A::mul_add(coefficient, slip[d], sum.0[d]);
+            sum.0[d] = A::mul_add(coefficient * approach, dx[d], sum.0[d]);
         }
     }
 }

@@ -7,7 +7,7 @@ pub type CellSet<const D: usize> = FxHashSet<[i64; D]>;
 
 /// Things at places, in cells of one side.
 #[derive(Clone, Debug)]
-pub struct Cells<T, const D: usize> {
+pub struct Cells<T, const D: usize = 2> {
     cells: FxHashMap<[i64; D], Vec<T>>,
     side: f64,
 }

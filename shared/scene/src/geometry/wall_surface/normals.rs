@@ -218,7 +218,7 @@ impl<'s> Tank<'s> {
 struct Edges {
     all: Vec<Edge>,
     /// Indices of edges, at places along them.
-    places: Cells<u32, 2>,
+    places: Cells<u32>,
 }
 
 impl Edges {
