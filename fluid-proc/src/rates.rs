@@ -40,6 +40,12 @@ impl<L: Lanes, const D: usize> FluidPair<D, L> {
         let density_sum = self.density_i + self.density_j;
         damping::<A, L>(h, linear, L::splat(quadratic), self.approach, self.r2, density_sum)
     }
+
+    /// v . x_ij of a velocity beside v_ij that one source has, m²/s.
+    #[inline(always)]
+    pub fn approach_by<A: Arch>(&self, velocity: &[f64; D]) -> L {
+        dot::<D, A, L>(components(|d| L::splat(velocity[d])), self.dx)
+    }
 }
 
 /// What a pair adds: `bracket` times m_j F x_ij and `vector` times m_j F to the acceleration, `density` times

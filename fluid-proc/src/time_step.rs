@@ -87,7 +87,7 @@ impl StepLimits {
         } else {
             f64::INFINITY
         };
-        // Without the effect to the bit.
+        // Scenes without viscous stress at solids keep the Courant limit to the last digit.
         let courant = if self.dragging > 0.0 { 1.0 / (1.0 / courant + self.dragging) } else { courant };
         courant.min(force).min(self.fixed)
     }

@@ -10,10 +10,9 @@ use crate::columns::fit;
 use crate::composition::NoShare;
 use crate::rates::{FluidPair, PairEffect, PairRates};
 use crate::walls::Walls;
-use halfstep_scene::{Decision, Derived, EffectName, Phase, Scene};
+use halfstep_scene::{Decision, Derived, EffectName, Phase, Scene, Shape};
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Arch, Lanes, components};
-use halfstep_sph::pair::dot;
+use halfstep_sph::lane::{Arch, Lanes};
 use halfstep_wire::half_step::Stage;
 
 /// The effect.
@@ -34,7 +33,7 @@ impl<const D: usize> FluidEffect<D> for NoSlipContinuity<D> {
     type Pair<'a> = NoShare;
     type AtWall<'a> = Tangential<'a, D>;
     fn decide(scene: &Scene) -> Decision {
-        let without_slip = |shape: &halfstep_scene::Shape| shape.phase == Phase::Wall && !shape.free_slip;
+        let without_slip = |shape: &Shape| shape.phase == Phase::Wall && !shape.free_slip;
         let derived = match scene.fluid.is_some() && scene.shapes.iter().any(without_slip) {
             false => Derived::Impossible("no fluid at a wall without slip".into()),
             true => Derived::On("along walls without slip nothing is compressed".into()),
@@ -69,7 +68,6 @@ impl<const D: usize> PairEffect<D> for Tangential<'_, D> {
     fn own<L: Lanes>(&self, _: usize) {}
     #[inline(always)]
     fn add<A: Arch, L: Lanes>(&self, _: &(), j: usize, pair: &FluidPair<D, L>, rates: &mut PairRates<D, L>) {
-        let excess = components(|d| L::splat(self.0[j][d]));
-        rates.density = A::mul_add(pair.density_i, dot::<D, A, L>(excess, pair.dx), rates.density);
+        rates.density = A::mul_add(pair.density_i, pair.approach_by::<A>(&self.0[j]), rates.density);
     }
 }

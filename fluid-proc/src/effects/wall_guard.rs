@@ -32,8 +32,7 @@ use crate::walls::Walls;
 use halfstep_scene::{Decision, Derived, EffectName, FluidIntegration, Phase, Scene};
 use halfstep_sph::fade::Fade;
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Arch, Lane, Lanes, Unfused, components};
-use halfstep_sph::pair::dot;
+use halfstep_sph::lane::{Arch, Lane, Lanes, Unfused};
 use halfstep_wire::half_step::Stage;
 
 /// A of the guard.
@@ -157,7 +156,7 @@ impl<const D: usize> FluidEffect<D> for WallGuard<D> {
     }
     fn prepare<K: Kernel<D>>(&mut self, stage: Stage, around: &Neighbourhood<'_, K, D>) -> u64 {
         self.divide(stage, &around.kernel);
-        if let Some((walls, _)) = around.walls {
+        if let Some((walls, _)) = around.walls.filter(|_| around.needed(stage).momentum()) {
             walls.beyond_slip(&mut self.beyond_slip);
         }
         0
@@ -204,8 +203,7 @@ impl<const D: usize> PairEffect<D> for GuardedViscosity<'_, D> {
         let h = self.smoothing_length;
         match self.beyond_slip.get(j) {
             Some(excess) if *excess != [0.0; D] => {
-                let excess = components(|d| L::splat(excess[d]));
-                let approach = pair.approach + dot::<D, A, L>(excess, pair.dx);
+                let approach = pair.approach + pair.approach_by::<A>(excess);
                 let with_slip = FluidPair { approach, ..*pair };
                 rates.bracket = rates.bracket
                     - (pair.damping::<A>(h, plain, self.quadratic) + with_slip.damping::<A>(h, damped, 0.0));

@@ -18,8 +18,7 @@ use crate::rates::{FluidPair, PairEffect, PairRates};
 use crate::walls::Walls;
 use halfstep_scene::{Decision, EffectName, Scene};
 use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::{Arch, Lanes, components};
-use halfstep_sph::pair::dot;
+use halfstep_sph::lane::{Arch, Lanes};
 use halfstep_wire::half_step::Stage;
 use rayon::prelude::*;
 
@@ -94,8 +93,7 @@ impl<const D: usize> PairEffect<D> for Separating<'_, D> {
     fn add<A: Arch, L: Lanes>(&self, _: &(), j: usize, pair: &FluidPair<D, L>, rates: &mut PairRates<D, L>) {
         let pull = (pair.pressure_term_i + pair.pressure_term_j - L::splat(self.least[j])).min(L::ZERO);
         rates.bracket += pull;
-        let excess = components(|d| L::splat(self.excess[j][d]));
-        rates.density = A::mul_add(pair.density_i, dot::<D, A, L>(excess, pair.dx), rates.density);
+        rates.density = A::mul_add(pair.density_i, pair.approach_by::<A>(&self.excess[j]), rates.density);
     }
 }
 

@@ -202,24 +202,25 @@ pub fn expected_speed_of_fluid(scene: &Scene) -> f64 {
 }
 
 fn speed_with(scene: &Scene, pushes: impl Fn(&Shape) -> bool) -> f64 {
-    let g = speed(&scene.gravity);
+    let g = length(&scene.gravity);
     let falls = if g > 0.0 { falls(scene, scene.gravity.map(|c| c / g)) } else { [0.0; 2] };
     falls.into_iter().map(|height| (2.0 * g * height).sqrt()).fold(given_speed(scene, pushes), f64::max)
 }
 
-fn speed(v: &[f64; 3]) -> f64 {
+/// The length of a vector.
+fn length(v: &[f64; 3]) -> f64 {
     v.iter().map(|c| c * c).sum::<f64>().sqrt()
 }
 
 /// The fastest that the scene itself gives anything, m/s.
 fn given_speed(scene: &Scene, pushes: impl Fn(&Shape) -> bool) -> f64 {
-    let g = speed(&scene.gravity);
+    let g = length(&scene.gravity);
     let field = |s: &Shape| s.velocity_field.map_or(0.0, |field| field.fastest(g));
     let moving = |s: &Shape| match s.motion.as_ref().filter(|_| pushes(s)) {
         Some(motion) => motion.fastest(&geometry::bounding_box(s, scene)),
         None => 0.0,
     };
-    let fastest = scene.shapes.iter().map(|s| speed(&s.velocity) + field(s) + moving(s)).fold(0.0, f64::max);
+    let fastest = scene.shapes.iter().map(|s| length(&s.velocity) + field(s) + moving(s)).fold(0.0, f64::max);
     let fastest = fastest.max(spins(scene));
     let frame = scene.frame.as_ref().zip(geometry::around(geometry::fluid_boxes(scene)));
     fastest + frame.map_or(0.0, |(frame, water)| frame.motion.fastest(&water))
@@ -227,7 +228,6 @@ fn given_speed(scene: &Scene, pushes: impl Fn(&Shape) -> bool) -> f64 {
 
 /// How fast the fastest corner of a rigid body that turns at the start goes, m/s: about a hinge, else about its middle.
 fn spins(scene: &Scene) -> f64 {
-    let length = |v: &[f64; 3]| v.iter().map(|c| c * c).sum::<f64>().sqrt();
     let fastest = bounds::turning(scene).map(|(solid, body, Block { min, max }, hinges)| {
         let middle = || std::array::from_fn(|d| 0.5 * (min[d] + max[d]));
         let pivot = hinges.first().copied().unwrap_or_else(middle);

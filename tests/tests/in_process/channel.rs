@@ -1,6 +1,7 @@
-//! A channel without slip, driven by a force along it.
+//! Walls without slip: a channel that a force drives along them, and thin layers on one.
 
 use halfstep_tests::fluid_alone::{mean_of, run_to};
+use halfstep_wire::frame::FLUID;
 
 /// Mean velocity over Poiseuille's g H² / 12 nu = 0.25 m/s in the middle of a plug 1 m long, 0.1 m high, at 0.4 s,
 /// when the start is over but for 2 %.
@@ -27,5 +28,33 @@ fn a_channel_without_slip_has_poiseuilles_flow() {
         let found = flow(ratio, 0.01);
         println!("h / dx = {ratio}: {found:.3}");
         assert!((found - right).abs() < 0.006, "h / dx = {ratio}: {found}, not {right}");
+    }
+}
+
+/// Deepest particle below the floor, over dx, of a dam break of 0.1 Pa s at 0.6 s.
+fn deepest(size: [f64; 2], guard: &str) -> f64 {
+    let text = format!(
+        "resolution = 0.01\nend_time = 1.0\n[effects]\nwall-guard = \"{guard}\"\n\
+         [fluid]\ndensity = 1000.0\nviscosity = 0.1\nsound_speed = 25.0\n\
+         [[shape]]\nname = \"oil\"\nphase = \"fluid\"\nbox = {{ min = [0.0, 0.0], max = [{}, {}] }}\n\
+         [[shape]]\nname = \"tank\"\nphase = \"wall\"\nslip = \"none\"\n\
+         tank = {{ min = [0.0, 0.0], max = [0.8, 0.5], open = [\"top\"] }}\n",
+        size[0], size[1]
+    );
+    let (_, frame) = run_to(&text, 0.6);
+    let of_fluid = frame.points.iter().zip(&frame.phase).filter(|(_, phase)| **phase == FLUID);
+    of_fluid.map(|(x, _)| -f64::from(x[1]) / 0.01).fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// The guard sees the velocity that the floor would show with slip: thin layers stay out of it.
+#[test]
+fn a_floor_without_slip_is_guarded() {
+    let without = deepest([0.2, 0.2], "off");
+    println!("without the guard {without:.2} dx");
+    assert!(without > 0.5, "{without}");
+    for size in [[0.2, 0.2], [0.213, 0.207]] {
+        let with = deepest(size, "auto");
+        println!("{size:?}: {with:.2} dx");
+        assert!(with < 0.1, "{size:?}: {with}");
     }
 }

@@ -152,6 +152,29 @@ fn water_that_falls_too_fast_for_its_sound_speed() {
     );
 }
 
+/// A belt at 0.5 m/s over a fluid of 5e-3 m²/s: nu U / dx = 0.25 m²/s², and 0.25 / 0.003 is 9.13² m²/s².
+#[test]
+fn viscous_stress_that_compresses_the_fluid() {
+    let scene = |fluid: &str| {
+        let text = format!(
+            "resolution = 0.01\nend_time = 1.0\ngravity = [0.0, 0.0]\n[fluid]\ndensity = 1000.0\n{fluid}\n\
+             {}[[shape]]\nname = \"belt\"\nphase = \"wall\"\nslip = \"none\"\nvelocity = [0.5, 0.0]\n\
+             box = {{ min = [-0.1, 0.1], max = [0.2, 0.16] }}\n",
+            [TANK, WATER].concat().replace("phase = \"wall\"", "phase = \"wall\"\nslip = \"none\"")
+        );
+        parse(&text, Path::new("x.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}"))
+    };
+    let sound = |fluid: &str| scene(fluid).fluid.map(|fluid| fluid.sound_speed).expect("a fluid");
+    assert!((sound("viscosity = 5.0") - (0.25_f64 / 0.003).sqrt()).abs() < 1e-9);
+    assert!((sound("viscosity = 0.5") - 5.0).abs() < 1e-9, "ten times the belt's speed");
+    let said = "viscous stress between neighbouring rows compresses the fluid: fluid.sound_speed = 5 m/s, and 9.1 \
+                keeps that below 0.3 %; fluid may be pressed out of corners";
+    assert!(remarks(&scene("viscosity = 5.0\nsound_speed = 5.0")).iter().any(|remark| remark == said));
+    for fluid in ["viscosity = 5.0\nsound_speed = 7.0", "viscosity = 5.0", "viscosity = 0.5"] {
+        assert!(!remarks(&scene(fluid)).iter().any(|remark| remark.contains("viscous stress")), "{fluid}");
+    }
+}
+
 #[test]
 fn units_that_are_hardly_meant() {
     let text = [TANK, WATER, PLATE].concat();

@@ -242,10 +242,9 @@ pub(super) fn viscous_stress(scene: &Scene, all: &mut Vec<String>) {
     let auto = auto_sound_speed(scene);
     if auto > 10.0 * scene_speed(scene) && fluid.sound_speed < SOFTEST * auto {
         all.push(format!(
-            "viscous stress between neighbouring rows compresses the fluid: fluid.sound_speed = {} m/s, and {:.1} keeps \
-             that below 0.3 %; fluid may be pressed out of corners",
-            fluid.sound_speed as f32,
-            auto
+            "viscous stress between neighbouring rows compresses the fluid: fluid.sound_speed = {} m/s, and {auto:.1} \
+             keeps that below 0.3 %; fluid may be pressed out of corners",
+            fluid.sound_speed as f32
         ));
     }
 }
