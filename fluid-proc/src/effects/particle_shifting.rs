@@ -35,6 +35,8 @@ pub(crate) const STRAINED: f64 = 0.3;
 const SURFACE: f64 = 0.75;
 /// More than any determinant of M.
 const FAR: f64 = 1e3;
+/// A number times it stays larger than the same number in single precision.
+const ROUNDED: f64 = 1.000_001;
 
 /// The effect.
 #[derive(Clone, Debug)]
@@ -85,7 +87,7 @@ impl<const D: usize> FluidEffect<D> for ParticleShifting<D> {
         size_of::<Order<D>>() + size_of::<[f64; D]>()
     }
     fn resize(&mut self, slots: usize, _: Option<&Walls<D>>) {
-        fit(&mut self.order, slots, Order { crowd: [0.0; D], determinant: 0.0 });
+        fit(&mut self.order, slots, Order { drift: [0.0; D], determinant: 0.0 });
         fit(&mut self.drift, slots, [0.0; D]);
     }
     fn prepare<K: Kernel<D>>(&mut self, stage: Stage, around: &Neighbourhood<'_, K, D>) -> u64 {
@@ -94,25 +96,28 @@ impl<const D: usize> FluidEffect<D> for ParticleShifting<D> {
         }
         let Neighbourhood { kernel, isa, fluid, list, walls, .. } = *around;
         let at_spacing = 1.0 / kernel.at(self.spacing);
-        let law = OrderLaw { kernel, at_spacing, targets: fluid, sources: fluid };
+        let law = OrderLaw { kernel, at_spacing, targets: fluid, sources: fluid, flows: true };
         let (order, _) = self.order.as_chunks_mut();
-        let found = |_, sum: &OrderSum<D>| sum.order();
+        let (strength, fastest) = (self.strength, self.fastest);
+        let found = |_, sum: &OrderSum<D>| sum.order(strength, fastest);
         let mut pairs = 2 * evaluations(list);
         if let Some((walls, wall_list)) = walls {
-            let at_walls = OrderLaw { kernel, at_spacing, targets: fluid, sources: &walls.shown };
+            let at_walls = OrderLaw { sources: &walls.shown, flows: false, ..law };
             pair::pass_both_into(isa, (&law, list), (&at_walls, wall_list), found, order);
             pairs += evaluations(wall_list);
         } else {
             pair::pass_into(isa, &law, list, found, order);
         }
-        let (order, strength, fastest) = (self.order.as_slice(), self.strength, self.fastest);
+        let order = self.order.as_slice();
+        let at_surface = SURFACE.powi(D as i32);
         let drift = |slot: usize, around: &Around| -> [[f64; D]; LANES] {
-            std::array::from_fn(|k| match around.determinant.0[k] < SURFACE.powi(D as i32) {
+            std::array::from_fn(|k| match around.determinant.0[k] < at_surface {
                 true => [0.0; D],
-                false => order[slot + k].drift(strength, fastest.min(STRAINED * around.fastest(k))),
+                false => order[slot + k].drift,
             })
         };
-        pair::pass_into(isa, &AroundLaw { kernel, order, fluid }, list, drift, self.drift.as_chunks_mut().0);
+        let law = AroundLaw { kernel, order, inside: at_surface * ROUNDED, fluid };
+        pair::pass_into(isa, &law, list, drift, self.drift.as_chunks_mut().0);
         pairs
     }
     fn drift(&self) -> Option<&[[f64; D]]> {
@@ -126,38 +131,36 @@ impl<const D: usize> FluidEffect<D> for ParticleShifting<D> {
 /// What the first pass finds of a particle.
 #[derive(Clone, Copy, Debug)]
 struct Order<const D: usize> {
-    /// sum V [1 + R (W / W(dx))^4] grad W, 1/m.
-    crowd: [f64; D],
+    /// delta u where no surface is near, m/s.
+    drift: [f64; D],
     /// det M.
     determinant: f64,
-}
-
-impl<const D: usize> Order<D> {
-    /// delta u, m/s.
-    fn drift(&self, strength: f64, fastest: f64) -> [f64; D] {
-        let drift = self.crowd.map(|c| -strength * c);
-        let speed = drift.iter().map(|d| d * d).sum::<f64>().sqrt();
-        if speed > fastest { drift.map(|d| d * fastest / speed) } else { drift }
-    }
 }
 
 /// The same of several, as sums.
 #[derive(Clone, Copy, Debug)]
 struct OrderSum<const D: usize, L = Lane> {
+    /// sum V [1 + R (W / W(dx))^4] grad W, 1/m.
     crowd: [L; D],
     /// M; only its upper half.
     moment: [[L; D]; D],
+    /// Least -|v_ij|² within the kernel's support, m²/s²: a particle is its own neighbour.
+    against: L,
 }
 
-pair_sum!(OrderSum { D } { crowd, moment });
+pair_sum!(OrderSum { D } { crowd, moment, against });
 
 impl<const D: usize> OrderSum<D> {
     // Inlined, its scalar arithmetic would break up the vectors of the loop before it.
     #[inline(never)]
-    fn order(&self) -> [Order<D>; LANES] {
+    fn order(&self, strength: f64, fastest: f64) -> [Order<D>; LANES] {
         std::array::from_fn(|k| {
             let moment = SMatrix::from_fn(|a, b| self.moment[a.min(b)][a.max(b)].0[k]);
-            Order { crowd: self.crowd.map(|c| c.0[k]), determinant: determinant::<D>(&moment) }
+            let fastest = fastest.min(STRAINED * (-self.against.0[k]).max(0.0).sqrt());
+            let drift = self.crowd.map(|c| -strength * c.0[k]);
+            let speed = drift.iter().map(|d| d * d).sum::<f64>().sqrt();
+            let drift = if speed > fastest { drift.map(|d| d * fastest / speed) } else { drift };
+            Order { drift, determinant: determinant::<D>(&moment) }
         })
     }
 }
@@ -169,11 +172,14 @@ struct OrderLaw<'a, K, const D: usize> {
     at_spacing: f64,
     targets: &'a PairParticles<D>,
     sources: &'a PairParticles<D>,
+    /// The sources flow: their velocities count.
+    flows: bool,
 }
 
 impl<K: Kernel<D>, const D: usize> PairLaw<D> for OrderLaw<'_, K, D> {
     const SINGLE: bool = true;
-    type Target<L: Lanes> = ();
+    /// Velocity.
+    type Target<L: Lanes> = [L; D];
     type Sum<L: Lanes> = OrderSum<D, L>;
 
     #[inline(always)]
@@ -181,7 +187,9 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for OrderLaw<'_, K, D> {
         &self.targets.position
     }
     #[inline(always)]
-    fn target<L: Lanes>(&self, _: usize) {}
+    fn target<L: Lanes>(&self, slot: usize) -> [L; D] {
+        self.targets.velocities(slot)
+    }
     #[inline(always)]
     fn source_position(&self, j: usize) -> [f64; D] {
         self.sources.sources[j].position
@@ -191,9 +199,17 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for OrderLaw<'_, K, D> {
         self.sources.at::<L>(j)
     }
     #[inline(always)]
-    fn add<A: Arch, L: Lanes>(&self, _: &(), j: usize, dx: [L; D], r2: L, sum: &mut OrderSum<D, L>) {
+    fn add<A: Arch, L: Lanes>(
+        &self,
+        velocity: &[L; D],
+        j: usize,
+        dx: [L; D],
+        r2: L,
+        sum: &mut OrderSum<D, L>,
+    ) {
         let r = distance(r2, self.kernel.smoothing_length());
-        let vf = self.sources.beside::<L>(j).volume * self.kernel.gradient_over_r::<A, L>(r);
+        let source = self.sources.beside::<L>(j);
+        let vf = source.volume * self.kernel.gradient_over_r::<A, L>(r);
         let near = self.kernel.value::<A, L>(r) * L::splat(self.at_spacing);
         let near2 = near * near;
         let crowd = A::mul_add(vf * L::splat(PAIRING), near2 * near2, vf);
@@ -204,37 +220,44 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for OrderLaw<'_, K, D> {
                 sum.moment[a][b] = A::mul_add(row, dx[b], sum.moment[a][b]);
             }
         }
+        if self.flows {
+            let mut against = beyond(&self.kernel, r2);
+            for d in 0..D {
+                let dv = velocity[d] - source.velocity[d];
+                against = A::mul_add(-dv, dv, against);
+            }
+            sum.against = sum.against.min(against);
+        }
     }
+}
+
+/// Zero within the support; beyond, far more than any determinant or square of a speed.
+#[inline(always)]
+fn beyond<K: Kernel<D>, L: Lanes, const D: usize>(kernel: &K, r2: L) -> L {
+    let reach = 2.0 * kernel.smoothing_length();
+    (r2 - L::splat(reach * reach)).max(L::ZERO) * L::splat(L::FAR)
 }
 
 /// What is around several particles, within the kernel's support.
 #[derive(Clone, Copy, Debug)]
 struct Around<L = Lane> {
-    /// Least det M.
+    /// Least det M, of those that are not inside.
     determinant: L,
-    /// Least -|v_ij|², m²/s².
-    against: L,
 }
-pair_sum!(Around {} { determinant, against } from L::splat(FAR));
+pair_sum!(Around {} { determinant } from L::splat(FAR));
 
-impl Around {
-    /// Fastest velocity of a neighbour relative to the k-th, m/s. A particle is its own neighbour.
-    fn fastest(&self, k: usize) -> f64 {
-        (-self.against.0[k]).max(0.0).sqrt()
-    }
-}
-
-/// The law of the second pass, over the fluid.
+/// The law of the second pass, over the fluid. Most of it is inside, and its distances are not computed.
 struct AroundLaw<'a, K, const D: usize> {
     kernel: K,
     order: &'a [Order<D>],
+    /// Determinants from which a particle is inside.
+    inside: f64,
     fluid: &'a PairParticles<D>,
 }
 
 impl<K: Kernel<D>, const D: usize> PairLaw<D> for AroundLaw<'_, K, D> {
     const SINGLE: bool = true;
-    /// Velocity.
-    type Target<L: Lanes> = [L; D];
+    type Target<L: Lanes> = ();
     type Sum<L: Lanes> = Around<L>;
 
     #[inline(always)]
@@ -242,9 +265,11 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for AroundLaw<'_, K, D> {
         &self.fluid.position
     }
     #[inline(always)]
-    fn target<L: Lanes>(&self, slot: usize) -> [L; D] {
-        self.fluid.velocities(slot)
+    fn skips(&self, j: usize) -> bool {
+        self.order[j].determinant >= self.inside
     }
+    #[inline(always)]
+    fn target<L: Lanes>(&self, _: usize) {}
     #[inline(always)]
     fn source_position(&self, j: usize) -> [f64; D] {
         self.fluid.sources[j].position
@@ -254,17 +279,8 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for AroundLaw<'_, K, D> {
         self.fluid.at::<L>(j)
     }
     #[inline(always)]
-    fn add<A: Arch, L: Lanes>(&self, velocity: &[L; D], j: usize, _: [L; D], r2: L, sum: &mut Around<L>) {
-        let reach = 2.0 * self.kernel.smoothing_length();
-        // Far more than any determinant, or square of a speed, beyond the support.
-        let beyond = (r2 - L::splat(reach * reach)).max(L::ZERO) * L::splat(L::FAR);
-        sum.determinant = sum.determinant.min(L::splat(self.order[j].determinant) + beyond);
-        let source = self.fluid.beside::<L>(j);
-        let mut against = beyond;
-        for d in 0..D {
-            let dv = velocity[d] - source.velocity[d];
-            against = A::mul_add(-dv, dv, against);
-        }
-        sum.against = sum.against.min(against);
+    fn add<A: Arch, L: Lanes>(&self, _: &(), j: usize, _: [L; D], r2: L, sum: &mut Around<L>) {
+        let determinant = L::splat(self.order[j].determinant) + beyond(&self.kernel, r2);
+        sum.determinant = sum.determinant.min(determinant);
     }
 }

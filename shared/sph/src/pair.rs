@@ -43,6 +43,11 @@ pub trait PairLaw<const D: usize>: Sync {
         let position = self.source_position(j);
         components(|d| L::Number::of(position[d]))
     }
+    /// Source `j` adds nothing that counts, to any target: its distances are not computed.
+    #[inline(always)]
+    fn skips(&self, _j: usize) -> bool {
+        false
+    }
     /// Loads what else is needed of the targets from `slot` on.
     fn target<L: Lanes>(&self, slot: usize) -> Self::Target<L>;
     /// Adds the contribution of source `j`: `dx` = x_i - x_j, `r2` = |dx|².
@@ -71,6 +76,10 @@ impl<const D: usize, W: PairLaw<D>> PairLaw<D> for Narrow<W> {
     #[inline(always)]
     fn source_position(&self, j: usize) -> [f64; D] {
         self.0.source_position(j)
+    }
+    #[inline(always)]
+    fn skips(&self, j: usize) -> bool {
+        self.0.skips(j)
     }
     #[inline(always)]
     fn target<L: Lanes>(&self, slot: usize) -> W::Target<L> {
@@ -160,6 +169,9 @@ impl<const D: usize, W: PairLaw<D>> Work<D> for (&W, &ClusterList) {
             std::hint::black_box(components(|d| L::numbers(|k| positions[d][slot + k])));
         let mut total = *sum;
         for j in neighbours {
+            if law.skips(j) {
+                continue;
+            }
             let xj = law.source_numbers::<L>(j);
             let mut dx = [L::ZERO; D];
             let mut r2 = L::ZERO;
