@@ -65,23 +65,23 @@ price oscillating-plate --until 0.4 --set resolution=0.004 \
     --vary solid.model=hypoelastic --vary solid.material=st-venant-kirchhoff --vary solid.hourglass=0.1 \
     --vary effects.clamp-face=off --vary solid.smoothing_ratio=1.33 --vary numerics.solid_cfl=0.3,0.9
 price hydrostatic-tank --set resolution=0.02 --vary resolution=0.015,0.03 \
-    --vary numerics.precision=mixed --vary fluid.time_integration=verlet \
+    --vary numerics.precision=mixed --vary fluid.time_integration=midpoint \
     --vary fluid.density_diffusion=delta-sph,simple,none \
-    --vary fluid.artificial_viscosity.linear=1 --vary smoothing_ratio=1.5 --vary numerics.cfl=0.2
+    --vary fluid.artificial_viscosity.linear=1 --vary smoothing_ratio=1.5 --vary numerics.cfl=0.3
 price taylor-green --vary resolution=0.025,0.04,0.05 --vary numerics.kernel=cubic-spline \
-    --vary numerics.precision=mixed --vary fluid.time_integration=verlet \
+    --vary numerics.precision=mixed --vary fluid.time_integration=midpoint \
     --vary smoothing_ratio=1.5,2.4 --vary effects.particle-shifting=off \
-    --vary fluid.density_diffusion=delta-sph,none --vary numerics.cfl=0.2
+    --vary fluid.density_diffusion=delta-sph,none --vary numerics.cfl=0.3
 price lid-driven-cavity --vary resolution=0.0285714285714285714,0.04 \
-    --vary numerics.precision=mixed --vary fluid.time_integration=verlet --vary smoothing_ratio=1.5 \
+    --vary numerics.precision=mixed --vary fluid.time_integration=midpoint --vary smoothing_ratio=1.5 \
     --vary effects.no-slip-continuity=off --vary effects.particle-shifting=off --vary fluid.sound_speed=20
 price standing-wave --set resolution=0.025 --vary resolution=0.0357142857142857143,0.05 \
-    --vary numerics.precision=mixed --vary fluid.time_integration=verlet \
+    --vary numerics.precision=mixed --vary fluid.time_integration=midpoint \
     --vary numerics.kernel=cubic-spline \
     --vary smoothing_ratio=1.5,2.4 --vary effects.particle-shifting=off --vary fluid.density_diffusion=delta-sph
 price dam-break --set resolution=0.0028575 --vary resolution=0.00408214285714285714,0.005715 \
-    --vary numerics.precision=mixed --vary fluid.time_integration=verlet \
-    --vary numerics.cfl=0.2,0.6 --vary smoothing_ratio=1.5 --vary effects.particle-shifting=off \
+    --vary numerics.precision=mixed --vary fluid.time_integration=midpoint \
+    --vary numerics.cfl=0.3,0.9 --vary smoothing_ratio=1.5 --vary effects.particle-shifting=off \
     --vary numerics.kernel=cubic-spline --vary fluid.density_diffusion=delta-sph,none
 price hydrostatic-plate --until 0.25 --set resolution=0.01666666666666666667 --vary resolution=0.0125,0.025 \
     --vary solid.model=hypoelastic --vary fluid.density_diffusion=delta-sph,simple \
@@ -100,13 +100,13 @@ price breaking-wall --until 0.2 --set resolution=0.004 --set 'shape.wall.box.min
 # A piston as thick as the widest kernel reaches: water would get past it.
 price wave-paddle --set resolution=0.02 --set 'shape.paddle.box.min=[-0.16,0.0]' \
     --vary resolution=0.0133333333333333333,0.04 --vary smoothing_ratio=1.5 --vary effects.particle-shifting=off \
-    --vary fluid.time_integration=verlet
+    --vary fluid.time_integration=midpoint
 price solitary-wave-wall --set resolution=0.02 --set 'shape.piston.box.min=[-0.16,0.0]' \
     --vary resolution=0.01,0.04 --vary smoothing_ratio=1.5 --vary fluid.density_diffusion=delta-sph \
-    --vary fluid.time_integration=verlet
+    --vary fluid.time_integration=midpoint
 price floating-box --set resolution=0.0125 --vary resolution=0.01,0.02 --vary smoothing_ratio=2 \
     --vary interface.cross_viscosity_reach=1.25 --vary effects.particle-shifting=off \
-    --vary fluid.time_integration=verlet
+    --vary fluid.time_integration=midpoint
 price block-wall --until 0.4 --set resolution=0.02 --vary resolution=0.01,0.005 --vary effects.particle-shifting=off
 price gate-lift --until 0.45 --set resolution=0.002 --vary resolution=0.0016 --vary shape.plate.across=3,5 \
     --vary solid.model=total-lagrangian \

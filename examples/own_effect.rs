@@ -21,6 +21,7 @@ const TWO_PARTICLES: &str = r#"
     [fluid]
     density = 100.0
     sound_speed = 10.0
+    time_integration = "midpoint"
     [[shape]]
     name = "left"
     phase = "fluid"

@@ -174,9 +174,9 @@ fn position_verlet_measures_the_viscous_force_on_walls() {
 
 #[test]
 fn time_step_limits_by_hand() {
-    // h = 0.02, c0 = 20: 0.4 * 0.02 / (20 + 5); acceleration 1e6: 0.25 sqrt(0.02 / 1e6).
+    // h = 0.02, c0 = 20: 0.6 * 0.02 / (20 + 5); acceleration 1e6: 0.25 sqrt(0.02 / 1e6).
     let limits = StepLimits::new::<2>(&tank(&[]));
-    assert!((limits.time_step(5.0, 0.0) - 0.4 * 0.02 / 25.0).abs() < 1e-15);
+    assert!((limits.time_step(5.0, 0.0) - 0.6 * 0.02 / 25.0).abs() < 1e-15);
     assert!((limits.time_step(0.0, 1e6) - 0.25 * (0.02_f64 / 1e6).sqrt()).abs() < 1e-15);
     // Honey: 0.125 h² rho / mu = 0.125 * 4e-4 * 1000 / 1000.
     let viscous = StepLimits::new::<2>(&tank(&["fluid.viscosity=1000.0"]));
@@ -192,7 +192,7 @@ fn time_step_limits_by_hand() {
 }
 
 /// Viscous stress moves fluid and solid: h = 0.015 makes 0.125 h² rho / mu 28.125 µs, over 1 + 0.4 and over 2 + 0.4,
-/// whose inverses add to that of 0.4 h / c0 = 0.3 ms, of the light block over the root of 2.
+/// whose inverses add to that of 0.6 h / c0 = 0.45 ms, of the light block over the root of 2.
 #[test]
 fn solids_that_viscous_stress_drags_shorten_the_step() {
     for (density, limit) in [(1000.0, 28.125e-6 / 1.4), (500.0, 28.125e-6 / 2.4), (4000.0, 28.125e-6)] {
@@ -204,7 +204,7 @@ fn solids_that_viscous_stress_drags_shorten_the_step() {
         );
         let scene = scene::parse(&text, Path::new("honey.toml"), &[]).unwrap_or_else(|e| panic!("{e:?}"));
         let found = StepLimits::new::<2>(&scene).time_step(0.0, 0.0);
-        let courant = 3e-4 / (1000.0_f64 / density).max(1.0).sqrt();
+        let courant = 4.5e-4 / (1000.0_f64 / density).max(1.0).sqrt();
         let right = 1.0 / (1.0 / courant + 1.0 / limit);
         assert!((found / right - 1.0).abs() < 1e-12, "{density}: {found} {right}");
     }

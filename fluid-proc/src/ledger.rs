@@ -6,7 +6,8 @@
 //!
 //! Position Verlet evaluates forces at n + 1/2 with the velocity at n, but goes from n to n + 1 with the mean of both:
 //! there v is v_n + dt / 2 D v / Dt, f_i left out but in its own power, in the powers and in what continuity gives, and
-//! walls show continuity what they show beside such fluid.
+//! walls show continuity what they show beside such fluid. Its density is that of n + 1/2 when the rest is at n + 1:
+//! what compression holds at n + 1 has half a step of the power at n + 1/2 beside what that density has.
 //!
 //! Only scenes whose probes ask for energies pay for these passes, one for each share of a pair.
 
@@ -19,7 +20,7 @@ use crate::walls::WallLaw;
 use halfstep_role::ledger::Ledger;
 use halfstep_role::role::Peer;
 use halfstep_role::timeline;
-use halfstep_scene::{EnergyPart, Phase};
+use halfstep_scene::{EnergyPart, FluidIntegration, Phase};
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::{Arch, Isa, LANES, Lane, Lanes, components};
 use halfstep_sph::neighbours::{ClusterList, PADDING};
@@ -33,6 +34,8 @@ pub(crate) struct FluidLedger<const D: usize> {
     pub(crate) ledger: Ledger,
     /// At n + 1/2, by [`EnergyPart`], W (2D: W/m).
     powers: Vec<f64>,
+    /// What the density rates of all of them add to the energy of compression at n + 1/2, W (2D: W/m).
+    compressing: f64,
     sums: Vec<Power>,
     /// Position Verlet: mean velocity over the step of each slot, m/s; else empty.
     middle: Vec<[f64; D]>,
@@ -45,11 +48,13 @@ pub(crate) struct FluidLedger<const D: usize> {
 struct Power<L = Lane> {
     /// By the accelerations, relative to walls, and by the density rates.
     given: L,
+    /// Of it by the density rates.
+    compressing: L,
     /// By the walls' motion.
     walls: L,
 }
 
-pair_sum!(Power {} { given, walls });
+pair_sum!(Power {} { given, compressing, walls });
 
 /// Pressure and continuity as a share of a pair.
 #[derive(Clone, Copy, Debug)]
@@ -140,7 +145,9 @@ impl<K: Kernel<D>, E: PairEffect<D>, const D: usize> PairLaw<D> for PowerLaw<'_,
             sum.given += a[d] * (velocity[d] - wall(d));
             sum.walls += a[d] * wall(d);
         }
-        sum.given += i.pressure_term * s.volume * f * rates.density;
+        let compressing = i.pressure_term * s.volume * f * rates.density;
+        sum.given += compressing;
+        sum.compressing += compressing;
     }
 }
 
@@ -157,6 +164,7 @@ pub struct Measuring<'a, K, const D: usize> {
     list: &'a ClusterList,
     sums: &'a mut Vec<Power>,
     powers: &'a mut [f64],
+    compressing: &'a mut f64,
 }
 
 impl<K: Kernel<D>, const D: usize> Measuring<'_, K, D> {
@@ -175,13 +183,15 @@ impl<K: Kernel<D>, const D: usize> Measuring<'_, K, D> {
         let law = PowerLaw { kernel, effect, targets: fluid, sources, middle, predicted, walls };
         self.sums.resize(self.list.fours(), Power::default());
         pair::pass(self.isa, &law, self.list, self.sums);
-        let (mut given, mut moving) = (0.0, 0.0);
+        let (mut given, mut compressing, mut moving) = (0.0, 0.0, 0.0);
         for slot in (0..self.id.len()).filter(|&slot| self.id[slot] != PADDING) {
             let (sum, k) = (&self.sums[slot / LANES], slot % LANES);
             given += sum.given.0[k];
+            compressing += sum.compressing.0[k];
             moving += sum.walls.0[k];
         }
         self.powers[part as usize] += self.fluid.mass * given;
+        *self.compressing += self.fluid.mass * compressing;
         self.powers[EnergyPart::MovingWalls as usize] += self.fluid.mass * moving;
     }
 }
@@ -192,6 +202,7 @@ impl<const D: usize> FluidLedger<D> {
         Self {
             ledger: Ledger::new(Phase::Fluid),
             powers,
+            compressing: 0.0,
             sums: Vec::new(),
             middle: Vec::new(),
             shown: Vec::new(),
@@ -206,8 +217,9 @@ impl<const D: usize> FluidLedger<D> {
     /// Adds what a solid's pressure does to a particle that published this record.
     pub(crate) fn push(&mut self, own: &StateRecord, acceleration: [f64; D], density_rate: f64) {
         let work: f64 = (0..D).map(|d| own.velocity[d] * acceleration[d]).sum();
-        let compression = own.pressure / own.density.powi(2) * density_rate;
-        self.powers[EnergyPart::InterfacePressure as usize] += own.mass * (work + compression);
+        let compressing = own.pressure / own.density.powi(2) * density_rate;
+        self.powers[EnergyPart::InterfacePressure as usize] += own.mass * (work + compressing);
+        self.compressing += own.mass * compressing;
     }
 }
 
@@ -255,9 +267,12 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
 
     /// Notes the powers of all shares at n + 1/2.
     pub(crate) fn measure_powers<K: Kernel<D>>(&mut self, kernel: K) {
-        let Some(FluidLedger { powers, sums, middle, shown, .. }) = &mut self.ledger else { return };
+        let Some(FluidLedger { powers, compressing, sums, middle, shown, .. }) = &mut self.ledger else {
+            return;
+        };
         let _phase = timeline::phase("energy ledger");
         powers.fill(0.0);
+        *compressing = 0.0;
         let fluid = &self.columns.now;
         let middle = (!middle.is_empty()).then_some([middle.as_slice(); 2]);
         let (id, isa) = (self.columns.id.as_slice(), self.isa);
@@ -274,6 +289,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
             list,
             sums,
             powers: powers.as_mut(),
+            compressing,
         };
         among.add(EnergyPart::Continuity, Pressure);
         self.effects.measure_pairs(&mut among);
@@ -295,8 +311,20 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         let (sources, list) = (&walls.shown, &self.wall_list);
         let middle = middle.map(|[middle, _]| [middle, shown.as_slice()]);
         let walls = Some(&walls.own_velocity);
-        let mut at_walls =
-            Measuring { kernel, isa, id, fluid, sources, middle, predicted, walls, list, sums, powers };
+        let mut at_walls = Measuring {
+            kernel,
+            isa,
+            id,
+            fluid,
+            sources,
+            middle,
+            predicted,
+            walls,
+            list,
+            sums,
+            powers,
+            compressing,
+        };
         at_walls.add(EnergyPart::WallPressure, Pressure);
         self.effects.measure_walls(&mut at_walls);
     }
@@ -345,8 +373,11 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         if self.ledger.is_none() {
             return;
         }
-        let held = self.held(self.real_slots());
-        let Some(FluidLedger { ledger, powers, .. }) = &mut self.ledger else { return };
+        let mut held = self.held(self.real_slots());
+        let Some(FluidLedger { ledger, powers, compressing, .. }) = &mut self.ledger else { return };
+        if self.integration == FluidIntegration::Verlet {
+            held[1] += 0.5 * dt * *compressing;
+        }
         for (&part, power) in EnergyPart::ALL.iter().zip(powers) {
             ledger.give(part, dt * *power);
         }

@@ -5,6 +5,7 @@ use halfstep_role::role::Role;
 use halfstep_scene::{self as scene, Scene};
 use halfstep_sph::lane::Isa;
 use halfstep_sph::neighbours::PADDING;
+use halfstep_wire::half_step::Stage;
 use std::path::Path;
 
 /// 0.4 m x 0.2 m of water in a tank, with these lines instead of the probes.
@@ -39,6 +40,7 @@ fn walls_get_the_reaction_to_what_they_give_the_fluid() {
     let walls = format!("velocity = [0.5, -0.3]\n{WALLS}");
     let text = walls + &probe("all", "kind = \"force\"\nshape = \"tank\"");
     let mut fluid = Fluid::<2>::new(&tank(&text), Isa::detect()).unwrap();
+    fluid.stage = Stage::Second;
     fluid.own_sums();
     let mut force = Vec::new();
     fluid.probes(&mut force);

@@ -104,7 +104,15 @@ fn steps(report: &mut Value) {
         ("delta-SPH", with(&["fluid.density_diffusion=delta-sph"])),
         (
             "delta-SPH, gradient at both stages",
-            with(&["fluid.density_diffusion=delta-sph", "effects.frozen-diffusion=off"]),
+            with(&[
+                "fluid.density_diffusion=delta-sph",
+                "effects.frozen-diffusion=off",
+                "fluid.time_integration=midpoint",
+            ]),
+        ),
+        (
+            "hydrostatic diffusion by the midpoint rule",
+            with(&["fluid.density_diffusion=hydrostatic", "fluid.time_integration=midpoint"]),
         ),
         ("cubic spline", with(&["numerics.kernel=cubic-spline"])),
         ("physical viscosity", with(&["fluid.viscosity=1.0", "effects.viscosity=on"])),

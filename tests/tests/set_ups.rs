@@ -20,7 +20,7 @@ fn published_set_ups_can_be_written_and_run() {
         assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
         let found: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
         assert_eq!(found["warnings"], serde_json::json!([]), "{name}");
-        let run = scene_at(&path).until(0.001).run();
+        let run = scene_at(&path).until(0.002).run();
         println!("{name}: check {seconds:.2} s, {} steps", run.report.steps);
         assert!(run.report.steps > 2, "{name}");
     }

@@ -238,9 +238,9 @@ fn guard_over_none(dx: f64, widths: i32) -> [f64; 2] {
 
 #[test]
 fn the_guard_does_not_brake_a_run_up() {
-    let [jet, pressure] = guard_over_none(0.02, 1);
-    within("jet over that without guard at 20 mm", jet, 0.88..=0.93);
-    within("pressure over that without guard at 20 mm", pressure, 0.855..=0.885);
+    let [jet, pressure] = guard_over_none(0.02, 5);
+    within("jet over that without guard at 20 mm", jet, 0.86..=0.94);
+    within("pressure over that without guard at 20 mm", pressure, 0.86..=0.94);
 }
 
 /// The target is 5 %. A jet comes apart at single particles: 2 % about the means measured.
@@ -290,7 +290,7 @@ fn a_standing_wave_has_its_period() {
 #[test]
 #[ignore = "long: make validate"]
 fn a_standing_wave_has_its_period_finer() {
-    let (period, decay) = standing_wave(0.0125, "midpoint");
+    let (period, decay) = standing_wave(0.0125, "verlet");
     within("standing wave at 12.5 mm, period over theory", period, 0.996..=1.0);
     within("its decay over 2 k² nu", decay, 0.98..=1.0);
 }

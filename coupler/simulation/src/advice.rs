@@ -138,7 +138,7 @@ mod tests {
         let water =
             "[[shape]]\nname = \"water\"\nphase = \"fluid\"\nbox = { min = [0.2, 0.0], max = [0.3, 0.1] }\n";
         let floating = advised(&rigid("[fluid]\ndensity = 1000.0\n", water), 1e-5, 1e-5, &DIVERGED);
-        assert_eq!(floating, "lower numerics.cfl (now 0.4)");
+        assert_eq!(floating, "lower numerics.cfl (now 0.6)");
         assert_eq!(advised(&rigid("", ""), 1e-5, 1e-5, &DIVERGED), "choose a time_step");
     }
 

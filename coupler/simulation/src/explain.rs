@@ -5,7 +5,7 @@ use crate::run::run;
 use halfstep_coupling::error::RunError;
 use halfstep_coupling::roles;
 use halfstep_output::run_json::EffectReport;
-use halfstep_scene::{Scene, TimeStep};
+use halfstep_scene::{FluidIntegration, Scene, TimeStep};
 use halfstep_sph::lane::Isa;
 use serde::Serialize;
 use std::fmt;
@@ -24,6 +24,10 @@ pub struct Explanation {
     pub composition: Option<String>,
     /// Memory of the fluid, bytes a particle.
     pub fluid_bytes_per_particle: Option<f64>,
+    /// How the fluid goes from n to n + 1.
+    pub time_integration: Option<FluidIntegration>,
+    /// Courant number of the fluid where it sets the step.
+    pub cfl: Option<f64>,
 }
 
 /// Runs a scene for a moment, as threads, and tells what its effects took of the time.
@@ -59,6 +63,8 @@ pub fn explain(scene: &Scene, isa: Isa) -> Result<Explanation, RunError> {
         effects: report.effects,
         composition,
         fluid_bytes_per_particle: bytes,
+        time_integration: scene.fluid.as_ref().map(|fluid| fluid.time_integration),
+        cfl: (scene.fluid.is_some() && scene.time_step == TimeStep::Auto).then_some(scene.numerics.cfl),
     })
 }
 
@@ -77,6 +83,10 @@ impl fmt::Display for Explanation {
         }
         if let Some(bytes) = self.fluid_bytes_per_particle {
             writeln!(f, "fluid: {bytes:.0} bytes a particle, walls and neighbour lists included")?;
+        }
+        if let Some(rule) = self.time_integration {
+            let cfl = self.cfl.map_or(String::new(), |cfl| format!(", Courant number {cfl}"));
+            writeln!(f, "fluid goes by {}{cfl}", rule.in_words())?;
         }
         Ok(())
     }

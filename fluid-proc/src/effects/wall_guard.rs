@@ -290,7 +290,7 @@ mod tests {
         for (mirrored, expected) in
             [(1.0, 1.0 / (1.0 + k_dt)), (2.0, 1.0 - 2.0 * k_dt / ((1.0 + k_dt) * (1.0 + 0.5 * k_dt)))]
         {
-            let mut guard = guard();
+            let mut guard = guard_with(&["fluid.time_integration=\"midpoint\""]);
             let dt = 0.4 * H / 20.0;
             guard.divide(Stage::First, &kernel);
             let half = 1.0 - 0.5 * dt * mirrored * rate(&guard, r);

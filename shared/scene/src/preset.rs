@@ -28,7 +28,8 @@ pub(crate) struct Defaults {
     /// Where C is the far one, over the spacing.
     pub(crate) cross_viscosity_reach: f64,
     pub(crate) kernel: KernelName,
-    pub(crate) integration: FluidIntegration,
+    /// Of the fluid; `None`: the solids decide.
+    pub(crate) integration: Option<FluidIntegration>,
     pub(crate) lattice: Lattice,
     pub(crate) effects: &'static [(EffectName, Switch)],
 }
@@ -53,7 +54,7 @@ impl Defaults {
             cross_viscosity_far: 0.0,
             cross_viscosity_reach: Self::CROSS_VISCOSITY_REACH,
             kernel: KernelName::WendlandC2,
-            integration: FluidIntegration::Midpoint,
+            integration: None,
             lattice: Lattice::Centred,
             effects: &[],
         };
@@ -79,7 +80,7 @@ impl Defaults {
                 cross_viscosity_far: 1.0,
                 cross_viscosity_reach: Self::CROSS_VISCOSITY_REACH,
                 kernel: KernelName::CubicSpline,
-                integration: FluidIntegration::Midpoint,
+                integration: Some(FluidIntegration::Midpoint),
                 lattice: Lattice::Nodal,
                 // Kayaki's scheme evaluates everything at both stages, the viscous stress however small, and the solid
                 // from the start.

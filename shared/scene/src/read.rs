@@ -59,17 +59,19 @@ pub(super) fn scene(root: &Node, path: &Path, report: &Report, own_effects: &[&s
     let defaults = Defaults::of(preset, dimension);
     let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let end_time = top.number("end_time", None);
-    let integration =
-        (top.section("fluid").choice("time_integration", Some(defaults.integration), &INTEGRATIONS))
-            .unwrap_or(defaults.integration);
     let mut numerics = numerics(top.section("numerics"), dimension, &defaults);
     let interface_section = top.section("interface");
     let treatment = interface_section
         .choice("treatment", Some(defaults.treatment), &TREATMENTS)
         .unwrap_or(defaults.treatment);
     let solids = read_solid::solids(&top, defaults.with_treatment(treatment), &numerics);
+    let short = solids.len() > 1 || solids.iter().any(|solid| solid.rigid().is_none());
+    let usual =
+        defaults.integration.unwrap_or(FluidIntegration::usual(short || treatment == Treatment::PhaseBlind));
+    let integration =
+        top.section("fluid").choice("time_integration", Some(usual), &INTEGRATIONS).unwrap_or(usual);
     if top.section("numerics").node("cfl").is_none() {
-        numerics.cfl = integration.courant_number(solids.iter().any(|solid| solid.rigid().is_none()));
+        numerics.cfl = integration.courant_number(short);
     }
     let names: Vec<&str> = solids.iter().map(|s| s.name.as_str()).collect();
     let tables = top.tables("shape");

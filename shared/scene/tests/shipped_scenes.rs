@@ -1,7 +1,7 @@
 //! The scenes that come with the program load, and their particles are where their comments say.
 
 use halfstep_scene::geometry::{estimate, layout};
-use halfstep_scene::{DensityDiffusion, EffectName, Scene, Switch, Treatment, load, parse};
+use halfstep_scene::{DensityDiffusion, EffectName, FluidIntegration, Scene, Switch, Treatment, load, parse};
 use std::path::{Path, PathBuf};
 
 fn scenes() -> PathBuf {
@@ -123,6 +123,47 @@ fn the_kernels_width_follows_from_solids_and_the_rest_from_the_width() {
     for name in ["dam-break", "elastic-gate"] {
         assert_eq!(diffusion(name, &["preset=kayaki"]), DensityDiffusion::DeltaSph, "{name}");
     }
+}
+
+/// Position Verlet, with its longer steps, where no solid strains; what is said holds.
+#[test]
+fn the_rule_of_time_integration_follows_from_the_solids() {
+    use FluidIntegration::{Midpoint, Verlet};
+    let rule = |name: &str, overrides: &[&str]| {
+        let scene = shipped(name, overrides);
+        (scene.fluid.as_ref().expect("water").time_integration, scene.numerics.cfl)
+    };
+    for name in ["hydrostatic-tank", "taylor-green", "floating-box", "block-wall"] {
+        assert_eq!(rule(name, &[]), (Verlet, 0.6), "{name}");
+        assert_eq!(rule(name, &["fluid.time_integration=midpoint"]), (Midpoint, 0.4), "{name}");
+    }
+    // The last one's solid is of another program.
+    for name in ["elastic-gate", "two-plates", "tsunami-wall", "gate-lift", "spring-block"] {
+        assert_eq!(rule(name, &[]), (Midpoint, 0.4), "{name}");
+        assert_eq!(rule(name, &["fluid.time_integration=verlet"]), (Verlet, 0.4), "{name}");
+    }
+    assert_eq!(rule("hydrostatic-tank", &["numerics.cfl=0.3"]), (Verlet, 0.3));
+    // Contact of two solids is the softer the longer a step is.
+    let block = |name: &str, x: f64| {
+        format!(
+            "[[solid]]\nname = \"{name}\"\nmodel = \"rigid\"\ndensity = 500.0\n[[shape]]\nname = \"{name}\"\n\
+             phase = \"solid\"\nsolid = \"{name}\"\nbox = {{ min = [{x}, 0.3], max = [{}, 0.4] }}\n",
+            x + 0.1
+        )
+    };
+    let water = "resolution = 0.01\nend_time = 1.0\n[fluid]\ndensity = 1000.0\n[[shape]]\nname = \"water\"\n\
+        phase = \"fluid\"\nbox = { min = [0.0, 0.0], max = [0.6, 0.3] }\n";
+    for (blocks, expected) in
+        [(block("a", 0.1), (Verlet, 0.6)), (block("a", 0.1) + &block("b", 0.3), (Midpoint, 0.4))]
+    {
+        let scene = parse(&(water.to_owned() + &blocks), Path::new("rafts.toml"), &[]);
+        let scene = scene.unwrap_or_else(|errors| panic!("{:?}", miette::Report::new(errors)));
+        assert_eq!((scene.fluid.expect("water").time_integration, scene.numerics.cfl), expected);
+    }
+    for more in ["preset=kayaki", "interface.treatment=phase-blind"] {
+        assert_eq!(rule("hydrostatic-tank", &[more]), (Midpoint, 0.4), "{more}");
+    }
+    assert_eq!(rule("dam-break-plate", &["preset=kayaki"]), (Midpoint, 0.4));
 }
 
 #[test]

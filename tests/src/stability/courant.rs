@@ -5,7 +5,7 @@ use super::criteria::{evaluate, short};
 use super::table::brief;
 use halfstep_output::run_json::RunStatus;
 
-/// The numbers that are tried, the default first.
+/// The numbers that are tried; 0.4 is that of the midpoint rule.
 const NUMBERS: [f64; 8] = [0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 1.0];
 
 /// A case at its coarsest spacing with larger and larger Courant numbers.
@@ -19,7 +19,7 @@ pub struct Room {
     pub model: String,
     /// The largest number up to which everything holds; `None` if nothing does.
     pub largest: Option<f64>,
-    /// Steps with the default over those with the largest number.
+    /// Steps with the first number over those with the largest.
     pub fewer: f64,
     /// What fails with the next number; empty where all hold.
     pub fails: String,

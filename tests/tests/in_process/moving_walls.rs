@@ -75,7 +75,7 @@ fn couette(ratio: f64, dx: f64) -> f64 {
 #[test]
 fn fluid_sticks_to_walls_that_turn() {
     // 0.874 and 0.886 with the particles' own, and a stress that is a gradient of a gradient.
-    for (ratio, right) in [(2.0, 0.986), (1.5, 0.960)] {
+    for (ratio, right) in [(2.0, 0.985), (1.5, 0.967)] {
         let found = couette(ratio, 0.01);
         println!("h / dx = {ratio}: {found:.4}");
         assert!((found - right).abs() < 0.006, "h / dx = {ratio}: {found}, not {right}");

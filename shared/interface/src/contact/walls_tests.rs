@@ -22,7 +22,8 @@ const MASS: f64 = 10.0;
 /// A scene with the block's lower side at this height and these walls; `contact`: keys of the block's.
 fn scene(bottom: f64, contact: &str, walls: &str) -> Scene {
     let text = format!(
-        "resolution = 0.01\nend_time = 1.0\ngravity = [0.0, -10.0]\n[fluid]\ndensity = 1000.0\n[solid]\n\
+        "resolution = 0.01\nend_time = 1.0\ngravity = [0.0, -10.0]\n[numerics]\ncfl = 0.4\n\
+         [fluid]\ndensity = 1000.0\n[solid]\n\
          model = \"rigid\"\ndensity = 1000.0\ncontact = {{ {contact} }}\n[[shape]]\nname = \"block\"\n\
          phase = \"solid\"\nbox = {{ min = [0.0, {bottom}], max = [0.1, {}] }}\n[[shape]]\nname = \"water\"\n\
          phase = \"fluid\"\nbox = {{ min = [5.0, 0.0], max = [5.1, 0.1] }}\n[[shape]]\nname = \"wall\"\n\

@@ -94,7 +94,9 @@ static FLUID: Table = Table::new(
         .unit("Pa")
         .default("0.0"),
         Key::words("time_integration", || words(&read::INTEGRATIONS), "How it goes from n to n + 1.")
-            .default("\"midpoint\""),
+            .default(
+                "\"verlet\"; with a solid that strains, several solids, the phase-blind interface or `preset` \"kayaki\" \"midpoint\"",
+            ),
         Key::new("beach", Kind::Table(&BEACH), "Where waves are absorbed."),
     ],
 );
@@ -198,7 +200,9 @@ static NUMERICS: Table = Table::new(
                 .why("a sound wave must not cross more than a smoothing length a step"),
             "Courant number of the fluid.",
         )
-        .default("0.4; `fluid.time_integration` \"verlet\" without a solid that strains 0.6"),
+        .default(
+            "0.6; with a solid that strains, several solids or `fluid.time_integration` \"midpoint\" 0.4",
+        ),
         Key::number(
             "solid_cfl",
             Range::positive().up_to(1.1).why("dt c_P / dx beyond 1.1 is unstable"),
