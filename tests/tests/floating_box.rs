@@ -61,7 +61,8 @@ fn a_box_of_a_small_given_mass_is_stable() {
 #[test]
 fn a_heavy_box_sinks_and_lies_on_the_floor() {
     let pressed = -1000.0 * 9.81 * 0.2 * 0.1;
-    let on_the_floor = |resolution: f64| {
+    // What is caught below the box gives way: it does not lie on the floor to the last digit.
+    let on_the_floor = |resolution: f64, off: f64| {
         let all = [-0.5e-3, 0.0, 0.5e-3, 1e-3, 2e-3].map(|above| {
             let (bottom, top) = (0.02 + above, 0.12 + above);
             let run = scene("floating-box")
@@ -73,15 +74,15 @@ fn a_heavy_box_sinks_and_lies_on_the_floor() {
                 .run();
             let last = |name: &str| run.curve(name).between(0.6, 0.8).mean();
             let y = last("box.y");
-            assert!((y - 0.05).abs() < 1e-6, "{y}");
+            assert!((y - 0.05).abs() < off, "{y}");
             last("water.y") / pressed
         });
         let mean = all.iter().sum::<f64>() / 5.0;
         println!("{resolution} m: {mean:.3} of the water's weight, {all:.3?}");
         mean
     };
-    assert!((on_the_floor(0.02) - 1.0).abs() < 0.05);
-    assert!((0.2..0.35).contains(&on_the_floor(0.0125)));
+    assert!((on_the_floor(0.02, 1e-9) - 1.0).abs() < 0.05);
+    assert!((0.2..0.35).contains(&on_the_floor(0.0125, 1e-6)));
 }
 
 /// A drum full of water, and in its middle a disc of twice the water's density.

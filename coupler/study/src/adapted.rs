@@ -152,6 +152,19 @@ mod tests {
         Ok((made, scene))
     }
 
+    /// Alone a rigid plate would let it go by position Verlet.
+    #[test]
+    fn the_water_keeps_its_rule_of_time_integration() {
+        let water = "[fluid]\ndensity = 1000.0\n[[shape]]\nname = \"water\"\nphase = \"fluid\"\n\
+            box = { min = [0.1, 0.0], max = [0.2, 0.1] }\n";
+        let text = format!("{GATE}{water}");
+        for model in ["rigid", "hypoelastic"] {
+            let (_, scene) = of(&text, &[], model).unwrap();
+            assert_eq!(scene.numerics.cfl, 0.4, "{model}");
+            assert_eq!(scene.fluid.unwrap().time_integration, FluidIntegration::Midpoint, "{model}");
+        }
+    }
+
     #[test]
     fn a_plate_becomes_rigid_and_is_fixed() {
         let (made, scene) = of(GATE, &[], "rigid").unwrap();
