@@ -9,6 +9,7 @@ use crate::composition::{NoShare, Shares};
 use crate::equations::Needed;
 use crate::ledger::Measuring;
 use crate::rates::PairEffect;
+use crate::shifting_sums::ShiftingSums;
 use crate::walls::Walls;
 use halfstep_role::role::fastest;
 use halfstep_role::timeline;
@@ -60,8 +61,19 @@ pub trait FluidEffect<const D: usize>: Send + Sync + Sized + 'static {
     fn on_particle(&self, _position: &[f64; D], _velocity: &[f64; D]) -> [f64; D] {
         [0.0; D]
     }
-    /// Velocity of each slot beside its own, at which the effect moves particles from n to n + 1, m/s; after the
-    /// second stage's [`FluidEffect::prepare`].
+    /// Particle shifting's sums, which are found along with the fluid's accelerations of the second stage. No effect of
+    /// another crate can make them.
+    #[doc(hidden)]
+    fn shifting_sums(&mut self) -> Option<&mut ShiftingSums<D>> {
+        None
+    }
+    /// The effect's own pass at the second stage, after the pass that gives the rates. Returns the number of pairs that
+    /// it evaluated.
+    fn conclude<K: Kernel<D>>(&mut self, _: &Neighbourhood<'_, K, D>) -> u64 {
+        0
+    }
+    /// Velocity of each slot beside its own, at which the effect moves particles from n to n + 1, m/s; after
+    /// [`FluidEffect::conclude`].
     fn drift(&self) -> Option<&[[f64; D]]> {
         None
     }
@@ -135,10 +147,14 @@ pub trait Effects<const D: usize>: Send + Sync {
     fn at_walls(&self) -> Self::AtWalls<'_>;
     /// The shares of a pair of a fluid and a wall particle at predicted velocities.
     fn at_walls_predicted(&self) -> Self::AtWalls<'_>;
+    /// See [`FluidEffect::shifting_sums`]; of the first effect that has them, with the effect's name.
+    fn shifting_sums(&mut self) -> Option<(&'static str, &mut ShiftingSums<D>)>;
+    /// See [`FluidEffect::conclude`].
+    fn conclude<K: Kernel<D>>(&mut self, around: &Neighbourhood<'_, K, D>) -> u64;
     /// See [`FluidEffect::drift`]; of the first effect that has one.
     fn drift(&self) -> Option<&[[f64; D]]>;
-    /// Adds name and seconds of the own pass, in the mean of both stages, of each effect with a share of a pair of
-    /// fluid particles.
+    /// Adds name and seconds of the own passes, in the mean of both stages, of each effect with a share of a pair of
+    /// fluid particles or a drift.
     fn measure<K: Kernel<D>>(&mut self, around: &Neighbourhood<'_, K, D>, own: &mut Vec<(&'static str, f64)>);
     /// Measures the power of each share of a pair of fluid particles.
     fn measure_pairs<K: Kernel<D>>(&self, measuring: &mut Measuring<'_, K, D>);
@@ -164,6 +180,12 @@ impl<const D: usize> Effects<D> for () {
     fn at_walls(&self) {}
     fn at_walls_predicted(&self) {}
     fn on_particles(&self, _: &mut dyn FnMut(&'static str, OnParticle<'_, D>)) {}
+    fn shifting_sums(&mut self) -> Option<(&'static str, &mut ShiftingSums<D>)> {
+        None
+    }
+    fn conclude<K: Kernel<D>>(&mut self, _: &Neighbourhood<'_, K, D>) -> u64 {
+        0
+    }
     fn drift(&self) -> Option<&[[f64; D]]> {
         None
     }
@@ -208,6 +230,17 @@ impl<const D: usize, E: FluidEffect<D>, R: Effects<D>> Effects<D> for (Option<E>
     fn at_walls_predicted(&self) -> Self::AtWalls<'_> {
         (self.0.as_ref().and_then(E::at_wall_predicted), self.1.at_walls_predicted())
     }
+    fn shifting_sums(&mut self) -> Option<(&'static str, &mut ShiftingSums<D>)> {
+        let own = self.0.as_mut().and_then(|effect| Some((E::NAME, effect.shifting_sums()?)));
+        own.or_else(|| self.1.shifting_sums())
+    }
+    fn conclude<K: Kernel<D>>(&mut self, around: &Neighbourhood<'_, K, D>) -> u64 {
+        let own = self.0.as_mut().map_or(0, |effect| {
+            let _phase = timeline::phase(E::NAME);
+            effect.conclude(around)
+        });
+        own + self.1.conclude(around)
+    }
     fn drift(&self) -> Option<&[[f64; D]]> {
         self.0.as_ref().and_then(E::drift).or_else(|| self.1.drift())
     }
@@ -219,9 +252,9 @@ impl<const D: usize, E: FluidEffect<D>, R: Effects<D>> Effects<D> for (Option<E>
         if let Some(effect) =
             self.0.as_mut().filter(|effect| effect.pair().is_some() || effect.drift().is_some())
         {
-            let seconds =
+            let [first, second] =
                 [Stage::First, Stage::Second].map(|stage| fastest(|| _ = effect.prepare(stage, around)));
-            own.push((E::NAME, 0.5 * (seconds[0] + seconds[1])));
+            own.push((E::NAME, 0.5 * (first + second + fastest(|| _ = effect.conclude(around)))));
         }
         self.1.measure(around, own);
     }

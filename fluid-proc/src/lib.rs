@@ -1,7 +1,7 @@
 //! The fluid process: a weakly compressible liquid with delta-SPH and the walls around it.
 //!
-//! Midpoint steps (Kayaki's eqs. 30 and 31) over particles sorted into rows; each physical or numerical effect is a
-//! type that adds its share to one pass over the neighbours.
+//! Steps of position Verlet or of the midpoint rule (Kayaki's eqs. 30 and 31) over particles sorted into rows; each
+//! physical or numerical effect is a type that adds its share to one pass over the neighbours.
 //!
 //! ```
 //! use halfstep_fluid::Fluid;
@@ -44,6 +44,7 @@ mod rider_tests;
 mod riders;
 #[cfg(test)]
 mod separation_tests;
+pub mod shifting_sums;
 #[cfg(test)]
 mod shifting_tests;
 mod state;

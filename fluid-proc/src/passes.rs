@@ -6,6 +6,7 @@ use crate::effects::{Effects, FluidEffect, List, Neighbourhood, OnParticle, eval
 use crate::equations::{Both, Continuity, Equations, Momentum, Needed};
 use crate::fluid::Fluid;
 use crate::rates::{PairEffect, PredictedLaw, RateLaw, RateSum};
+use crate::shifting_sums::ShiftingSums;
 use crate::walls::{WallLaw, Walls};
 use halfstep_role::role::{Costs, fastest};
 use halfstep_role::timeline;
@@ -13,6 +14,7 @@ use halfstep_scene::EffectName;
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::LANES;
 use halfstep_sph::pair;
+use halfstep_wire::half_step::Stage;
 use rayon::prelude::*;
 
 impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
@@ -24,16 +26,43 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         let needed = Needed::at(stage, self.integration);
         self.pair_evaluations += self.among(kernel, |effects, around| effects.prepare(stage, around));
         let mut sums = std::mem::take(&mut self.sums);
-        self.all_rates(kernel, needed, &mut sums);
+        let mut shifting = self.taken_shifting_sums(stage);
+        self.all_rates(kernel, needed, shifting.as_mut(), &mut sums);
         self.sums = sums;
-        self.pair_evaluations += evaluations(&self.fluid_list) + evaluations(&self.wall_list);
+        let around = evaluations(&self.fluid_list) + evaluations(&self.wall_list);
+        self.pair_evaluations += around;
+        if let Some(shifting) = shifting {
+            self.put_back(shifting);
+            self.pair_evaluations += around;
+        }
+        if stage == Stage::Second {
+            self.pair_evaluations += self.among(kernel, List::conclude);
+        }
+    }
+
+    /// Particle shifting's sums, which the second stage finds, if the effect takes part.
+    fn taken_shifting_sums(&mut self, stage: Stage) -> Option<ShiftingSums<D>> {
+        let (_, sums) = self.effects.shifting_sums().filter(|_| stage == Stage::Second)?;
+        Some(std::mem::replace(sums, ShiftingSums::none()))
+    }
+
+    fn put_back(&mut self, shifting: ShiftingSums<D>) {
+        if let Some((_, place)) = self.effects.shifting_sums() {
+            *place = shifting;
+        }
     }
 
     /// The rates by fluid, walls and effects on single particles.
-    pub(crate) fn all_rates<K: Kernel<D>>(&self, kernel: K, needed: Needed, sums: &mut [RateSum<D>]) {
+    pub(crate) fn all_rates<K: Kernel<D>>(
+        &self,
+        kernel: K,
+        needed: Needed,
+        shifting: Option<&mut ShiftingSums<D>>,
+        sums: &mut [RateSum<D>],
+    ) {
         {
             let _phase = timeline::phase("pair pass");
-            self.rates(kernel, needed, self.effects.pairs(), sums);
+            self.rates(kernel, needed, self.effects.pairs(), shifting, sums);
         }
         self.wall_rates(kernel, needed, sums);
         if needed.momentum() {
@@ -72,18 +101,22 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         self.pair_evaluations += evaluations(&self.list_of_walls);
     }
 
-    /// The rate pass over the fluid.
+    /// The rate pass over the fluid, with particle shifting's sums along where they are asked for.
     fn rates<K: Kernel<D>>(
         &self,
         kernel: K,
         needed: Needed,
         shares: impl Shares<D>,
+        shifting: Option<&mut ShiftingSums<D>>,
         sums: &mut [RateSum<D>],
     ) {
+        let fluid = self;
         match needed {
-            Needed::Both => shares.run(OverFluid { kernel, equations: Both, fluid: self, sums }),
-            Needed::Momentum => shares.run(OverFluid { kernel, equations: Momentum, fluid: self, sums }),
-            Needed::Continuity => shares.run(OverFluid { kernel, equations: Continuity, fluid: self, sums }),
+            Needed::Both => shares.run(OverFluid { kernel, equations: Both, fluid, shifting, sums }),
+            Needed::Momentum => shares.run(OverFluid { kernel, equations: Momentum, fluid, shifting, sums }),
+            Needed::Continuity => {
+                shares.run(OverFluid { kernel, equations: Continuity, fluid, shifting, sums })
+            }
         }
     }
 
@@ -168,6 +201,25 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         0.5 * seconds
     }
 
+    /// Name of particle shifting, and seconds that its sums take beside the rates, in the mean over both stages.
+    fn cost_of_shifting<K: Kernel<D>>(
+        &mut self,
+        kernel: K,
+        sums: &mut [RateSum<D>],
+    ) -> Option<(&'static str, f64)> {
+        let needed = Needed::at(Stage::Second, self.integration);
+        let (name, _) = self.effects.shifting_sums()?;
+        let mut shifting = self.taken_shifting_sums(Stage::Second)?;
+        let [with, without] = [true, false].map(|along| {
+            fastest(|| {
+                let shifting = along.then_some(&mut shifting);
+                self.rates(kernel, needed, self.effects.pairs(), shifting, sums);
+            })
+        });
+        self.put_back(shifting);
+        Some((name, 0.5 * (with - without).max(0.0)))
+    }
+
     /// Parts of the sums' time, each effect's measured by leaving it out.
     pub(crate) fn costs<K: Kernel<D>>(&mut self, kernel: K) -> Costs {
         let mut costs = Costs::default();
@@ -182,9 +234,13 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         let walls =
             fastest(|| self.extrapolate(kernel)) + at_walls + self.cost_of_prediction(kernel, &mut sums);
         let rates =
-            mean(&mut |needed| fastest(|| self.rates(kernel, needed, self.effects.pairs(), &mut sums)));
+            mean(&mut |needed| fastest(|| self.rates(kernel, needed, self.effects.pairs(), None, &mut sums)));
+        let shifting = self.cost_of_shifting(kernel, &mut sums);
         let mut own_passes = Vec::new();
         self.among(kernel, |effects, around| effects.measure(around, &mut own_passes));
+        for (name, own) in &mut own_passes {
+            *own += shifting.filter(|(of, _)| of == name).map_or(0.0, |(_, seconds)| seconds);
+        }
         self.effects.on_particles(&mut |name, of| {
             let part = stages.iter().filter(|needed| needed.momentum()).count() as f64 / number;
             own_passes.push((name, part * fastest(|| self.add_on_particles(of, &mut sums))));
@@ -196,7 +252,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         costs.moving_walls = placing / total;
         for (name, own) in own_passes {
             let without = mean(&mut |needed| {
-                fastest(|| self.rates(kernel, needed, self.effects.pairs_without(name), &mut sums))
+                fastest(|| self.rates(kernel, needed, self.effects.pairs_without(name), None, &mut sums))
             });
             // What a further effect takes is counted as the fluid's own.
             if let Some(place) = EffectName::ALL.iter().position(|effect| effect.name() == name) {
@@ -218,16 +274,25 @@ struct OverFluid<'a, K, Q, X: FluidEffect<D>, const D: usize> {
     kernel: K,
     equations: Q,
     fluid: &'a Fluid<D, X>,
+    /// Asked for with accelerations only.
+    shifting: Option<&'a mut ShiftingSums<D>>,
     sums: &'a mut [RateSum<D>],
 }
 
 impl<K: Kernel<D>, Q: Equations, X: FluidEffect<D>, const D: usize> Pass<D> for OverFluid<'_, K, Q, X, D> {
     type Equations = Q;
     fn run<E: PairEffect<D>>(self, effects: E) {
-        let Self { kernel, equations, .. } = self;
-        let shown = &self.fluid.columns.now;
+        let Self { kernel, equations, fluid, .. } = self;
+        let shown = &fluid.columns.now;
         let law = RateLaw { kernel, equations, effects, targets: shown, sources: shown };
-        pair::pass(self.fluid.isa, &law, &self.fluid.fluid_list, self.sums);
+        debug_assert!(Q::MOMENTUM || self.shifting.is_none());
+        match self.shifting {
+            Some(shifting) if Q::MOMENTUM => {
+                let walls = fluid.walls.as_ref().map(|walls| (&walls.shown, &fluid.wall_list));
+                shifting.with_rates(fluid.isa, law, &fluid.fluid_list, walls, self.sums);
+            }
+            _ => pair::pass(fluid.isa, &law, &fluid.fluid_list, self.sums),
+        }
     }
 }
 

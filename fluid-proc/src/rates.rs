@@ -191,6 +191,7 @@ impl<const D: usize> RateSum<D> {
 }
 
 /// The law of the pass: targets and sources may be the same set, or fluid and walls.
+#[derive(Clone, Copy)]
 pub struct RateLaw<'a, K, E, Q, const D: usize> {
     /// Kernel.
     pub kernel: K,

@@ -2,7 +2,8 @@
 
 use crate::Fluid;
 use crate::effects::Effects;
-use crate::effects::particle_shifting::{STRAINED, STRENGTH};
+use crate::effects::particle_shifting::STRENGTH;
+use crate::shifting_sums::STRAINED;
 use halfstep_role::role::Role;
 use halfstep_scene as scene;
 use halfstep_sph::kernel::{Kernel, WendlandC2};

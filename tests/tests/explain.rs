@@ -137,7 +137,7 @@ fn the_reason_is_the_key_or_the_fact() {
     let forced = effects("hydrostatic-tank", &["fluid.viscosity=0.1", "effects.viscosity=on"]);
     let viscosity = row(&forced, "viscosity");
     assert!(viscosity["on"] == true && viscosity["why"] == "effects.viscosity is \"on\"", "{viscosity}");
-    assert_eq!(row(&forced, "particle-shifting")["bytes_per_particle"], 40.0);
+    assert_eq!(row(&forced, "particle-shifting")["bytes_per_particle"], 24.0);
     assert_eq!(forced["composition"], "artificial viscosity, hydrostatic diffusion, viscosity");
     assert_eq!(row(&forced, "solid")["on"], false);
 

@@ -38,7 +38,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
     /// is not among them.
     fn predicted_from_now<K: Kernel<D>>(&self, kernel: K) -> Vec<[f64; D]> {
         let mut sums = vec![RateSum::default(); self.sums.len()];
-        self.all_rates(kernel, Needed::Momentum, &mut sums);
+        self.all_rates(kernel, Needed::Momentum, None, &mut sums);
         let mut velocities = Vec::new();
         self.predict(2.0 * self.density_lag, &sums, &mut velocities);
         velocities

@@ -6,6 +6,7 @@ use crate::lane::{Arch, Lane, Lanes, components};
 use crate::pair::{PairLaw, distance, dot, pair_sum};
 
 /// The law of the pass over boundary particles.
+#[derive(Clone, Copy)]
 pub struct Extrapolation<'a, K, const D: usize> {
     /// Kernel.
     pub kernel: K,

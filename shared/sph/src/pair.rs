@@ -6,7 +6,11 @@
 //! computed at once.
 
 mod fixed;
+mod out;
 mod sum;
+mod together;
+#[cfg(test)]
+mod together_tests;
 #[cfg(test)]
 mod width_tests;
 
@@ -17,8 +21,10 @@ use crate::lane::{
 use crate::neighbours::{CHUNK_FOURS, ClusterList};
 pub use crate::pair_sum;
 pub use fixed::{FixedLaw, FixedPairs, fixed_pass};
+use out::{Add, Change, Out, Replace, Sink, TASK_FOURS};
 use rayon::prelude::*;
 pub use sum::PairSum;
+pub use together::{Along, pass_together};
 
 /// A sum over neighbours.
 pub trait PairLaw<const D: usize>: Sync {
@@ -91,49 +97,7 @@ impl<const D: usize, W: PairLaw<D>> PairLaw<D> for Narrow<W> {
     }
 }
 
-/// What becomes of the sum over the neighbours of four targets.
-trait Sink<F>: Copy + Sync {
-    /// Where it goes.
-    type Out: Send;
-    /// What the sum begins with.
-    fn begin(self, out: &Self::Out) -> F;
-    /// Takes the sum of the targets that begin at `slot`.
-    fn end(self, slot: usize, sum: F, out: &mut Self::Out);
-}
-
-/// The sum takes the place of what was there.
-#[derive(Clone, Copy)]
-struct Replace<G>(G);
-
-impl<F: Default, T: Send, G: Fn(usize, &F) -> T + Copy + Sync> Sink<F> for Replace<G> {
-    type Out = T;
-    #[inline(always)]
-    fn begin(self, _: &T) -> F {
-        F::default()
-    }
-    #[inline(always)]
-    fn end(self, slot: usize, sum: F, out: &mut T) {
-        *out = (self.0)(slot, &sum);
-    }
-}
-
-/// The sum goes on from what was there.
-#[derive(Clone, Copy)]
-struct Add;
-
-impl<F: Copy + Send> Sink<F> for Add {
-    type Out = F;
-    #[inline(always)]
-    fn begin(self, out: &F) -> F {
-        *out
-    }
-    #[inline(always)]
-    fn end(self, _: usize, sum: F, out: &mut F) {
-        *out = sum;
-    }
-}
-
-/// A law with the list of its pairs, or several, each of which adds to the same sum in its turn.
+/// A law with the list of its pairs, or several laws and lists in one pass.
 trait Work<const D: usize>: Copy + Sync {
     /// See [`PairLaw::WIDE`].
     const WIDE: bool;
@@ -185,33 +149,6 @@ impl<const D: usize, W: PairLaw<D>> Work<D> for (&W, &ClusterList) {
     }
 }
 
-/// One law over two sets of neighbours; the second goes on from the sum of the first.
-struct Both<'a, W>([(&'a W, &'a ClusterList); 2]);
-
-impl<W> Clone for Both<'_, W> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-impl<W> Copy for Both<'_, W> {}
-
-impl<const D: usize, W: PairLaw<D>> Work<D> for Both<'_, W> {
-    const WIDE: bool = W::WIDE;
-    const SINGLE: bool = W::SINGLE;
-    type Sum<L: Lanes> = W::Sum<L>;
-    fn list(&self) -> &ClusterList {
-        let [(_, first), (_, second)] = self.0;
-        assert_eq!((first.fours(), first.width()), (second.fours(), second.width()), "of the same targets");
-        first
-    }
-    #[inline(always)]
-    fn gather<A: Arch, L: Lanes>(self, chunk: usize, k: usize, slot: usize, sum: &mut W::Sum<L>) {
-        let [first, second] = self.0;
-        first.gather::<A, L>(chunk, k, slot, sum);
-        second.gather::<A, L>(chunk, k, slot, sum);
-    }
-}
-
 /// Runs a law over all targets of a list; `sums` has one entry for each four of them.
 pub fn pass<const D: usize, W: PairLaw<D>>(isa: Isa, law: &W, list: &ClusterList, sums: &mut [W::Sum<Lane>]) {
     run_tasks(isa, (law, list), Replace(|_, sum: &W::Sum<Lane>| *sum), sums);
@@ -238,116 +175,114 @@ pub fn pass_into<const D: usize, W: PairLaw<D>, T: Send>(
     run_tasks(isa, (law, list), Replace(finish), out);
 }
 
-/// The same over two sets of neighbours, the second after the first.
-pub fn pass_both_into<const D: usize, W: PairLaw<D>, T: Send>(
+/// The pass; the sum of each four changes what is in `out`.
+pub fn pass_changing<const D: usize, W: PairLaw<D>, T: Send>(
     isa: Isa,
-    first: (&W, &ClusterList),
-    second: (&W, &ClusterList),
-    finish: impl Fn(usize, &W::Sum<Lane>) -> T + Copy + Sync,
+    law: &W,
+    list: &ClusterList,
+    change: impl Fn(&W::Sum<Lane>, &mut T) + Copy + Sync,
     out: &mut [T],
 ) {
-    run_tasks(isa, Both([first, second]), Replace(finish), out);
+    run_tasks(isa, (law, list), Change(change), out);
 }
 
-fn run_tasks<const D: usize, W: Work<D>, S: Sink<W::Sum<Lane>>>(
+fn run_tasks<const D: usize, W: Work<D>, O: Out, S: Sink<W::Sum<Lane>, O>>(
     isa: Isa,
     work: W,
     sink: S,
-    out: &mut [S::Out],
+    out: O,
 ) {
     let list = work.list();
-    assert_eq!(out.len(), list.fours(), "one sum for each four targets");
+    assert_eq!(out.fours(), list.fours(), "one sum for each four targets");
     // Never more than the processor has: that is what makes the calls below safe.
     let isa = isa.min(Isa::detect());
     let precision = list.precision();
     assert!(W::SINGLE || precision == Precision::Double, "a law that can be computed in single precision");
     let width = if W::WIDE { isa.targets(precision) } else { LANES };
     assert_eq!(list.width(), width, "the list's clusters are as wide as the passes");
-    if out.len() <= TASK_FOURS {
-        if !out.is_empty() {
-            run_task(isa, precision, work, 0, sink, out);
+    match out.fours() {
+        0 => (),
+        1..=TASK_FOURS => run_task(isa, precision, work, 0, sink, out),
+        _ => {
+            let tasks = out.tasks().enumerate();
+            tasks.for_each(|(task, part)| run_task(isa, precision, work, task, sink, part));
         }
-        return;
     }
-    out.par_chunks_mut(TASK_FOURS)
-        .enumerate()
-        .for_each(|(task, out)| run_task(isa, precision, work, task, sink, out));
 }
 
-/// Fours of targets that one task works on: of a few thousand particles the last tasks end together.
-const TASK_FOURS: usize = 32;
-const _: () = assert!(CHUNK_FOURS.is_multiple_of(TASK_FOURS), "a task is of one chunk");
-
-fn run_task<const D: usize, W: Work<D>, S: Sink<W::Sum<Lane>>>(
+fn run_task<const D: usize, W: Work<D>, O: Out, S: Sink<W::Sum<Lane>, O>>(
     isa: Isa,
     precision: Precision,
     work: W,
     task: usize,
     sink: S,
-    out: &mut [S::Out],
+    out: O,
 ) {
     if W::SINGLE && precision == Precision::Mixed {
         return match isa {
             // SAFETY: `run_tasks` asked the processor.
             #[cfg(target_arch = "x86_64")]
-            Isa::Avx512vl => unsafe { run_avx512::<D, W, S, Single<WIDEST_SINGLE>>(work, task, sink, out) },
+            Isa::Avx512vl => unsafe {
+                run_avx512::<D, W, O, S, Single<WIDEST_SINGLE>>(work, task, sink, out)
+            },
             // SAFETY: as above.
             #[cfg(target_arch = "x86_64")]
-            Isa::Avx2 => unsafe { run_avx2::<D, W, S, Single<WIDEST>>(work, task, sink, out) },
-            _ => run::<D, W, S, Unfused, Single<LANES>>(work, task, sink, out),
+            Isa::Avx2 => unsafe { run_avx2::<D, W, O, S, Single<WIDEST>>(work, task, sink, out) },
+            _ => run::<D, W, O, S, Unfused, Single<LANES>>(work, task, sink, out),
         };
     }
     match isa {
         // SAFETY: `run_tasks` asked the processor.
         #[cfg(target_arch = "x86_64")]
-        Isa::Avx512vl if W::WIDE => unsafe { run_avx512::<D, W, S, Eight>(work, task, sink, out) },
+        Isa::Avx512vl if W::WIDE => unsafe { run_avx512::<D, W, O, S, Eight>(work, task, sink, out) },
         // SAFETY: as above.
         #[cfg(target_arch = "x86_64")]
-        Isa::Avx512vl => unsafe { run_avx512::<D, W, S, Lane>(work, task, sink, out) },
+        Isa::Avx512vl => unsafe { run_avx512::<D, W, O, S, Lane>(work, task, sink, out) },
         // SAFETY: as above.
         #[cfg(target_arch = "x86_64")]
-        Isa::Avx2 => unsafe { run_avx2::<D, W, S, Lane>(work, task, sink, out) },
-        _ => run::<D, W, S, Unfused, Lane>(work, task, sink, out),
+        Isa::Avx2 => unsafe { run_avx2::<D, W, O, S, Lane>(work, task, sink, out) },
+        _ => run::<D, W, O, S, Unfused, Lane>(work, task, sink, out),
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2,fma")]
-unsafe fn run_avx512<const D: usize, W: Work<D>, S: Sink<W::Sum<Lane>>, L: Lanes>(
+unsafe fn run_avx512<const D: usize, W: Work<D>, O: Out, S: Sink<W::Sum<Lane>, O>, L: Lanes>(
     work: W,
     task: usize,
     sink: S,
-    out: &mut [S::Out],
+    out: O,
 ) {
-    run::<D, W, S, Fused, L>(work, task, sink, out);
+    run::<D, W, O, S, Fused, L>(work, task, sink, out);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-unsafe fn run_avx2<const D: usize, W: Work<D>, S: Sink<W::Sum<Lane>>, L: Lanes>(
+unsafe fn run_avx2<const D: usize, W: Work<D>, O: Out, S: Sink<W::Sum<Lane>, O>, L: Lanes>(
     work: W,
     task: usize,
     sink: S,
-    out: &mut [S::Out],
+    out: O,
 ) {
-    run::<D, W, S, Fused, L>(work, task, sink, out);
+    run::<D, W, O, S, Fused, L>(work, task, sink, out);
 }
 
 #[inline(always)]
-fn run<const D: usize, W: Work<D>, S: Sink<W::Sum<Lane>>, A: Arch, L: Lanes>(
+fn run<const D: usize, W: Work<D>, O: Out, S: Sink<W::Sum<Lane>, O>, A: Arch, L: Lanes>(
     work: W,
     task: usize,
     sink: S,
-    out: &mut [S::Out],
+    mut out: O,
 ) {
     let (chunk, part) = (task / (CHUNK_FOURS / TASK_FOURS), task % (CHUNK_FOURS / TASK_FOURS));
-    let first = part * (TASK_FOURS * LANES / L::TARGETS);
-    for (k, out) in out.chunks_exact_mut(L::TARGETS / LANES).enumerate() {
+    let fours = L::TARGETS / LANES;
+    let first = part * TASK_FOURS / fours;
+    for k in 0..out.fours() / fours {
         let slot = task * TASK_FOURS * LANES + k * L::TARGETS;
-        let mut sum = W::Sum::<L>::of_fours(|four| sink.begin(&out[four]));
+        let mut sum = W::Sum::<L>::of_fours(|four| sink.begin(&out, k * fours + four));
         work.gather::<A, L>(chunk, first + k, slot, &mut sum);
-        for (four, out) in out.iter_mut().enumerate() {
-            sink.end(slot + four * LANES, sum.four(four), out);
+        for four in 0..fours {
+            sink.end(slot + four * LANES, sum.four(four), &mut out, k * fours + four);
         }
     }
 }

@@ -95,14 +95,14 @@ fn bytes_per_particle(overrides: &[&str]) -> f64 {
 
 #[test]
 fn an_absent_effect_takes_no_memory() {
-    // Per slot, padding included: two components of the density gradient; three of the order, with the determinant, and
-    // two of the drift. Padding and spare room add up to 10 % here.
+    // Per slot, padding included: two components of the density gradient; two of the drift and the determinant.
+    // Padding and spare room add up to 10 % here.
     let lean = bytes_per_particle(&["fluid.density_diffusion=simple"]);
     let full = bytes_per_particle(&["fluid.density_diffusion=delta-sph"]) - lean;
     assert!((16.0..17.6).contains(&full), "{full}");
     let still = &["fluid.density_diffusion=simple", "effects.particle-shifting=off"];
     let shifting = lean - bytes_per_particle(still);
-    assert!((40.0..44.0).contains(&shifting), "{shifting}");
+    assert!((24.0..26.4).contains(&shifting), "{shifting}");
 }
 
 /// A plate that swings beside a wall, ten steps.

@@ -46,6 +46,22 @@ impl<L, S: PairSum<L>, const N: usize> PairSum<L> for [S; N] {
     }
 }
 
+impl<L, S: PairSum<L>, T: PairSum<L>> PairSum<L> for (S, T) {
+    type Four = (S::Four, T::Four);
+    #[inline(always)]
+    fn four(&self, k: usize) -> Self::Four {
+        (self.0.four(k), self.1.four(k))
+    }
+    #[inline(always)]
+    fn of_fours(four: impl Fn(usize) -> Self::Four) -> Self {
+        (S::of_fours(|k| four(k).0), T::of_fours(|k| four(k).1))
+    }
+    #[inline(always)]
+    fn none() -> Self {
+        (S::none(), T::none())
+    }
+}
+
 /// Makes a structure a [`PairSum`](crate::pair::PairSum): `pair_sum!(Name { constants } { fields });` for a
 /// `Name<constants, L>` whose fields are sums themselves, `L` or arrays of it. Its default is that of no neighbours:
 /// zeros, or with `from value` after the fields that value in each of them.

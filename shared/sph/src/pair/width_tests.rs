@@ -31,7 +31,12 @@ fn pressures<const D: usize, A: Arch, L: Lanes>() -> Vec<Option<f64>> {
     for task in 0..list.fours().div_ceil(TASK_FOURS) {
         let out = &mut sums[task * TASK_FOURS..];
         let len = out.len().min(TASK_FOURS);
-        run::<D, _, _, A, L>((&law, &list), task, Replace(|_, sum: &ExtrapolationSum| *sum), &mut out[..len]);
+        run::<D, _, _, _, A, L>(
+            (&law, &list),
+            task,
+            Replace(|_, sum: &ExtrapolationSum| *sum),
+            &mut out[..len],
+        );
     }
     let real = (0..slots).filter(|&slot| id[slot] != PADDING);
     real.map(|slot| sums[slot / LANES].pressure(slot % LANES)).collect()
