@@ -17,7 +17,7 @@ fn water(precision: &str) -> Fluid<2> {
          [fluid]\ndensity = 1000.0\nsound_speed = 20.0\n\
          [[shape]]\nname = \"water\"\nphase = \"fluid\"\nbox = {{ min = [0.0, 0.0], max = [0.2, 0.3] }}\n\
          [[shape]]\nname = \"tank\"\nphase = \"wall\"\n\
-         tank = {{ min = [0.0, 0.0], max = [0.4, 0.4], thickness = 0.08, open = [\"top\"] }}\n"
+         tank = {{ min = [0.0, 0.0], max = [0.4, 0.4], open = [\"top\"] }}\n"
     );
     let scene = halfstep_scene::parse(&text, "water.toml".as_ref(), &[]).unwrap_or_else(|e| panic!("{e:?}"));
     let mut fluid = Fluid::<2>::new(&scene, Isa::detect()).expect("a scene with fluid");
