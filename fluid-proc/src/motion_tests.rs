@@ -14,7 +14,7 @@ fn fluid(text: &str) -> Fluid<2> {
 }
 
 /// Goes on to a time; calls `see` after each step with sums of the state there.
-fn run(fluid: &mut Fluid<2>, until: f64, mut see: impl FnMut(&Fluid<2>, f64)) {
+pub(crate) fn run(fluid: &mut Fluid<2>, until: f64, mut see: impl FnMut(&Fluid<2>, f64)) {
     let (mut t, mut step, mut record) = (0.0, 0, Vec::new());
     while t < until {
         fluid.set_time(t);

@@ -27,7 +27,7 @@ pub struct ShiftingSums<const D: usize> {
     strength: f64,
     /// Largest drift, m/s.
     fastest: f64,
-    /// delta u where no surface is near, m/s.
+    /// delta u, m/s. At a surface the effect's own pass makes it zero afterwards.
     pub(crate) drift: Vec<[f64; D]>,
     /// det M.
     pub(crate) determinant: Vec<f64>,
