@@ -37,6 +37,7 @@ impl<const D: usize> FluidEffect<D> for LaminarViscosity {
 impl<const D: usize> PairEffect<D> for LaminarViscosity {
     type Own<L: Lanes> = ();
     const VECTOR: bool = true;
+    const CONTINUITY: bool = false;
 
     #[inline(always)]
     fn own<L: Lanes>(&self, _: usize) {}

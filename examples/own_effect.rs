@@ -1,7 +1,7 @@
 //! A program with an effect of its own: two particles slide past each other and drag each other along.
 //!
-//! `laminar_viscosity.rs` holds all of the effect. `Simulation::effect` adds it to those of halfstep, and the fluid's
-//! passes are compiled with it in this crate.
+//! `laminar_viscosity.rs` holds all of the effect. `Simulation::effect` adds it to those of halfstep, and the
+//! fluid's complete law is compiled with it in this crate.
 
 mod laminar_viscosity;
 
@@ -112,11 +112,11 @@ mod tests {
         assert!(error.to_string().contains("effects.laminar-viscosity: the simulation has no such effect"));
     }
 
-    /// Takes part in every pair and adds nothing.
+    /// Takes part in every pair, in the momentum equation or in both, and adds nothing.
     #[derive(Clone, Copy)]
-    struct Nothing;
+    struct Nothing<const BOTH: bool>;
 
-    impl FluidEffect<2> for Nothing {
+    impl<const BOTH: bool> FluidEffect<2> for Nothing<BOTH> {
         const NAME: &'static str = "nothing";
         type Pair<'a> = Self;
         type AtWall<'a> = Self;
@@ -131,8 +131,9 @@ mod tests {
         }
     }
 
-    impl PairEffect<2> for Nothing {
+    impl<const BOTH: bool> PairEffect<2> for Nothing<BOTH> {
         type Own<L: Lanes> = ();
+        const CONTINUITY: bool = BOTH;
         fn own<L: Lanes>(&self, _: usize) {}
         fn add<A: Arch, L: Lanes>(&self, _: &(), _: usize, _: &FluidPair<2, L>, _: &mut PairRates<2, L>) {}
     }
@@ -153,22 +154,26 @@ mod tests {
         let tank = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/hydrostatic-tank.toml");
         let mut found = BTreeSet::new();
         for diffusion in ["none", "simple", "hydrostatic", "delta-sph"] {
-            for viscosity in ["off", "on"] {
+            for (viscosity, rule) in
+                [("off", "verlet"), ("on", "verlet"), ("off", "midpoint"), ("on", "midpoint")]
+            {
                 let overrides = [
                     "end_time=0.002".to_owned(),
                     "shape.water.velocity=[0.3, -0.2]".into(),
                     "fluid.viscosity=1".into(),
+                    format!("fluid.time_integration={rule}"),
                     format!("effects.viscosity={viscosity}"),
                     format!("fluid.density_diffusion={diffusion}"),
                 ];
                 let scene = scene::load(&tank, &overrides).unwrap();
-                let (complete, chosen) = (hash(&scene, Nothing), hash(&scene, ()));
-                assert_eq!(composition(&scene, Nothing), "complete law");
+                let chosen = hash(&scene, ());
+                assert_eq!(composition(&scene, Nothing::<true>), "complete law");
                 assert_ne!(composition(&scene, ()), "complete law");
-                assert_eq!(complete, chosen, "{}", composition(&scene, ()));
+                assert_eq!(hash(&scene, Nothing::<true>), chosen, "{}", composition(&scene, ()));
+                assert_eq!(hash(&scene, Nothing::<false>), chosen, "{}", composition(&scene, ()));
                 found.insert(chosen);
             }
         }
-        assert_eq!(found.len(), 8, "each effect changes the state");
+        assert_eq!(found.len(), 16, "each effect changes the state");
     }
 }

@@ -1,9 +1,10 @@
 //! Which passes are compiled. Each set of shares that come together in a scene has a pass of its own, in which an
 //! absent effect does not exist; the types of these passes follow from the list of effects, none is written out. A
 //! share that does not ask for passes of its own ([`PairEffect::enter`]) takes part in the complete law, which asks for
-//! each effect whether it is there.
+//! each effect whether it is there. The further effect of another crate comes first: where
+//! it is absent, or adds nothing, the passes of this crate's list are run, which are compiled already.
 
-use crate::equations::{Both, Equations};
+use crate::equations::{Both, Equations, Needed};
 use crate::rates::{FluidPair, PairEffect, PairRates};
 use halfstep_sph::lane::{Arch, Lanes};
 
@@ -71,7 +72,12 @@ impl<const D: usize, E: PairEffect<D>, R: Shares<D>> Shares<D> for (Option<E>, R
     }
 }
 
-/// A share adds to what a pass gives.
+/// A share adds to what is needed.
+pub(crate) fn adds<E: PairEffect<D>, const D: usize>(needed: Needed) -> bool {
+    E::MOMENTUM && needed.momentum() || E::CONTINUITY && needed.continuity()
+}
+
+/// The same of what a pass gives, known when it is compiled.
 const fn adds_to<E: PairEffect<D>, Q: Equations, const D: usize>() -> bool {
     E::MOMENTUM && Q::MOMENTUM || E::CONTINUITY && Q::CONTINUITY
 }
@@ -95,6 +101,37 @@ impl<const D: usize, C: PairEffect<D>, R: Shares<D>, A: PairEffect<D>, P: Pass<D
     }
 }
 
+/// Shares of which a pass can be run.
+pub(crate) trait Runs<const D: usize> {
+    /// Runs the pass that is compiled for them.
+    fn run<P: Pass<D>>(self, pass: P);
+}
+
+/// The shares that are there of a list of effects.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OfList<S>(pub S);
+
+impl<const D: usize, S: Shares<D>> Runs<D> for OfList<S> {
+    fn run<P: Pass<D>>(self, pass: P) {
+        self.0.run(pass);
+    }
+}
+
+/// The share of a further effect that is there, before those of a list.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct WithList<E, S>(pub E, pub S);
+
+impl<const D: usize, E: PairEffect<D>, S: Shares<D>> Runs<D> for WithList<E, S> {
+    fn run<P: Pass<D>>(self, pass: P) {
+        let Self(share, rest) = self;
+        if const { adds_to::<E, P::Equations, D>() } {
+            share.enter(Entering { chosen: (), rest, all: (Some(share), rest), pass });
+        } else {
+            unreachable!("where a share adds nothing the passes without it are run");
+        }
+    }
+}
+
 /// Collects the labels of a composition.
 struct Name<'a>(&'a mut Vec<&'static str>);
 
@@ -111,6 +148,8 @@ pub enum NoShare {}
 
 impl<const D: usize> PairEffect<D> for NoShare {
     type Own<L: Lanes> = ();
+    const MOMENTUM: bool = false;
+    const CONTINUITY: bool = false;
     fn own<L: Lanes>(&self, _: usize) {
         match *self {}
     }
@@ -121,3 +160,7 @@ impl<const D: usize> PairEffect<D> for NoShare {
         match self {}
     }
 }
+
+#[cfg(test)]
+#[path = "composition_tests.rs"]
+mod tests;

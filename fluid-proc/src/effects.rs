@@ -5,7 +5,8 @@
 //! effect, the parameter `X` of [`crate::Fluid`].
 
 use crate::columns::PairParticles;
-use crate::composition::{NoShare, Shares};
+use crate::compiled::Passes;
+use crate::composition::Shares;
 use crate::equations::Needed;
 use crate::ledger::Measuring;
 use crate::rates::PairEffect;
@@ -23,7 +24,8 @@ use halfstep_wire::half_step::Stage;
 pub trait FluidEffect<const D: usize>: Send + Sync + Sized + 'static {
     /// Name of the effect in scenes and reports.
     const NAME: &'static str;
-    /// What the effect adds to a pair of fluid particles; [`NoShare`] where it acts in another way.
+    /// What the effect adds to a pair of fluid particles; [`NoShare`](crate::composition::NoShare) where it acts in
+    /// another way.
     type Pair<'a>: PairEffect<D>;
     /// What the effect adds to a pair of a fluid and a wall particle.
     type AtWall<'a>: PairEffect<D>;
@@ -61,8 +63,8 @@ pub trait FluidEffect<const D: usize>: Send + Sync + Sized + 'static {
     fn on_particle(&self, _position: &[f64; D], _velocity: &[f64; D]) -> [f64; D] {
         [0.0; D]
     }
-    /// Particle shifting's sums, which are found along with the fluid's accelerations of the second stage. No effect of
-    /// another crate can make them.
+    /// Particle shifting's sums, which are found along with the fluid's accelerations of the second stage, or after
+    /// them. No effect of another crate can make them.
     #[doc(hidden)]
     fn shifting_sums(&mut self) -> Option<&mut ShiftingSums<D>> {
         None
@@ -73,13 +75,18 @@ pub trait FluidEffect<const D: usize>: Send + Sync + Sized + 'static {
         0
     }
     /// Velocity of each slot beside its own, at which the effect moves particles from n to n + 1, m/s; after
-    /// [`FluidEffect::conclude`].
+    /// [`FluidEffect::conclude`]. Particle shifting's comes before that of a further effect.
     fn drift(&self) -> Option<&[[f64; D]]> {
         None
     }
     /// Bytes allocated for its columns.
     fn bytes(&self) -> usize {
         0
+    }
+    /// The passes of a fluid with this effect as the further one.
+    #[doc(hidden)]
+    fn passes() -> Passes<D, Self> {
+        Passes::compiled()
     }
 }
 
@@ -151,7 +158,7 @@ pub trait Effects<const D: usize>: Send + Sync {
     fn shifting_sums(&mut self) -> Option<(&'static str, &mut ShiftingSums<D>)>;
     /// See [`FluidEffect::conclude`].
     fn conclude<K: Kernel<D>>(&mut self, around: &Neighbourhood<'_, K, D>) -> u64;
-    /// See [`FluidEffect::drift`]; of the first effect that has one.
+    /// See [`FluidEffect::drift`]; of the last effect that has one.
     fn drift(&self) -> Option<&[[f64; D]]>;
     /// Adds name and seconds of the own passes, in the mean of both stages, of each effect with a share of a pair of
     /// fluid particles or a drift.
@@ -242,7 +249,7 @@ impl<const D: usize, E: FluidEffect<D>, R: Effects<D>> Effects<D> for (Option<E>
         own + self.1.conclude(around)
     }
     fn drift(&self) -> Option<&[[f64; D]]> {
-        self.0.as_ref().and_then(E::drift).or_else(|| self.1.drift())
+        self.1.drift().or_else(|| self.0.as_ref().and_then(E::drift))
     }
     fn measure<K: Kernel<D>>(
         &mut self,
@@ -284,26 +291,16 @@ impl<const D: usize, E: FluidEffect<D>, R: Effects<D>> Effects<D> for (Option<E>
     }
 }
 
-/// No effect beside those of the list.
-impl<const D: usize> FluidEffect<D> for () {
-    const NAME: &'static str = "none";
-    type Pair<'a> = NoShare;
-    type AtWall<'a> = NoShare;
-    fn decide(_: &Scene) -> Decision {
-        Decision { name: "none", on: false, why: "no further effect".into() }
-    }
-}
-
 macro_rules! list {
     ($($(#[$doc:meta])* $effect:ident $name:literal $module:ident,)*) => {
         $(pub mod $module;)*
 
-        /// The effects of the list with one more, `X`.
-        pub type List<const D: usize, X> = chain!(D, X, $($module::$effect)*);
+        /// The effects of the list.
+        pub type Standard<const D: usize> = chain!(D, $($module::$effect)*);
 
-        /// The effects that take part in a scene; `more` is added to the list.
-        pub(crate) fn of_scene<const D: usize, X>(scene: &Scene, more: Option<X>) -> List<D, X> {
-            chain!(of D, scene, more, $($module::$effect)*)
+        /// The effects that take part in a scene; `further` comes before those of the list.
+        pub(crate) fn of_scene<const D: usize, X>(scene: &Scene, further: Option<X>) -> List<D, X> {
+            (further, chain!(of D, scene, $($module::$effect)*))
         }
 
         /// What a scene with fluid decides about each effect of the list, with the memory that the effect has of its
@@ -315,15 +312,18 @@ macro_rules! list {
 }
 
 macro_rules! chain {
-    ($D:ident, $X:ident,) => { (Option<$X>, ()) };
-    ($D:ident, $X:ident, $module:ident::$effect:ident $($rest:tt)*) => {
-        (Option<$module::$effect<$D>>, chain!($D, $X, $($rest)*))
+    ($D:ident,) => { () };
+    ($D:ident, $module:ident::$effect:ident $($rest:tt)*) => {
+        (Option<$module::$effect<$D>>, chain!($D, $($rest)*))
     };
-    (of $D:ident, $scene:ident, $more:ident,) => { ($more, ()) };
-    (of $D:ident, $scene:ident, $more:ident, $module:ident::$effect:ident $($rest:tt)*) => {
-        (taking_part::<$module::$effect<$D>, $D>($scene), chain!(of $D, $scene, $more, $($rest)*))
+    (of $D:ident, $scene:ident,) => { () };
+    (of $D:ident, $scene:ident, $module:ident::$effect:ident $($rest:tt)*) => {
+        (taking_part::<$module::$effect<$D>, $D>($scene), chain!(of $D, $scene, $($rest)*))
     };
 }
+
+/// A further effect, `X`, and those of the list.
+pub type List<const D: usize, X> = (Option<X>, Standard<D>);
 
 fn decide_one<E: FluidEffect<D>, const D: usize>(scene: &Scene) -> (Decision, usize) {
     let decision = E::decide(scene);

@@ -1,6 +1,7 @@
 //! The fluid as a [`Role`]: what happens in a half-step, and which effects take part.
 
 use crate::columns::{Columns, fit};
+use crate::compiled;
 use crate::composition::Shares;
 use crate::effects::non_negative_wall_pressure::NonNegativeWallPressure;
 use crate::effects::{self, Effects, FluidEffect, List};
@@ -24,7 +25,6 @@ use halfstep_scene::{FluidIntegration, Gravity, KernelName, Phase, Scene};
 use halfstep_sph::lane::Isa;
 use halfstep_sph::neighbours::{ClusterList, PADDING, Rows};
 use halfstep_sph::state_equation::StateEquation;
-use halfstep_sph::with_kernel;
 use halfstep_wire::Name;
 use halfstep_wire::failure::Diverged;
 use halfstep_wire::frame::Frame;
@@ -89,7 +89,7 @@ pub struct Fluid<const D: usize, X: FluidEffect<D> = ()> {
 }
 
 impl<const D: usize> Fluid<D> {
-    /// The fluid of a scene that has one.
+    /// The fluid of a scene that has one, in a dimension that scenes have.
     pub fn new(scene: &Scene, isa: Isa) -> Option<Self> {
         Self::build(scene, isa, None)
     }
@@ -102,7 +102,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
     }
 
     fn build(scene: &Scene, isa: Isa, more: Option<X>) -> Option<Self> {
-        let fluid = scene.fluid.as_ref()?;
+        let fluid = scene.fluid.as_ref().filter(|_| compiled::has(D))?;
         let layout = geometry::layout::<D>(scene);
         let h = scene.smoothing_ratio * scene.resolution;
         let skin = SKIN * h;
@@ -296,15 +296,7 @@ impl<const D: usize, X: FluidEffect<D>> Role for Fluid<D, X> {
     }
 
     fn own_sums(&mut self) {
-        with_kernel!(self.kernel, self.smoothing_length, D, |kernel| {
-            self.sums(kernel);
-            if self.stage == Stage::Second && self.integration == FluidIntegration::Midpoint {
-                self.measure_powers(kernel);
-            }
-            if self.stage == Stage::Second && self.predicts_alone() {
-                self.predicted_rates(kernel);
-            }
-        });
+        (X::passes().own_sums)(self);
     }
 
     fn cross_sums(&mut self, own: &[StateRecord], peers: &[Peer]) -> Result<(), CoverageError> {
@@ -318,12 +310,7 @@ impl<const D: usize, X: FluidEffect<D>> Role for Fluid<D, X> {
             self.pair_evaluations += coupling.pairs() as u64;
         }
         if self.stage == Stage::Second && by_means {
-            with_kernel!(self.kernel, self.smoothing_length, D, |kernel| {
-                if !self.predicts_alone() {
-                    self.predicted_rates(kernel);
-                }
-                self.measure_powers_by_means(kernel, own, peers);
-            });
+            (X::passes().sums_after_peers)(self, own, peers);
         }
         Ok(())
     }
@@ -392,10 +379,7 @@ impl<const D: usize, X: FluidEffect<D>> Role for Fluid<D, X> {
     }
 
     fn costs(&mut self) -> Costs {
-        let before = self.pair_evaluations;
-        let costs = with_kernel!(self.kernel, self.smoothing_length, D, |kernel| Self::costs(self, kernel));
-        self.pair_evaluations = before;
-        costs
+        (X::passes().costs)(self)
     }
 
     fn pair_evaluations(&self) -> u64 {

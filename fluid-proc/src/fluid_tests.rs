@@ -1,6 +1,7 @@
 //! The fluid as a role: walls, rest, time step.
 
 use crate::Fluid;
+use crate::effects::FluidEffect;
 use crate::rates::RateSum;
 use crate::time_step::StepLimits;
 use halfstep_role::role::Role;
@@ -165,7 +166,7 @@ fn position_verlet_measures_the_viscous_force_on_walls() {
         let mut fluid = Fluid::<2>::new(&scene, Isa::detect()).unwrap();
         assert!(fluid.measures_loads());
         fluid.own_sums();
-        fluid.wall_loads()
+        (<() as FluidEffect<2>>::passes().wall_loads)(&fluid)
     };
     let [midpoint, verlet] = ["midpoint", "verlet"].map(loads);
     assert!(midpoint.iter().flatten().any(|f| *f != 0.0));

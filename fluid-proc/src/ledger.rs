@@ -179,6 +179,10 @@ impl<K: Kernel<D>, const D: usize> Measuring<'_, K, D> {
     }
 
     fn add_at<E: PairEffect<D>>(&mut self, part: EnergyPart, effect: E, predicted: Option<&[[f64; D]]>) {
+        // No pass is compiled for a share that adds nothing.
+        if const { !E::MOMENTUM && !E::CONTINUITY } {
+            return;
+        }
         let Self { kernel, fluid, sources, middle, walls, .. } = *self;
         let law = PowerLaw { kernel, effect, targets: fluid, sources, middle, predicted, walls };
         self.sums.resize(self.list.fours(), Power::default());

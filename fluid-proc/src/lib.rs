@@ -17,6 +17,8 @@
 //! ```
 
 pub mod columns;
+#[doc(hidden)]
+pub mod compiled;
 pub mod composition;
 pub mod effects;
 pub mod equations;

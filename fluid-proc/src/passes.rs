@@ -1,19 +1,21 @@
 //! The passes over neighbours of a half-step, and what each effect takes of their time.
 
-use crate::columns::fit;
-use crate::composition::{Pass, Shares};
+use crate::columns::{PairParticles, fit};
+use crate::compiled::StandardPasses;
+use crate::composition::{Pass, Runs, Shares, WithList, adds};
 use crate::effects::{Effects, FluidEffect, List, Neighbourhood, OnParticle, evaluations};
 use crate::equations::{Both, Continuity, Equations, Momentum, Needed};
 use crate::fluid::Fluid;
 use crate::rates::{PairEffect, PredictedLaw, RateLaw, RateSum};
 use crate::shifting_sums::ShiftingSums;
-use crate::walls::{WallLaw, Walls};
+use crate::walls::WallLaw;
 use halfstep_role::role::{Costs, fastest};
 use halfstep_role::timeline;
 use halfstep_scene::EffectName;
-use halfstep_sph::kernel::Kernel;
-use halfstep_sph::lane::LANES;
-use halfstep_sph::pair;
+use halfstep_sph::kernel::{Kernel, KernelName};
+use halfstep_sph::lane::{Isa, LANES};
+use halfstep_sph::neighbours::ClusterList;
+use halfstep_sph::{pair, with_kernel};
 use halfstep_wire::half_step::Stage;
 use rayon::prelude::*;
 
@@ -27,7 +29,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         self.pair_evaluations += self.among(kernel, |effects, around| effects.prepare(stage, around));
         let mut sums = std::mem::take(&mut self.sums);
         let mut shifting = self.taken_shifting_sums(stage);
-        self.all_rates(kernel, needed, shifting.as_mut(), &mut sums);
+        self.all_rates(needed, shifting.as_mut(), &mut sums);
         self.sums = sums;
         let around = evaluations(&self.fluid_list) + evaluations(&self.wall_list);
         self.pair_evaluations += around;
@@ -53,18 +55,17 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
     }
 
     /// The rates by fluid, walls and effects on single particles.
-    pub(crate) fn all_rates<K: Kernel<D>>(
+    pub(crate) fn all_rates(
         &self,
-        kernel: K,
         needed: Needed,
         shifting: Option<&mut ShiftingSums<D>>,
         sums: &mut [RateSum<D>],
     ) {
         {
             let _phase = timeline::phase("pair pass");
-            self.rates(kernel, needed, self.effects.pairs(), shifting, sums);
+            self.rates(needed, self.effects.pairs(), shifting, sums);
         }
-        self.wall_rates(kernel, needed, sums);
+        self.wall_rates(needed, sums);
         if needed.momentum() {
             self.effects.on_particles(&mut |name, of| {
                 let _phase = timeline::phase(name);
@@ -101,34 +102,43 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         self.pair_evaluations += evaluations(&self.list_of_walls);
     }
 
-    /// The rate pass over the fluid, with particle shifting's sums along where they are asked for.
-    fn rates<K: Kernel<D>>(
+    /// What the passes of the rates see.
+    fn fluid_and_walls(&self) -> FluidAndWalls<'_, D> {
+        FluidAndWalls {
+            kernel: self.kernel,
+            smoothing_length: self.smoothing_length,
+            isa: self.isa,
+            fluid: &self.columns.now,
+            list: &self.fluid_list,
+            walls: self.walls.as_ref().map(|walls| (&walls.shown, &self.wall_list)),
+        }
+    }
+
+    /// The rates by the fluid, and particle shifting's sums where they are asked for.
+    fn rates(
         &self,
-        kernel: K,
         needed: Needed,
-        shares: impl Shares<D>,
+        (further, standard): <List<D, X> as Effects<D>>::Pairs<'_>,
         shifting: Option<&mut ShiftingSums<D>>,
         sums: &mut [RateSum<D>],
     ) {
-        let fluid = self;
-        match needed {
-            Needed::Both => shares.run(OverFluid { kernel, equations: Both, fluid, shifting, sums }),
-            Needed::Momentum => shares.run(OverFluid { kernel, equations: Momentum, fluid, shifting, sums }),
-            Needed::Continuity => {
-                shares.run(OverFluid { kernel, equations: Continuity, fluid, shifting, sums })
-            }
+        let particles = self.fluid_and_walls();
+        match further.filter(|_| adds::<X::Pair<'_>, D>(needed)) {
+            None => (StandardPasses::get().rates)(particles, needed, standard, shifting, sums),
+            Some(share) => rates(particles, needed, WithList(share, standard), shifting, sums),
         }
     }
 
     /// Adds the rates by the walls.
-    fn wall_rates<K: Kernel<D>>(&self, kernel: K, needed: Needed, sums: &mut [RateSum<D>]) {
-        let Some(walls) = &self.walls else { return };
+    fn wall_rates(&self, needed: Needed, sums: &mut [RateSum<D>]) {
+        if self.walls.is_none() {
+            return;
+        }
         let _phase = timeline::phase("walls: rates");
-        let (shares, fluid) = (self.effects.at_walls(), self);
-        match needed {
-            Needed::Both => shares.run(OverWalls { kernel, equations: Both, fluid, walls, sums }),
-            Needed::Momentum => shares.run(OverWalls { kernel, equations: Momentum, fluid, walls, sums }),
-            Needed::Continuity => shares.run(OverWalls { kernel, equations: Continuity, fluid, walls, sums }),
+        let (particles, (further, standard)) = (self.fluid_and_walls(), self.effects.at_walls());
+        match further.filter(|_| adds::<X::AtWall<'_>, D>(needed)) {
+            None => (StandardPasses::get().wall_rates)(particles, needed, standard, sums),
+            Some(share) => wall_rates(particles, needed, WithList(share, standard), sums),
         }
     }
 
@@ -202,18 +212,14 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
     }
 
     /// Name of particle shifting, and seconds that its sums take beside the rates, in the mean over both stages.
-    fn cost_of_shifting<K: Kernel<D>>(
-        &mut self,
-        kernel: K,
-        sums: &mut [RateSum<D>],
-    ) -> Option<(&'static str, f64)> {
+    fn cost_of_shifting(&mut self, sums: &mut [RateSum<D>]) -> Option<(&'static str, f64)> {
         let needed = Needed::at(Stage::Second, self.integration);
         let (name, _) = self.effects.shifting_sums()?;
         let mut shifting = self.taken_shifting_sums(Stage::Second)?;
         let [with, without] = [true, false].map(|along| {
             fastest(|| {
                 let shifting = along.then_some(&mut shifting);
-                self.rates(kernel, needed, self.effects.pairs(), shifting, sums);
+                self.rates(needed, self.effects.pairs(), shifting, sums);
             })
         });
         self.put_back(shifting);
@@ -221,7 +227,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
     }
 
     /// Parts of the sums' time, each effect's measured by leaving it out.
-    pub(crate) fn costs<K: Kernel<D>>(&mut self, kernel: K) -> Costs {
+    pub(crate) fn measured_costs<K: Kernel<D>>(&mut self, kernel: K) -> Costs {
         let mut costs = Costs::default();
         let mut sums = std::mem::take(&mut self.sums);
         // In the mean over a step; of stages that are alike once.
@@ -230,12 +236,11 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         let mean = |seconds: &mut dyn FnMut(Needed) -> f64| {
             stages.iter().map(|&needed| seconds(needed)).sum::<f64>() / number
         };
-        let at_walls = mean(&mut |needed| fastest(|| self.wall_rates(kernel, needed, &mut sums)));
+        let at_walls = mean(&mut |needed| fastest(|| self.wall_rates(needed, &mut sums)));
         let walls =
             fastest(|| self.extrapolate(kernel)) + at_walls + self.cost_of_prediction(kernel, &mut sums);
-        let rates =
-            mean(&mut |needed| fastest(|| self.rates(kernel, needed, self.effects.pairs(), None, &mut sums)));
-        let shifting = self.cost_of_shifting(kernel, &mut sums);
+        let rates = mean(&mut |needed| fastest(|| self.rates(needed, self.effects.pairs(), None, &mut sums)));
+        let shifting = self.cost_of_shifting(&mut sums);
         let mut own_passes = Vec::new();
         self.among(kernel, |effects, around| effects.measure(around, &mut own_passes));
         for (name, own) in &mut own_passes {
@@ -251,13 +256,14 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
         // It comes before the sums, once for each.
         costs.moving_walls = placing / total;
         for (name, own) in own_passes {
-            let without = mean(&mut |needed| {
-                fastest(|| self.rates(kernel, needed, self.effects.pairs_without(name), None, &mut sums))
-            });
             // What a further effect takes is counted as the fluid's own.
-            if let Some(place) = EffectName::ALL.iter().position(|effect| effect.name() == name) {
-                costs.effects[place] = ((rates - without).max(0.0) + own) / total;
-            }
+            let Some(place) = EffectName::ALL.iter().position(|effect| effect.name() == name) else {
+                continue;
+            };
+            let without = mean(&mut |needed| {
+                fastest(|| self.rates(needed, self.effects.pairs_without(name), None, &mut sums))
+            });
+            costs.effects[place] = ((rates - without).max(0.0) + own) / total;
         }
         self.sums = sums;
         costs
@@ -270,46 +276,103 @@ const TASK: usize = 1024;
 /// The fluid's shares of a pair of a fluid and a wall particle.
 type AtWalls<'a, const D: usize, X> = <List<D, X> as Effects<D>>::AtWalls<'a>;
 
-struct OverFluid<'a, K, Q, X: FluidEffect<D>, const D: usize> {
+/// What the passes of the rates see.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FluidAndWalls<'a, const D: usize> {
+    kernel: KernelName,
+    smoothing_length: f64,
+    isa: Isa,
+    fluid: &'a PairParticles<D>,
+    list: &'a ClusterList,
+    walls: Option<(&'a PairParticles<D>, &'a ClusterList)>,
+}
+
+/// The rates by the fluid, and particle shifting's sums where they are asked for.
+pub(crate) fn rates<const D: usize>(
+    particles: FluidAndWalls<'_, D>,
+    needed: Needed,
+    shares: impl Runs<D>,
+    shifting: Option<&mut ShiftingSums<D>>,
+    sums: &mut [RateSum<D>],
+) {
+    with_kernel!(particles.kernel, particles.smoothing_length, D, |kernel| match (needed, shifting) {
+        (Needed::Momentum, Some(shifting)) => shares.run(WithShifting { kernel, particles, shifting, sums }),
+        (_, shifting) => {
+            match needed {
+                Needed::Both => shares.run(OverFluid { kernel, equations: Both, particles, sums }),
+                Needed::Momentum => shares.run(OverFluid { kernel, equations: Momentum, particles, sums }),
+                Needed::Continuity => {
+                    shares.run(OverFluid { kernel, equations: Continuity, particles, sums })
+                }
+            }
+            if let Some(shifting) = shifting {
+                let FluidAndWalls { isa, fluid, list, walls, .. } = particles;
+                shifting.alone(isa, kernel, fluid, list, walls);
+            }
+        }
+    });
+}
+
+/// Adds the rates by the walls.
+pub(crate) fn wall_rates<const D: usize>(
+    particles: FluidAndWalls<'_, D>,
+    needed: Needed,
+    shares: impl Runs<D>,
+    sums: &mut [RateSum<D>],
+) {
+    with_kernel!(particles.kernel, particles.smoothing_length, D, |kernel| match needed {
+        Needed::Both => shares.run(OverWalls { kernel, equations: Both, particles, sums }),
+        Needed::Momentum => shares.run(OverWalls { kernel, equations: Momentum, particles, sums }),
+        Needed::Continuity => shares.run(OverWalls { kernel, equations: Continuity, particles, sums }),
+    });
+}
+
+struct OverFluid<'a, K, Q, const D: usize> {
     kernel: K,
     equations: Q,
-    fluid: &'a Fluid<D, X>,
-    /// Asked for with accelerations only.
-    shifting: Option<&'a mut ShiftingSums<D>>,
+    particles: FluidAndWalls<'a, D>,
     sums: &'a mut [RateSum<D>],
 }
 
-impl<K: Kernel<D>, Q: Equations, X: FluidEffect<D>, const D: usize> Pass<D> for OverFluid<'_, K, Q, X, D> {
+impl<K: Kernel<D>, Q: Equations, const D: usize> Pass<D> for OverFluid<'_, K, Q, D> {
     type Equations = Q;
     fn run<E: PairEffect<D>>(self, effects: E) {
-        let Self { kernel, equations, fluid, .. } = self;
-        let shown = &fluid.columns.now;
-        let law = RateLaw { kernel, equations, effects, targets: shown, sources: shown };
-        debug_assert!(Q::MOMENTUM || self.shifting.is_none());
-        match self.shifting {
-            Some(shifting) if Q::MOMENTUM => {
-                let walls = fluid.walls.as_ref().map(|walls| (&walls.shown, &fluid.wall_list));
-                shifting.with_rates(fluid.isa, law, &fluid.fluid_list, walls, self.sums);
-            }
-            _ => pair::pass(fluid.isa, &law, &fluid.fluid_list, self.sums),
-        }
+        let Self { kernel, equations, particles: FluidAndWalls { isa, fluid, list, .. }, sums } = self;
+        let law = RateLaw { kernel, equations, effects, targets: fluid, sources: fluid };
+        pair::pass(isa, &law, list, sums);
     }
 }
 
-struct OverWalls<'a, K, Q, X: FluidEffect<D>, const D: usize> {
+/// Accelerations with particle shifting's sums along.
+struct WithShifting<'a, K, const D: usize> {
     kernel: K,
-    equations: Q,
-    fluid: &'a Fluid<D, X>,
-    walls: &'a Walls<D>,
+    particles: FluidAndWalls<'a, D>,
+    shifting: &'a mut ShiftingSums<D>,
     sums: &'a mut [RateSum<D>],
 }
 
-impl<K: Kernel<D>, Q: Equations, X: FluidEffect<D>, const D: usize> Pass<D> for OverWalls<'_, K, Q, X, D> {
+impl<K: Kernel<D>, const D: usize> Pass<D> for WithShifting<'_, K, D> {
+    type Equations = Momentum;
+    fn run<E: PairEffect<D>>(self, effects: E) {
+        let Self { kernel, particles: FluidAndWalls { isa, fluid, list, walls, .. }, shifting, sums } = self;
+        let law = RateLaw { kernel, equations: Momentum, effects, targets: fluid, sources: fluid };
+        shifting.with_accelerations(isa, law, list, walls, sums);
+    }
+}
+
+struct OverWalls<'a, K, Q, const D: usize> {
+    kernel: K,
+    equations: Q,
+    particles: FluidAndWalls<'a, D>,
+    sums: &'a mut [RateSum<D>],
+}
+
+impl<K: Kernel<D>, Q: Equations, const D: usize> Pass<D> for OverWalls<'_, K, Q, D> {
     type Equations = Q;
     fn run<E: PairEffect<D>>(self, effects: E) {
-        let Self { kernel, equations, .. } = self;
-        let (targets, sources) = (&self.fluid.columns.now, &self.walls.shown);
-        let law = RateLaw { kernel, equations, effects, targets, sources };
-        pair::pass_adding(self.fluid.isa, &law, &self.fluid.wall_list, self.sums);
+        let Self { kernel, equations, particles: FluidAndWalls { isa, fluid, walls, .. }, sums } = self;
+        let Some((sources, list)) = walls else { return };
+        let law = RateLaw { kernel, equations, effects, targets: fluid, sources };
+        pair::pass_adding(isa, &law, list, sums);
     }
 }

@@ -154,7 +154,7 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
     /// Appends the values of the fluid's probes.
     pub(crate) fn measure(&self, out: &mut Vec<f64>) {
         let half = 0.5 * self.resolution;
-        let loads = if self.measures_loads() { self.wall_loads() } else { Vec::new() };
+        let loads = if self.measures_loads() { (X::passes().wall_loads)(self) } else { Vec::new() };
         for probe in &self.probes {
             match probe {
                 Gauge::Pressure(points) => out.push(match points {

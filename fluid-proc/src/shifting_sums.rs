@@ -1,9 +1,10 @@
 //! The sums of particle shifting: the concentration's gradient, sum V [1 + R (W / W(dx))^4] grad W, of which its drift
 //! is made, and the moment matrix M = sum V (x_j - x_i) (x) grad W. They go along with the accelerations of the second
-//! stage, whose pass over the fluid visits the same pairs at the same places.
+//! stage, whose pass over the fluid visits the same pairs at the same places; where that pass gives both equations they
+//! have one of their own, since each composition of effects with them along takes long to compile.
 
 use crate::columns::{PairParticles, fit};
-use crate::equations::Equations;
+use crate::equations::Momentum;
 use crate::rates::{PairEffect, RateLaw, RateSum, Target};
 use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::{Arch, Isa, LANES, Lane, Lanes};
@@ -59,25 +60,60 @@ impl<const D: usize> ShiftingSums<D> {
         self.drift.capacity() * size_of::<[f64; D]>() + self.determinant.capacity() * size_of::<f64>()
     }
 
-    /// Runs the pass of the rates over the fluid with these sums along, which go on over the walls.
-    pub(crate) fn with_rates<K: Kernel<D>, E: PairEffect<D>, Q: Equations>(
+    /// Runs the pass of the accelerations over the fluid with these sums along, which go on over the walls.
+    pub(crate) fn with_accelerations<K: Kernel<D>, E: PairEffect<D>>(
         &mut self,
         isa: Isa,
-        rates: RateLaw<'_, K, E, Q, D>,
+        rates: RateLaw<'_, K, E, Momentum, D>,
         list: &ClusterList,
         walls: Option<(&PairParticles<D>, &ClusterList)>,
         sums: &mut [RateSum<D>],
     ) {
-        let RateLaw { kernel, targets, sources, .. } = rates;
+        let (law, walls) = self.laws(rates.kernel, rates.targets, walls);
+        let (found, columns) = self.found();
+        pair::pass_together(isa, (rates, law), list, walls, sums, found, columns);
+    }
+
+    /// Runs a pass of these sums alone, over fluid and walls.
+    pub(crate) fn alone<K: Kernel<D>>(
+        &mut self,
+        isa: Isa,
+        kernel: K,
+        fluid: &PairParticles<D>,
+        list: &ClusterList,
+        walls: Option<(&PairParticles<D>, &ClusterList)>,
+    ) {
+        let (law, walls) = self.laws(kernel, fluid, walls);
+        let (found, columns) = self.found();
+        pair::pass_onward(isa, law, list, walls, found, columns);
+    }
+
+    /// The laws over fluid and walls.
+    fn laws<'a, K: Kernel<D>>(
+        &self,
+        kernel: K,
+        fluid: &'a PairParticles<D>,
+        walls: Option<(&'a PairParticles<D>, &'a ClusterList)>,
+    ) -> (ShiftingLaw<'a, K, D>, Option<(ShiftingLaw<'a, K, D>, &'a ClusterList)>) {
         let at_spacing = 1.0 / kernel.at(self.spacing);
-        let law = ShiftingLaw { kernel, at_spacing, targets, sources, flows: true };
-        let at_walls = walls.map(|(sources, list)| (ShiftingLaw { sources, flows: false, ..law }, list));
+        let law = ShiftingLaw { kernel, at_spacing, targets: fluid, sources: fluid, flows: true };
+        (law, walls.map(|(sources, list)| (ShiftingLaw { sources, flows: false, ..law }, list)))
+    }
+
+    /// What makes drift and determinant of sums, and the columns of both.
+    fn found(
+        &mut self,
+    ) -> (impl Fn(usize, &ShiftingSum<D>) -> Shifts<D> + Copy + Sync + use<D>, Columns<'_, D>) {
         let (strength, fastest) = (self.strength, self.fastest);
-        let found = |_, sum: &ShiftingSum<D>| sum.shift(strength, fastest);
         let columns = (self.drift.as_chunks_mut().0, self.determinant.as_chunks_mut().0);
-        pair::pass_together(isa, (rates, law), list, at_walls, sums, found, columns);
+        (move |_, sum| sum.shift(strength, fastest), columns)
     }
 }
+
+/// Drift and determinant of several particles.
+type Shifts<const D: usize> = ([[f64; D]; LANES], [f64; LANES]);
+/// The columns of both.
+type Columns<'a, const D: usize> = (&'a mut [[[f64; D]; LANES]], &'a mut [[f64; LANES]]);
 
 /// The sums of several particles.
 #[derive(Clone, Copy, Debug)]
@@ -95,7 +131,7 @@ pair_sum!(ShiftingSum { D } { crowd, moment, against });
 impl<const D: usize> ShiftingSum<D> {
     // Inlined, its scalar arithmetic would break up the vectors of the loop before it.
     #[inline(never)]
-    fn shift(&self, strength: f64, fastest: f64) -> ([[f64; D]; LANES], [f64; LANES]) {
+    fn shift(&self, strength: f64, fastest: f64) -> Shifts<D> {
         let drift = std::array::from_fn(|k| {
             let fastest = fastest.min(STRAINED * (-self.against.0[k]).max(0.0).sqrt());
             let drift = self.crowd.map(|c| -strength * c.0[k]);
@@ -176,11 +212,11 @@ impl<K: Kernel<D>, const D: usize> PairLaw<D> for ShiftingLaw<'_, K, D> {
     }
 }
 
-impl<'a, K: Kernel<D>, E: PairEffect<D>, Q: Equations, const D: usize> Along<RateLaw<'a, K, E, Q, D>, D>
+impl<'a, K: Kernel<D>, E: PairEffect<D>, const D: usize> Along<RateLaw<'a, K, E, Momentum, D>, D>
     for ShiftingLaw<'a, K, D>
 {
     #[inline(always)]
-    fn along(&self, rates: &RateLaw<'a, K, E, Q, D>) -> Self {
+    fn along(&self, rates: &RateLaw<'a, K, E, Momentum, D>) -> Self {
         let RateLaw { kernel, targets, sources, .. } = *rates;
         Self { kernel, targets, sources, flows: true, ..*self }
     }

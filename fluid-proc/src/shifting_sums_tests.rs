@@ -1,8 +1,7 @@
-//! Particle shifting's sums along with the rates have the bits of passes of their own.
+//! Particle shifting's sums, along with accelerations or alone, have the bits of single passes over fluid and walls.
 
 use super::*;
 use crate::Fluid;
-use crate::equations::{Both, Momentum};
 use crate::motion_tests::run;
 use halfstep_role::role::Role;
 use halfstep_sph::kernel::WendlandC2;
@@ -39,33 +38,39 @@ fn rates_of(sums: &[RateSum<2>]) -> Vec<[u64; 3]> {
     bits(sums.iter().flat_map(each))
 }
 
-fn along_as_alone<Q: Equations>(fluid: &Fluid<2>, equations: Q) {
+fn along_as_alone(fluid: &Fluid<2>) {
     let (kernel, isa, shown) = (WendlandC2::<2>::new(H), fluid.isa, &fluid.columns.now);
     let (list, walls) = (&fluid.fluid_list, fluid.walls.as_ref().expect("a tank"));
-    let rates = RateLaw { kernel, equations, effects: (), targets: shown, sources: shown };
+    let rates = RateLaw { kernel, equations: Momentum, effects: (), targets: shown, sources: shown };
 
     let mut shifting = ShiftingSums::<2>::new(DX, 0.6 * H * 20.0, 1.0);
     shifting.resize(fluid.columns.slots());
     let mut along = vec![RateSum::default(); list.fours()];
-    shifting.with_rates(isa, rates, list, Some((&walls.shown, &fluid.wall_list)), &mut along);
+    let at_walls = Some((&walls.shown, &fluid.wall_list));
+    shifting.with_accelerations(isa, rates, list, at_walls, &mut along);
 
     let mut alone = vec![RateSum::default(); list.fours()];
     pair::pass(isa, &rates, list, &mut alone);
     assert_eq!(rates_of(&along), rates_of(&alone));
 
+    let mut own = ShiftingSums::<2>::new(DX, 0.6 * H * 20.0, 1.0);
+    own.resize(fluid.columns.slots());
+    own.alone(isa, kernel, shown, list, at_walls);
     let at_spacing = 1.0 / kernel.at(DX);
     let law = ShiftingLaw { kernel, at_spacing, targets: shown, sources: shown, flows: true };
-    let at_walls = ShiftingLaw { sources: &walls.shown, flows: false, ..law };
     let mut sums = vec![ShiftingSum::<2>::default(); list.fours()];
     pair::pass(isa, &law, list, &mut sums);
     let before: Vec<_> = sums.iter().map(|sum| sum.shift(1.0, 1.0).1).collect();
-    pair::pass_adding(isa, &at_walls, &fluid.wall_list, &mut sums);
+    let law = ShiftingLaw { sources: &walls.shown, flows: false, ..law };
+    pair::pass_adding(isa, &law, &fluid.wall_list, &mut sums);
     let found: Vec<_> = sums.iter().map(|sum| sum.shift(0.6 * H * 20.0, 1.0)).collect();
-    assert_eq!(bits(shifting.drift.iter().copied()), bits(found.iter().flat_map(|(drift, _)| *drift)));
-    assert_eq!(
-        bits(shifting.determinant.as_chunks::<LANES>().0.iter().copied()),
-        bits(found.iter().map(|(_, determinant)| *determinant))
-    );
+    for shifting in [&shifting, &own] {
+        assert_eq!(bits(shifting.drift.iter().copied()), bits(found.iter().flat_map(|(drift, _)| *drift)));
+        assert_eq!(
+            bits(shifting.determinant.as_chunks::<LANES>().0.iter().copied()),
+            bits(found.iter().map(|(_, determinant)| *determinant))
+        );
+    }
 
     let moved = shifting.drift.iter().filter(|drift| drift[0].hypot(drift[1]) > 1e-3).count();
     let beside_walls = found.iter().zip(&before).filter(|((_, after), before)| after != *before).count();
@@ -73,10 +78,8 @@ fn along_as_alone<Q: Equations>(fluid: &Fluid<2>, equations: Q) {
 }
 
 #[test]
-fn sums_along_with_the_rates_have_the_bits_of_their_own_passes() {
+fn sums_along_with_accelerations_and_alone_have_the_bits_of_single_passes() {
     for precision in ["double", "mixed"] {
-        let fluid = water(precision);
-        along_as_alone(&fluid, Both);
-        along_as_alone(&fluid, Momentum);
+        along_as_alone(&water(precision));
     }
 }

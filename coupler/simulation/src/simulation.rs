@@ -101,7 +101,7 @@ impl Simulation {
 }
 
 impl<const D: usize> Simulation<D> {
-    /// With one more effect on the fluid, whose passes are compiled with it. It takes part where its
+    /// With one more effect on the fluid, whose complete law is compiled with it. It takes part where its
     /// [`FluidEffect::decide`] says so; its name is a key of `[effects]` in a scene read by
     /// [`halfstep_scene::load_with`].
     #[must_use]

@@ -10,23 +10,18 @@ use halfstep_sph::kernel::Kernel;
 use halfstep_sph::lane::{LANES, Lane, Lanes, Unfused};
 use halfstep_sph::neighbours::PADDING;
 use halfstep_sph::pair::PairLaw;
-use halfstep_sph::with_kernel;
 
 impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
     /// Force of the fluid on each slot of the walls, N (2D: N/m), after the sums of the same state: for each pair minus
     /// the fluid particle's mass times the acceleration that the pair gives it, all effects at walls included.
-    pub(crate) fn wall_loads(&self) -> Vec<[f64; D]> {
-        with_kernel!(self.kernel, self.smoothing_length, D, |kernel| self.loads(kernel))
-    }
-
-    fn loads<K: Kernel<D>>(&self, kernel: K) -> Vec<[f64; D]> {
+    pub(crate) fn loads<K: Kernel<D>>(&self, kernel: K) -> Vec<[f64; D]> {
         let Some(walls) = &self.walls else { return Vec::new() };
         let mut loads = vec![[0.0; D]; walls.slots()];
         let (targets, sources) = (&self.columns.now, &walls.shown);
         let (effects, equations) = (self.effects.at_walls(), Momentum);
         self.add_loads(&RateLaw { kernel, equations, effects, targets, sources }, &mut loads);
         if self.effects.at_walls_predicted().any() {
-            let velocities = self.predicted_from_now(kernel);
+            let velocities = self.predicted_from_now();
             if let Some(law) = self.predicted_law(kernel, &velocities) {
                 self.add_loads(&law, &mut loads);
             }
@@ -36,9 +31,9 @@ impl<const D: usize, X: FluidEffect<D>> Fluid<D, X> {
 
     /// Velocities, m/s, to which the accelerations of this state lead in a step as long as the last one. What solids do
     /// is not among them.
-    fn predicted_from_now<K: Kernel<D>>(&self, kernel: K) -> Vec<[f64; D]> {
+    fn predicted_from_now(&self) -> Vec<[f64; D]> {
         let mut sums = vec![RateSum::default(); self.sums.len()];
-        self.all_rates(kernel, Needed::Momentum, None, &mut sums);
+        self.all_rates(Needed::Momentum, None, &mut sums);
         let mut velocities = Vec::new();
         self.predict(2.0 * self.density_lag, &sums, &mut velocities);
         velocities

@@ -24,7 +24,7 @@ pub use fixed::{FixedLaw, FixedPairs, fixed_pass};
 use out::{Add, Change, Out, Replace, Sink, TASK_FOURS};
 use rayon::prelude::*;
 pub use sum::PairSum;
-pub use together::{Along, pass_together};
+pub use together::{Along, pass_onward, pass_together};
 
 /// A sum over neighbours.
 pub trait PairLaw<const D: usize>: Sync {

@@ -1,4 +1,5 @@
-//! Two laws over the same pairs in one pass. Distance and slope of a pair are computed once for both.
+//! Two laws over the same pairs in one pass: distance and slope of a pair are computed once for both. [`pass_onward`]
+//! runs one law over two sets of neighbours.
 
 use super::out::{Replace, ReplaceTwo};
 use super::{PairLaw, Work, run_tasks};
@@ -27,11 +28,7 @@ impl<const D: usize, V: PairLaw<D> + Copy, W: Along<V, D>> Work<D> for Together<
     const SINGLE: bool = Pair::<V, W>::SINGLE;
     type Sum<L: Lanes> = (V::Sum<L>, W::Sum<L>);
     fn list(&self) -> &ClusterList {
-        if let Some((_, more)) = self.more {
-            let of = |list: &ClusterList| (list.fours(), list.width(), list.precision());
-            assert_eq!(of(self.list), of(more), "lists of the same targets");
-        }
-        self.list
+        with_same_targets(self.list, self.more.map(|(_, more)| more))
     }
     #[inline(always)]
     fn gather<A: Arch, L: Lanes>(self, chunk: usize, k: usize, slot: usize, sum: &mut Self::Sum<L>) {
@@ -40,6 +37,37 @@ impl<const D: usize, V: PairLaw<D> + Copy, W: Along<V, D>> Work<D> for Together<
             (law, *list).gather::<A, L>(chunk, k, slot, &mut sum.1);
         }
     }
+}
+
+/// A law that goes on over a second set of neighbours.
+#[derive(Clone, Copy)]
+struct Onward<'a, W> {
+    law: W,
+    list: &'a ClusterList,
+    more: Option<(W, &'a ClusterList)>,
+}
+
+impl<const D: usize, W: PairLaw<D> + Copy> Work<D> for Onward<'_, W> {
+    const WIDE: bool = W::WIDE;
+    const SINGLE: bool = W::SINGLE;
+    type Sum<L: Lanes> = W::Sum<L>;
+    fn list(&self) -> &ClusterList {
+        with_same_targets(self.list, self.more.map(|(_, more)| more))
+    }
+    #[inline(always)]
+    fn gather<A: Arch, L: Lanes>(self, chunk: usize, k: usize, slot: usize, sum: &mut W::Sum<L>) {
+        (&self.law, self.list).gather::<A, L>(chunk, k, slot, sum);
+        if let Some((law, list)) = &self.more {
+            (law, *list).gather::<A, L>(chunk, k, slot, sum);
+        }
+    }
+}
+
+/// The first list; the second one is of the same targets.
+fn with_same_targets<'a>(list: &'a ClusterList, more: Option<&ClusterList>) -> &'a ClusterList {
+    let of = |list: &ClusterList| (list.fours(), list.width(), list.precision());
+    assert!(more.is_none_or(|more| of(more) == of(list)), "lists of the same targets");
+    list
 }
 
 /// A law and one that goes along with it.
@@ -93,4 +121,17 @@ pub fn pass_together<const D: usize, V: PairLaw<D> + Copy, W: Along<V, D>, T: Se
     let keep = Replace(|_, sum: &V::Sum<Lane>| *sum);
     let work = Together { laws: Pair(law, along), list, more };
     run_tasks(isa, work, (keep, ReplaceTwo(finish)), (sums, out));
+}
+
+/// Runs a law over its neighbours and over a second set of them, if there is one. The sums go through `finish`, with
+/// the first of their slots, to two columns.
+pub fn pass_onward<const D: usize, W: PairLaw<D> + Copy, T: Send, U: Send>(
+    isa: Isa,
+    law: W,
+    list: &ClusterList,
+    more: Option<(W, &ClusterList)>,
+    finish: impl Fn(usize, &W::Sum<Lane>) -> (T, U) + Copy + Sync,
+    out: (&mut [T], &mut [U]),
+) {
+    run_tasks(isa, Onward { law, list, more }, ReplaceTwo(finish), out);
 }

@@ -72,6 +72,9 @@ fn two_laws_in_one_pass_have_the_bits_of_their_own() {
     pass_together(isa, laws, &list, None, sums, finish, (&mut *out, &mut slots_of));
     assert_eq!(before, bits(out));
 
+    pass_onward(isa, second, &list, Some((onward, &more)), finish, (&mut *out, &mut slots_of));
+    assert_eq!(bits(&alone[1]), bits(out));
+
     let more = |sum: &ExtrapolationSum, out: &mut usize| *out += usize::from(sum.weight(0) > 0.0);
     pass_changing(isa, &laws.0, &list, more, &mut slots_of);
     assert!(slots_of.iter().enumerate().all(|(four, slot)| *slot == four * LANES + 1));
