@@ -1,8 +1,8 @@
 //! Which passes are compiled. Each set of shares that come together in a scene has a pass of its own, in which an
 //! absent effect does not exist; the types of these passes follow from the list of effects, none is written out. A
 //! share that does not ask for passes of its own ([`PairEffect::enter`]) takes part in the complete law, which asks for
-//! each effect whether it is there. The further effect of another crate comes first: where
-//! it is absent, or adds nothing, the passes of this crate's list are run, which are compiled already.
+//! each effect whether it is there. The further effect of another crate comes first: where it is absent,
+//! or adds nothing, the passes of this crate's list are run, which are compiled already.
 
 use crate::equations::{Both, Equations, Needed};
 use crate::rates::{FluidPair, PairEffect, PairRates};
@@ -59,7 +59,7 @@ impl<const D: usize> Shares<D> for () {
 impl<const D: usize, E: PairEffect<D>, R: Shares<D>> Shares<D> for (Option<E>, R) {
     fn compose<C: PairEffect<D>, A: PairEffect<D>, P: Pass<D>>(self, chosen: C, all: A, pass: P) {
         let (share, rest) = self;
-        if const { !adds_to::<E, P::Equations, D>() } {
+        if const { !adds::<E, D>(P::Equations::NEEDED) } {
             return rest.compose(chosen, all, pass);
         }
         match share {
@@ -73,13 +73,8 @@ impl<const D: usize, E: PairEffect<D>, R: Shares<D>> Shares<D> for (Option<E>, R
 }
 
 /// A share adds to what is needed.
-pub(crate) fn adds<E: PairEffect<D>, const D: usize>(needed: Needed) -> bool {
+pub(crate) const fn adds<E: PairEffect<D>, const D: usize>(needed: Needed) -> bool {
     E::MOMENTUM && needed.momentum() || E::CONTINUITY && needed.continuity()
-}
-
-/// The same of what a pass gives, known when it is compiled.
-const fn adds_to<E: PairEffect<D>, Q: Equations, const D: usize>() -> bool {
-    E::MOMENTUM && Q::MOMENTUM || E::CONTINUITY && Q::CONTINUITY
 }
 
 /// A composition at the place of one effect of the list.
@@ -124,7 +119,7 @@ pub(crate) struct WithList<E, S>(pub E, pub S);
 impl<const D: usize, E: PairEffect<D>, S: Shares<D>> Runs<D> for WithList<E, S> {
     fn run<P: Pass<D>>(self, pass: P) {
         let Self(share, rest) = self;
-        if const { adds_to::<E, P::Equations, D>() } {
+        if const { adds::<E, D>(P::Equations::NEEDED) } {
             share.enter(Entering { chosen: (), rest, all: (Some(share), rest), pass });
         } else {
             unreachable!("where a share adds nothing the passes without it are run");

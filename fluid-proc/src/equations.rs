@@ -5,10 +5,12 @@ use halfstep_wire::half_step::Stage;
 
 /// The equations whose rates a pass gives, known when it is compiled.
 pub trait Equations: Copy + Send + Sync {
+    /// Which they are.
+    const NEEDED: Needed;
     /// Accelerations.
-    const MOMENTUM: bool;
+    const MOMENTUM: bool = Self::NEEDED.momentum();
     /// Rates of the density.
-    const CONTINUITY: bool;
+    const CONTINUITY: bool = Self::NEEDED.continuity();
 }
 
 /// Momentum and continuity.
@@ -22,16 +24,13 @@ pub struct Momentum;
 pub struct Continuity;
 
 impl Equations for Both {
-    const MOMENTUM: bool = true;
-    const CONTINUITY: bool = true;
+    const NEEDED: Needed = Needed::Both;
 }
 impl Equations for Momentum {
-    const MOMENTUM: bool = true;
-    const CONTINUITY: bool = false;
+    const NEEDED: Needed = Needed::Momentum;
 }
 impl Equations for Continuity {
-    const MOMENTUM: bool = false;
-    const CONTINUITY: bool = true;
+    const NEEDED: Needed = Needed::Continuity;
 }
 
 /// The same, known in a run.
